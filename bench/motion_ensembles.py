@@ -21,7 +21,7 @@ from run import parse_cases, publish, start
 from statejump.core import figures
 from statejump.core.errors import StatejumpError
 from statejump.kinds.truss import compare
-from statejump.paper.claims.statistics import SIGNIFICANCE, TwoSampleTest, two_sample_test
+from studies.paper.claims.statistics import SIGNIFICANCE, TwoSampleTest, two_sample_test
 
 RUNS = 24  # of each model
 SPREAD = 0.01  # of the period, either way

@@ -18,10 +18,43 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 PACKAGE = "statejump"
-LARGEST_CIRCLE = 70
-FUNCTION_IMPORTS = 246
+LARGEST_CIRCLE = 3
+FUNCTION_IMPORTS = 40
 # From left to right; the longest name that fits decides. A package stands for all of its modules that have no entry.
-LAYERS: tuple[tuple[str, tuple[str, ...]], ...] = ()
+LAYERS: tuple[tuple[str, tuple[str, ...]], ...] = (
+    ("model", (
+        "statejump._version", "statejump.core", "statejump.schema",
+        "statejump.results.scene", "statejump.results.events",  # vocabulary of kinds: what to draw, what happened
+    )),
+    ("simulate", ("statejump.core.yade_process", "statejump.fe")),
+    ("kinds", (
+        "statejump.kinds", "statejump.laws", "statejump.fclib", "statejump.surface",
+        "statejump.kinds.truss.answers.jumps", "statejump.kinds.truss.answers.reflector",  # outcomes need them
+    )),
+    ("results", ("statejump.results",)),
+    ("campaigns", ("statejump.campaign", "statejump.schema.json_schema")),
+    ("design", (
+        "statejump.bores", "statejump.control", "statejump.identification", "statejump.orbit",
+        "statejump.kinds.spring_slider.control", "statejump.kinds.spring_slider.convergence",
+        "statejump.kinds.truss.answers", "statejump.kinds.truss.control",
+        "statejump.kinds.umbrella.control", "statejump.kinds.umbrella.control_ensemble",
+        "statejump.kinds.umbrella.control_loaded", "statejump.kinds.umbrella.control_parameters",
+        "statejump.kinds.umbrella.quasi_static",
+    )),
+    ("present", (
+        "statejump.core.figures", "statejump.core.html", "statejump.report",
+        "statejump.bores.picture", "statejump.bores.words", "statejump.campaign.plots", "statejump.control.plot",
+        "statejump.identification.picture", "statejump.laws.curves",
+        "statejump.kinds.spring_slider.figure", "statejump.kinds.spring_slider.statics_figure",
+        "statejump.kinds.statics.figure", "statejump.kinds.statics.files", "statejump.kinds.statics.words",
+        "statejump.kinds.truss.answers.figure", "statejump.kinds.truss.answers.vtk",
+        "statejump.kinds.truss.answers.write", "statejump.kinds.truss.creak", "statejump.kinds.truss.draw",
+        "statejump.kinds.truss.draw_planar", "statejump.kinds.truss.draw_spatial", "statejump.kinds.truss.figure",
+        "statejump.kinds.truss.page", "statejump.kinds.umbrella.figure", "statejump.kinds.umbrella.laws",
+    )),
+    ("api", ("statejump", "statejump.api", "statejump.truss")),
+    ("cli", ("statejump.cli",)),
+)
 # Neither a layer nor in the graph: the engine's module and what CMake writes.
 FOUNDATIONS = ("statejump._engine", "statejump._paths")
 PLACE = re.compile(r"statejump(\.\w+)+(:\w+)?")

@@ -531,9 +531,9 @@ def test_umbrella_rib_is_the_umbrella_case(cases: Path) -> None:
     for key, value in case.thermal.to_dict().items():
         assert getattr(truss.programs[0], key) == value, key
     assert rib.samples_per_cycle == case.samples_per_cycle
-    assert rib.dem.link_damping_ratio == case.damping.axial_damping_ratio
-    assert rib.dem.pin_damping_N_m_s_per_rad == case.damping.pin_damping_N_m_s_per_rad
-    assert case.joint.dissipation_law == "none" and rib.dem.contact_damping_ratio == 0
+    assert rib.dem_settings.link_damping_ratio == case.damping.axial_damping_ratio
+    assert rib.dem_settings.pin_damping_N_m_s_per_rad == case.damping.pin_damping_N_m_s_per_rad
+    assert case.joint.dissipation_law == "none" and rib.dem_settings.contact_damping_ratio == 0
 
 
 def test_ribs_of_an_umbrella_are_turned_copies() -> None:

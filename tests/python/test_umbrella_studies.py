@@ -18,8 +18,8 @@ from statejump.core import yade_process
 from statejump.core.errors import StatejumpError
 from statejump.kinds.loading import load_case
 from statejump.kinds.umbrella import dem, reduced as model
-from statejump.paper import energy, hold, slow
-from statejump.paper.common import made_by
+from studies.paper import energy, hold, slow
+from studies.paper.common import made_by
 from statejump.schema.paths import with_values
 
 
@@ -215,8 +215,8 @@ def test_studies_leave_the_callers_matplotlib_alone():
 import sys
 import matplotlib
 matplotlib.use("svg")
-import statejump.kinds.umbrella.figure, statejump.paper.energy, statejump.paper.hold, statejump.paper.slow
-import statejump.paper.figures.study
+import statejump.kinds.umbrella.figure, studies.paper.energy, studies.paper.hold, studies.paper.slow
+import studies.paper.figures.study
 from statejump.core.figures import panels
 panels(1, 1, (2, 2))
 print(matplotlib.get_backend().lower(), "matplotlib.pyplot" in sys.modules)

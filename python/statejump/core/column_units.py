@@ -124,6 +124,6 @@ def conversion(unit: str, wanted: str, change: bool = False) -> Conversion | Non
     """
     if unit == wanted:
         return SAME
-    from statejump.core import unit_library
+    from statejump.core import unit_library  # pint, 0.3 s; few tables need it
 
     return unit_library.conversion(unit, wanted, change)

@@ -28,8 +28,11 @@ TABLES_BESIDE = "tables"  # name of the section that names files of lists, where
 SectionType = TypeVar("SectionType", bound="Section")
 Names = Sequence[str] | Callable[[], Sequence[str]]
 
-# Sections are immutable, made by keyword, and told apart by their values.
-definition = attrs.define(frozen=True, kw_only=True, slots=False)
+
+def definition(model: type[SectionType]) -> type[SectionType]:
+    """Make a class of sections: immutable, made by keyword, told apart by their values."""
+    return attrs.define(model, frozen=True, kw_only=True, slots=False, repr=not model.NAMED,
+                        hash=False if model.NAMED else None)
 
 
 def _check(instance: Any, attribute: attrs.Attribute[Any], value: Any) -> None:
@@ -133,14 +136,15 @@ def texts(
 
 
 def section(
-    model: type[Section], *, required: bool = False, made: Callable[[], Section] | None = None
+    model: type[Section], *, required: bool = False, made: Callable[[], Section] | None = None, name: str | None = None
 ) -> Any:
     """Declare a section of a file; one that is not required is all defaults where it is missing.
 
     :param made: returns the section where it is missing, if not with all defaults
+    :param name: in files, where it is not that of the attribute
     """
     default: Any = attrs.NOTHING if required else attrs.Factory(made or model)
-    return attrs.field(default=default, metadata={SECTION: model})
+    return attrs.field(default=default, metadata={SECTION: model}, alias=name)
 
 
 def optional_section(model: type[Section]) -> Any:
@@ -170,6 +174,8 @@ class Section:
     GOES_WITH: ClassVar[dict[str, dict[str, tuple[str, ...]]]] = {}
     # Choice of the section: groups of keys, one of which a name needs as a whole; the other names refuse all of them.
     ONE_OF: ClassVar[dict[str, dict[str, tuple[tuple[str, ...], ...]]]] = {}
+    # Whether its name stands for it: ``repr`` and ``hash`` are its own and not those of all keys.
+    NAMED: ClassVar[bool] = False
 
     if TYPE_CHECKING:
         # Made by attrs, one for each class; what may be given are the keys, and their checks are those of the rules.
@@ -177,7 +183,11 @@ class Section:
 
     def to_dict(self) -> dict[str, Any]:
         """Return keys and values in the order of their declaration, sections as dicts."""
-        return {name: _plain(getattr(self, name)) for name in fields_of(type(self))}
+        return {name: _plain(self.part(name)) for name in fields_of(type(self))}
+
+    def part(self, name: str) -> Any:
+        """Return the value of a key, or of a case a section or list of tables, by its name in files."""
+        return getattr(self, fields_of(type(self))[name].name)
 
 
 def _plain(value: Any) -> Any:
@@ -197,12 +207,13 @@ def evolved(made: SectionType, **values: Any) -> SectionType:
 
 
 def fields_of(model: type[Section]) -> Mapping[str, attrs.Attribute[Any]]:
-    """Return the keys of a section, or the sections of a file, in the order of their first declaration: a kind
-    that declares one of them anew leaves it in its place."""
+    """Return the keys of a section, or the sections of a file, by their names in files and in the order of their first
+    declaration: a kind that declares one of them anew leaves it in its place."""
     if model not in _KNOWN:
-        known = {attribute.name: attribute for attribute in attrs.fields(model)}  # type: ignore[arg-type]
+        known = {attribute.alias: attribute for attribute in attrs.fields(model)}  # type: ignore[arg-type]
         order = dict.fromkeys(
-            attribute.name for base in reversed(model.__mro__) for attribute in base.__dict__.get("__attrs_attrs__", ())
+            attribute.alias for base in reversed(model.__mro__)
+            for attribute in base.__dict__.get("__attrs_attrs__", ())
         )
         _KNOWN[model] = MappingProxyType({name: known[name] for name in order})
     return _KNOWN[model]

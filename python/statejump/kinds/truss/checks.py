@@ -56,8 +56,8 @@ def _regularised(case: TrussSections) -> None:
             raise NotAllowed(f"motion.{key}", getattr(case.motion, key), f"it is not read {scheme}")
     if case.motion.masses != "lumped":
         raise NotAllowed("motion.masses", case.motion.masses, f"must be 'lumped' {scheme}, as in the DEM")
-    if case.reduced.sticking == "rigid":
-        raise NotAllowed("reduced.sticking", case.reduced.sticking,
+    if case.reduced_settings.sticking == "rigid":
+        raise NotAllowed("reduced.sticking", case.reduced_settings.sticking,
                          f"must be 'elastic' or 'partial_slip' {scheme}: its contacts bend, as in the DEM")
 
 

@@ -13,7 +13,7 @@ from statejump.kinds.truss.arrays import column, values
 from statejump.schema.item_tables import ItemColumns
 
 if TYPE_CHECKING:
-    from statejump.core.temperature_files import MemberProgram
+    from statejump.core.thermal import MemberProgram
     from statejump.kinds.truss.sections import TrussSections, TrussThermal
 
 

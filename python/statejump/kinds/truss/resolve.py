@@ -100,7 +100,7 @@ def resolve(case: TrussSections) -> ResolvedTruss:
         programs=warmed.programs,
         program_names=warmed.program_names,
         reflector=reflector,
-        sticking=case.reduced.sticking,
+        sticking=case.reduced_settings.sticking,
         start_friction=case.start.friction,
         types=JOINTS,
     )

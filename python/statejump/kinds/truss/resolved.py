@@ -13,8 +13,7 @@ from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
-from statejump.core.temperature_files import MemberProgram
-from statejump.core.thermal import Thermal, range_K
+from statejump.core.thermal import MemberProgram, Thermal, range_K
 from statejump.kinds.truss.arrays import GROUND
 from statejump.kinds.truss.mechanism import Bodies, Drives
 

@@ -14,8 +14,8 @@ from statejump.core import yade_process
 from statejump.core.case import Case
 from statejump.core.expansion import Expansion
 from statejump.core.start import Start
-from statejump.core.temperature_files import Histories, MemberProgram
-from statejump.core.thermal import CaseThermal, Thermal, returns_s
+from statejump.core.temperature_files import Histories
+from statejump.core.thermal import CaseThermal, MemberProgram, Thermal, returns_s
 from statejump.kinds.truss.joints.ball_joint import BallJoint
 from statejump.kinds.truss.joints.iwan_joint import IwanJoint
 from statejump.kinds.truss.joints.latch_hinge import LatchHinge
@@ -263,9 +263,9 @@ class TrussSections(Case):
     thermal: TrussThermal = section(TrussThermal, required=True)
     start: Start = section(Start)
     output: Output = section(Output)
-    reduced: TrussReduced = section(TrussReduced)
+    reduced_settings: TrussReduced = section(TrussReduced, name="reduced")
     motion: TrussMotion = section(TrussMotion)
-    dem: TrussDem = section(TrussDem)
+    dem_settings: TrussDem = section(TrussDem, name="dem")
     reflector: Reflector | None = optional_section(Reflector)
     tolerance: TrussTolerance = section(TrussTolerance)
     tables: Tables | None = optional_section(Tables)

@@ -14,8 +14,7 @@ from statejump.core.engine_failures import EngineFailed
 from statejump.core.errors import Interrupted, StatejumpError
 from statejump.core.progress import Tell
 from statejump.core.start import FRICTIONLESS
-from statejump.core.temperature_files import MemberProgram
-from statejump.core.thermal import Thermal
+from statejump.core.thermal import MemberProgram, Thermal
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.check_mechanism import refused_at_rest
 from statejump.kinds.truss.joints import JOINTS
@@ -231,11 +230,11 @@ def _solved(case: TrussCase, tell: Tell) -> TrussPath:
     truss = case.resolve()
     items = 3 * len(truss.nodes.names) + len(truss.links.names) + 8 * len(truss.revolutes.names)
     branches = max(2, *(len(program.table_time_s or ()) for program in (case.thermal, *case.program)))
-    states = branches * case.thermal.cycles * case.reduced.increments_per_branch
+    states = branches * case.thermal.cycles * case.reduced_settings.increments_per_branch
     return whole_path(truss, tell, cycle_ends_only=8 * items * states > LARGEST_PATH, **settings(case))
 
 
 def settings(case: TrussCase) -> dict[str, Any]:
     """Return how the [reduced] of a case says that :func:`path` follows it."""
     keys = "increments_per_branch", "locate_events", "event_tolerance", "energy_tolerance"
-    return {key: getattr(case.reduced, key) for key in keys}
+    return {key: getattr(case.reduced_settings, key) for key in keys}

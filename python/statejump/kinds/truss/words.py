@@ -60,9 +60,9 @@ def _joints(case: TrussCase) -> list[str]:
     sentences = [joint.describe(items) for joint, items in found if items]
     if case.start.friction == FRICTIONLESS:
         sentences.append("Loads and preloads act before friction does: joints start without friction.")
-    if case.reduced.sticking == "elastic":
+    if case.reduced_settings.sticking == "elastic":
         sentences.append("Joints of the reduced model stick elastically, as those of the DEM.")
-    if case.reduced.sticking == "partial_slip":
+    if case.reduced_settings.sticking == "partial_slip":
         sentences.append("Sliders and revolutes of the reduced model slide at the rim of their contacts before they "
                          "slide as a whole.")
     return sentences

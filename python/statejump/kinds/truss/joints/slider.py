@@ -19,6 +19,7 @@ from statejump.kinds.truss.joints.protocol import (
     IMPACT, ContactPart, Contacts, Drawn, JointColumn, Sampled, Strokes, Symbol,
 )
 from statejump.kinds.truss.joints.words import ALUMINIUM, USER, count, scaled, spread
+from statejump.results import scene as drawing
 from statejump.schema.fields import CHOICE, definition, numbers, parameter, texts
 from statejump.schema.items import Item
 
@@ -230,8 +231,6 @@ class SliderType(AlongAxis[Slider, Sliders]):
         )
 
     def drawn(self, truss: ResolvedTruss, joints: Sliders, labels: Sequence[str], taken: set[str]) -> Drawn:
-        from statejump.results import scene as drawing
-
         parts: list[dict[str, Any]] = []
         contacts = []
         for label, ends, axis, radius in zip(labels, joints.nodes, joints.axis, joints.pad_radius_m):

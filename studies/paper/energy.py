@@ -22,7 +22,7 @@ from statejump.core.tables import markdown, write_rows, write_markdown
 from statejump.kinds.umbrella import dem, reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.kinds.umbrella.compare import DISSIPATED, STORED, largest_temperature
-from statejump.paper.common import made_by, refused
+from studies.paper.common import made_by, refused
 from statejump.schema.paths import with_values
 
 REDUCED_STEPS_PER_SECOND = tuple(12_500 * 2**i for i in range(8))

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from statejump.core.tables import markdown
-from statejump.paper.claims.findings import CHAOTIC, Findings
-from statejump.paper.claims.measures import MEASURE_RULE, all_claims, measure, measures
-from statejump.paper.claims.statistics import MRAD, SIGNIFICANCE, TREND_RULE, trend
-from statejump.paper.claims.verdicts import Claim, jump_verdict, kelvin
+from studies.paper.claims.findings import CHAOTIC, Findings
+from studies.paper.claims.measures import MEASURE_RULE, all_claims, measure, measures
+from studies.paper.claims.statistics import MRAD, SIGNIFICANCE, TREND_RULE, trend
+from studies.paper.claims.verdicts import Claim, jump_verdict, kelvin
 
 CAPTIONS = (
     ("fig13", "Figure 13: paths of the two centres, and of one relative to the other"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the runs of Figures 13 to 16 say about the paper's claims, as :mod:`statejump.paper.claims` asks for it."""
+"""What the runs of Figures 13 to 16 say about the paper's claims, as :mod:`studies.paper.claims` asks for it."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
@@ -11,12 +11,12 @@ from statejump.core.run import Run
 from statejump.kinds.umbrella import compare, reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.kinds.umbrella.compare import first_contact_K
-from statejump.paper.claims.findings import Amplification, Envelope, Findings, FirstContact
-from statejump.paper.claims.statistics import Groups, two_sample_test
-from statejump.paper.figures.closed_forms import (
+from studies.paper.claims.findings import Amplification, Envelope, Findings, FirstContact
+from studies.paper.claims.statistics import Groups, two_sample_test
+from studies.paper.figures.closed_forms import (
     closed_form_first_contact, envelope, static_deflection, static_deflection_elastic,
 )
-from statejump.paper.figures.runs import Study, Variant, single_deflection
+from studies.paper.figures.runs import Study, Variant, single_deflection
 
 TWIN_RAD = 1e-12  # turn of AB between two otherwise equal starts
 ONSET = 0.01  # of c/|AB| at the smallest clearance: AB has begun to deflect

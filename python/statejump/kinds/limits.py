@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from statejump.core.errors import NotAllowed, size
+from statejump.kinds import has, of, require
+from statejump.kinds.protocol import ItemNames
 
 if TYPE_CHECKING:
     from statejump.core.case import Case
@@ -41,8 +43,8 @@ def history_of(case: Case, model: str) -> History:
 
     :param model: ``reduced`` or ``dem``
     """
-    kind = case.behaviour
-    items = kind.ability("names", case)(case) if kind.can("names") else {}
+    kind = of(case)
+    items = require(case, ItemNames).names(case) if has(case, ItemNames) else {}
     values = sum(WIDTHS.get(name, WIDTH) * len(found) for name, found in items.items())
     return History(kind.samples(case, model), len(kind.COLUMNS) + values)
 

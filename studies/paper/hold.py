@@ -20,7 +20,7 @@ from statejump.core.run import Run
 from statejump.core.tables import markdown, write_csv, write_markdown
 from statejump.kinds.umbrella import dem, reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.paper.common import made_by, refused
+from studies.paper.common import made_by, refused
 from statejump.schema.paths import with_values
 
 PERIOD_s = 10.0

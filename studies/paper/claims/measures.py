@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from statejump.paper.claims.findings import Findings
-from statejump.paper.claims.statistics import (
+from studies.paper.claims.findings import Findings
+from studies.paper.claims.statistics import (
     FAILS, HOLDS, IN_PART, MRAD, SIGNIFICANCE, UNTESTED, Groups, one_sided_welch, trend,
 )
-from statejump.paper.claims.verdicts import (
+from studies.paper.claims.verdicts import (
     Claim, friction_is_the_reason, large_clearance_never_touches, more_friction_larger_range, smaller_clearance_earlier,
     spring_ends_at_static, spring_reduces_deflection, state_jump_occurs,
 )

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from statejump.paper.claims.statistics import Groups, TwoSampleTest
+from studies.paper.claims.statistics import Groups, TwoSampleTest
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,8 @@ from statejump.core.run import Run
 from statejump.core.tables import markdown, write_rows, write_markdown
 from statejump.kinds.umbrella import dem, reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.paper.common import made_by, refused
-from statejump.paper.slow_statics import ANGLES, lag, lag_at_parting, quasi_static
+from studies.paper.common import made_by, refused
+from studies.paper.slow_statics import ANGLES, lag, lag_at_parting, quasi_static
 from statejump.schema.paths import with_values
 
 STEPS_PER_SECOND = 100_000

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``statejump figures``, ``slow``, ``hold`` and ``energy``: the studies of the paper's umbrella rib."""
+"""``statejump figures``, ``slow``, ``hold`` and ``energy``: the studies of the paper's umbrella rib. The command finds
+them where the repository is; ``python3 -m studies.paper figures`` needs the package alone."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
@@ -14,7 +15,11 @@ from rich.console import Console
 from statejump.cli.terminal import (
     CASE, QUIET, RESULTS, CaseFile, counted, loaded, make_console, print_shown, progress, undivided,
 )
+from statejump.core.errors import NotAllowed
 from statejump.core.results_folder import Results
+from statejump.kinds.umbrella.case import UmbrellaCase
+from studies.paper import energy, hold, slow
+from studies.paper.figures import study
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -24,12 +29,20 @@ def _case_or(shipped: str) -> Callable[[Command], Command]:
     return click.argument("case_file", metavar="[CASE]", default=f"cases/{shipped}.toml", type=CaseFile())
 
 
-def _study(ability: str, case_file: Path, results: Results, quiet: bool) -> None:
+def _rib(command: str, case_file: Path) -> UmbrellaCase:
+    """Load a case of the paper's rib. :raises NotAllowed: it is of another kind"""
+    case = loaded(case_file)
+    if not isinstance(case, UmbrellaCase):
+        raise NotAllowed("case.kind", case.kind, f"'statejump {command}' is for {UmbrellaCase.KIND!r}",
+                         file=case.origin.file)
+    return case
+
+
+def _study(command: str, make: Callable[..., Any], case_file: Path, results: Results, quiet: bool) -> None:
     console = make_console(quiet)
-    case = loaded(case_file, ability)
-    study = case.behaviour.ability(ability, case)
+    case = _rib(command, case_file)
     with undivided(console, "runs") as tell:
-        done = study(case, results, tell)
+        done = make(case, results, tell)
     _print(done, console)
 
 
@@ -61,8 +74,8 @@ def figures_command(case_file: Path, results: Results, quiet: bool) -> None:
       statejump figures cases/umbrella.toml
     """
     console = make_console(quiet)
-    case = loaded(case_file, "figures")
-    _print(case.behaviour.ability("figures", case)(case, results, partial(_part, console)), console)
+    case = _rib("figures", case_file)
+    _print(study.make(case, results, partial(_part, console)), console)
 
 
 @click.command("slow")
@@ -76,7 +89,7 @@ def slow_command(case_file: Path, results: Results, quiet: bool) -> None:
     Example:
       statejump slow cases/umbrella_bias.toml
     """
-    _study("slow", case_file, results, quiet)
+    _study("slow", slow.make, case_file, results, quiet)
 
 
 @click.command("hold")
@@ -90,7 +103,7 @@ def hold_command(case_file: Path, results: Results, quiet: bool) -> None:
     Example:
       statejump hold cases/umbrella_hold.toml
     """
-    _study("hold", case_file, results, quiet)
+    _study("hold", hold.make, case_file, results, quiet)
 
 
 @click.command("energy")
@@ -104,4 +117,4 @@ def energy_command(case_file: Path, results: Results, quiet: bool) -> None:
     Example:
       statejump energy cases/umbrella_damped.toml
     """
-    _study("energy", case_file, results, quiet)
+    _study("energy", energy.make, case_file, results, quiet)

@@ -8,8 +8,8 @@ from math import isnan
 
 import numpy as np
 
-from statejump.paper.claims.findings import Findings, FirstContact
-from statejump.paper.claims.statistics import (
+from studies.paper.claims.findings import Findings, FirstContact
+from studies.paper.claims.statistics import (
     FAILS, HOLDS, IN_THE_MEAN, MRAD, SIGNIFICANCE, TREND_RULE, UNTESTED, Trend, chance, one_sided_welch, trend,
 )
 

@@ -14,9 +14,9 @@ from statejump.core.run import Run
 from statejump.kinds.umbrella import dem, reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.kinds.umbrella.compare import first_contact_K
-from statejump.paper.claims.findings import FirstContact
-from statejump.paper.claims.statistics import Groups
-from statejump.paper.figures.closed_forms import closed_form_first_contact
+from studies.paper.claims.findings import FirstContact
+from studies.paper.claims.statistics import Groups
+from studies.paper.figures.closed_forms import closed_form_first_contact
 from statejump.schema.paths import with_values
 
 CLEARANCES = (0.5, 1.0, 1.5, 2.0, 3.0)  # over that of the case
@@ -113,7 +113,7 @@ def run_variants(case: UmbrellaCase, study: Study, known: dict[str, Variant], pa
 
 
 def _key(case: UmbrellaCase) -> str:
-    return json.dumps(case.to_dict(), sort_keys=True, default=str)
+    return json.dumps(case.with_defaults(), sort_keys=True, default=str)
 
 
 def first_contacts(case: UmbrellaCase, values: Sequence[float], part: Part) -> tuple[FirstContact, ...]:

@@ -9,13 +9,13 @@ from statejump.core.errors import Interrupted
 from statejump.core.results_folder import Results
 from statejump.kinds.umbrella import dem, reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.paper.claims.findings import Findings
-from statejump.paper.claims.measures import all_claims
-from statejump.paper.common import made_by, refused
-from statejump.paper.figures.drawing import figure_13, figure_of
-from statejump.paper.figures.files import write_claims, write_curves, write_ensembles
-from statejump.paper.figures.findings import findings_of
-from statejump.paper.figures.runs import Part, Study, Variant, first_contacts, run_variants, stiffness_jumps, studies
+from studies.paper.claims.findings import Findings
+from studies.paper.claims.measures import all_claims
+from studies.paper.common import made_by, refused
+from studies.paper.figures.drawing import figure_13, figure_of
+from studies.paper.figures.files import write_claims, write_curves, write_ensembles
+from studies.paper.figures.findings import findings_of
+from studies.paper.figures.runs import Part, Study, Variant, first_contacts, run_variants, stiffness_jumps, studies
 
 
 @dataclass(frozen=True)

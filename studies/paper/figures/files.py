@@ -12,11 +12,11 @@ import numpy as np
 from statejump.core.tables import write_csv, write_json, write_markdown
 from statejump.kinds.umbrella import reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.paper.claims.findings import Findings
-from statejump.paper.claims.measures import all_claims
-from statejump.paper.claims.page import page
-from statejump.paper.figures.closed_forms import envelope, quasi_static
-from statejump.paper.figures.runs import Study, Variant, single_deflection
+from studies.paper.claims.findings import Findings
+from studies.paper.claims.measures import all_claims
+from studies.paper.claims.page import page
+from studies.paper.figures.closed_forms import envelope, quasi_static
+from studies.paper.figures.runs import Study, Variant, single_deflection
 
 TABLE_POINTS = 201  # of a curve in curves.csv, of a band in a figure
 

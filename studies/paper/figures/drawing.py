@@ -13,11 +13,11 @@ from matplotlib.figure import Figure
 from statejump.core.figures import panels as new_panels, save, style
 from statejump.core.run import Run
 from statejump.kinds.umbrella import reduced as model
-from statejump.paper.figures.closed_forms import (
+from studies.paper.figures.closed_forms import (
     CIRCLE, closed_form_first_contact, envelope, quasi_static, static_deflection, static_deflection_elastic,
 )
-from statejump.paper.figures.files import TABLE_POINTS, thin
-from statejump.paper.figures.runs import Study, Variant, single_deflection
+from studies.paper.figures.files import TABLE_POINTS, thin
+from studies.paper.figures.runs import Study, Variant, single_deflection
 
 CURVE_POINTS = 1000  # of a single run in a figure
 
