@@ -3,7 +3,7 @@
 """Throughput of a campaign: 10 000 samples of the single joint, and two workers beside one; 200 trusses of 100 joints
 from the first sample to the last. Writes results/bench/campaign.md and campaign.csv.
 
-    PYTHONPATH=build/python /usr/bin/python3 bench/campaign.py
+    PYTHONPATH=build/python /usr/bin/python3 studies/bench/campaign.py
 """
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ in its own process, then on {truss_workers} workers, whose start counts. Wall ti
 ## Again
 
 ```
-PYTHONPATH=build/python /usr/bin/python3 bench/campaign.py [--repetitions N]
+PYTHONPATH=build/python /usr/bin/python3 studies/bench/campaign.py [--repetitions N]
 ```
 """
 

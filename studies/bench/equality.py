@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Final states by the JointStepper and by YADE's loop, as hashes; writes results/bench/equality.md.
 
-    PYTHONPATH=build/python /usr/bin/python3 bench/equality.py --build build
+    PYTHONPATH=build/python /usr/bin/python3 studies/bench/equality.py --build build
 
 Shipped cases by every number of their results, one thread; the scenes and laws of tests/yade/test_stepper.py and
 test_stepper_bores.py by all that O has: positions, velocities, orientations, forces, contacts, links, springs,
@@ -87,7 +87,7 @@ pairs are equal. Hashes may differ from one compiler and processor to another, b
 |---|---|--:|---|---|---|
 {lines}
 
-Again: `PYTHONPATH=build/python /usr/bin/python3 bench/equality.py --build build`.
+Again: `PYTHONPATH=build/python /usr/bin/python3 studies/bench/equality.py --build build`.
 """
     write(arguments.output / "equality.md", text)
     print(text)

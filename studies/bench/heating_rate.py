@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Creak and snap by the rate of heating; writes results/motion/heating_rate.md, .csv and .png.
 
-    PYTHONPATH=build/python /usr/bin/python3 bench/heating_rate.py [--case NAME]
+    PYTHONPATH=build/python /usr/bin/python3 studies/bench/heating_rate.py [--case NAME]
 
 A chain of blocks that let go one after the other, and a shallow arch of two bars with play that snaps through, each
 with periods of several lengths and steps of one length.
@@ -90,7 +90,7 @@ Explanation: [Run a truss in motion](../../docs/howto/motion.md#creak-and-snap).
 ## Again
 
 ```
-PYTHONPATH=build/python /usr/bin/python3 bench/heating_rate.py [--case NAME]
+PYTHONPATH=build/python /usr/bin/python3 studies/bench/heating_rate.py [--case NAME]
 ```
 """
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Time and memory of a truss whose every member has a temperature history of its own, followed to the end.
 
-    PYTHONPATH=build/python /usr/bin/python3 bench/histories.py [--members 10000] [--times 1000]
+    PYTHONPATH=build/python /usr/bin/python3 studies/bench/histories.py [--members 10000] [--times 1000]
 
 Two trusses. An umbrella with cables between its ribs, two members and a clearance joint each: most joints slip at once.
 A mast, a double-layer grid two bays of 0.2 m across and as long as it has members (125 m of 10 000), that folds: at
@@ -145,7 +145,8 @@ def main() -> None:
     given = options.parse_args()
     lines = [
         "# Members with temperatures of their own", "",
-        "Measured by `bench/histories.py`: CPU time of one core, memory of a process of its own at its peak.", "",
+        "Measured by `studies/bench/histories.py`: CPU time of one core, memory of a process of its own at its peak.",
+        "",
         "| truss | members | joints | rows | read and checked [s] | memory then [MB] | events | solves | "
         "factorizations | followed [s] | per row [ms] | memory at the end [MB] |", "|---|" + "---:|" * 11,
     ]

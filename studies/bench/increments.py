@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What increments leave of a quasi-static path; writes results/bench/increments.md and .csv.
 
-    PYTHONPATH=build/python /usr/bin/python3 bench/increments.py [--output DIR]
+    PYTHONPATH=build/python /usr/bin/python3 studies/bench/increments.py [--output DIR]
 
 Paths of shipped trusses with several numbers of increments a branch: how well energies balance at every state, and how
 far the nodes are at the end from where the most increments put them.
@@ -78,7 +78,7 @@ Explanation: [Quasi-static solver of trusses](../../docs/theory/quasi_static.md)
 ## Again
 
 ```
-PYTHONPATH=build/python /usr/bin/python3 bench/increments.py
+PYTHONPATH=build/python /usr/bin/python3 studies/bench/increments.py
 ```
 """
 

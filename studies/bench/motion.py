@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Trusses in motion beside the DEM and the quasi-static solver; writes results/motion/models.md and models.csv.
 
-    PYTHONPATH=build/python /usr/bin/python3 bench/motion.py [--case NAME]
+    PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion.py [--case NAME]
 
 Each case runs in the DEM, in motion with the DEM's masses and elastic sticking or partial slip, in motion with the
 DEM's contacts in explicit steps, and on the quasi-static path with elastic and with rigid sticking: point by point at
@@ -148,7 +148,7 @@ Explanation: [Motion beside the DEM](../../docs/validation/motion.md#fifteen-cas
 ## Again
 
 ```
-PYTHONPATH=build/python /usr/bin/python3 bench/motion.py [--case NAME]
+PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion.py [--case NAME]
 ```
 """
 

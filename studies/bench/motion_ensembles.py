@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Undamped trusses in motion and in the DEM as ensembles; writes results/motion/ensembles.md, .csv and .png.
 
-    PYTHONPATH=build/python /usr/bin/python3 bench/motion_ensembles.py [--case NAME]
+    PYTHONPATH=build/python:. /usr/bin/python3 studies/bench/motion_ensembles.py [--case NAME]
 
 Without dashpots what rings after a joint has knocked never dies away, and two runs that differ by little part. What can
 be compared then are distributions: both models run many times, with periods of heating that are drawn at random from
@@ -172,7 +172,7 @@ Explanation: [Motion beside the DEM](../../docs/validation/motion.md#undamped-en
 ## Again
 
 ```
-PYTHONPATH=build/python /usr/bin/python3 bench/motion_ensembles.py [--case NAME]
+PYTHONPATH=build/python:. /usr/bin/python3 studies/bench/motion_ensembles.py [--case NAME]
 ```
 """
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How the DEM, explicit steps and steps by sets converge; writes results/motion/explicit.md and explicit.csv.
 
-    PYTHONPATH=build/python /usr/bin/python3 bench/motion_explicit.py [--case NAME]
+    PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_explicit.py [--case NAME]
 
 All are held against explicit steps that are forty times as short as the stable one.
 """
@@ -82,7 +82,7 @@ Explanation: [Trusses in motion](../../docs/theory/motion.md#penalty-contact).
 ## Again
 
 ```
-PYTHONPATH=build/python /usr/bin/python3 bench/motion_explicit.py [--case NAME]
+PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_explicit.py [--case NAME]
 ```
 """
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Cost of trusses in motion by the number of joints that slip; writes results/motion/size.md and .csv.
 
-    PYTHONPATH=build/python /usr/bin/python3 bench/motion_size.py [--case CASE] [--largest JOINTS]
+    PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_size.py [--case CASE] [--largest JOINTS]
 
 Chains of blocks, and umbrellas with cables whose joints rub with coefficients scattered between 0.1 and 0.2, in equal
 steps and in steps as long as a tolerance allows. The largest ones take minutes of CPU.
@@ -102,7 +102,7 @@ Explanation: [Cost of motion](../../docs/validation/motion_cost.md).
 ## Again
 
 ```
-PYTHONPATH=build/python /usr/bin/python3 bench/motion_size.py [--case CASE] [--largest JOINTS]
+PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_size.py [--case CASE] [--largest JOINTS]
 ```
 """
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Slow heating: trusses in motion with a tolerance beside the DEM; writes results/motion/slow_heating.md and .csv.
 
-    PYTHONPATH=build/python /usr/bin/python3 bench/motion_slow.py [--case CASE] [--runs FOLDER]
+    PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_slow.py [--case CASE] [--runs FOLDER]
 
 A chain of 100 blocks with dashpots, heated and cooled once in several periods; "damped" are periods with critical
 dashpots in the links, in which the chain comes to rest between the slips of its blocks. The DEM's steps go with the
@@ -123,7 +123,7 @@ Explanation: [Cost of motion](../../docs/validation/motion_cost.md).
 ## Again
 
 ```
-PYTHONPATH=build/python /usr/bin/python3 bench/motion_slow.py [--case CASE] [--runs FOLDER]
+PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_slow.py [--case CASE] [--runs FOLDER]
 ```
 """
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Cost of trusses in motion beside the DEM at equal error; writes results/motion/speed.md and speed.csv.
 
-    PYTHONPATH=build/python /usr/bin/python3 bench/motion_speed.py [--case NAME]
+    PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_speed.py [--case NAME]
 
 Both models run with several steps and are measured by the DEM with its default step, to which both converge. CPU time
 of the stepping, one thread. Chains of 100 to 10 000 blocks tell how the cost of a step grows.
@@ -82,7 +82,7 @@ def measure(names: list[str]) -> list[dict[str, Any]]:
 
 
 def scaling() -> list[dict[str, Any]]:
-    """Run chains of blocks that stick, as bench/truss_dem.py does in the DEM."""
+    """Run chains of blocks that stick, as studies/bench/truss_dem.py does in the DEM."""
     rows = []
     for blocks in SIZES:
         case = sj.truss.chain(blocks, temperature_change_K=1.0, friction_force_N=1e3).changed({
@@ -135,7 +135,7 @@ Blocks that stick, {STEPS:,} steps, the start included.
 ## Again
 
 ```
-PYTHONPATH=build/python /usr/bin/python3 bench/motion_speed.py [--case NAME]
+PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_speed.py [--case NAME]
 ```
 """
 

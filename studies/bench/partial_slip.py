@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Cost of the friction law mindlin_deresiewicz over that of mindlin, both by name, in YADE and by the JointStepper.
 
-    PYTHONPATH=build/python /usr/bin/python3 bench/partial_slip.py --build build
+    PYTHONPATH=build/python /usr/bin/python3 studies/bench/partial_slip.py --build build
 
 Contacts of yade_joints.py that stick after a ringing start, which leaves some forty points in the memory; CPU time,
 ratios of two runs that follow each other. Prints a table. Exit status 2 with one sentence when something is missing.
@@ -49,5 +49,5 @@ if __name__ == "__main__":
     try:
         sys.exit(main())
     except BenchError as error:
-        print(f"bench/partial_slip.py: {error}", file=sys.stderr)
+        print(f"studies/bench/partial_slip.py: {error}", file=sys.stderr)
         sys.exit(2)

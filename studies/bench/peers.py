@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Cost of a contact and step: our joints beside the spheres of YADE, LAMMPS and LIGGGHTS.
 
-    /usr/bin/python3 bench/peers.py --build build
+    /usr/bin/python3 studies/bench/peers.py --build build
 
-Every program follows the same n contacts of the same material, load and step (bench/yade_joints.py says which), one
-process per run, one thread, in turn. Processor time of the process from its first step to its last: that of a run
+Every program follows the same n contacts of the same material, load and step (studies/bench/yade_joints.py says which),
+one process per run, one thread, in turn. Processor time of the process from its first step to its last: that of a run
 less that of one that ends after the warm-up. ``lammps_bore`` does the same work as a joint under expansion: n spheres
 in one bore, the radii of spheres and bore new in every step. A program that is not installed is left out with a
-sentence. ``bare_loop`` is the same kernel in a loop of its own (bench/stepper), by itself: the least that it can cost.
+sentence. ``bare_loop`` is the same kernel in a loop of its own (studies/bench/stepper), by itself: the least that it
+can cost.
 Exit status 2 with one sentence when something fails.
 """
 from __future__ import annotations
@@ -260,7 +261,8 @@ their ratio to the cost of the same scene in the same run.
 
 {goals(rows, scenes)}
 {left_out}
-Again: `PYTHONPATH=build/python /usr/bin/python3 bench/peers.py --build build` (Debian's packages `lammps`, `liggghts`).
+Again: `PYTHONPATH=build/python /usr/bin/python3 studies/bench/peers.py --build build`
+(Debian's packages `lammps`, `liggghts`).
 """)
 
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Cost of a joint contact beside YADE's own sphere-sphere Hertz-Mindlin law, in one YADE each.
 
-    PYTHONPATH=build/python /usr/bin/python3 bench/run.py --build build
+    PYTHONPATH=build/python /usr/bin/python3 studies/bench/run.py --build build
 
 Runs the variants of yade_joints.py in turn, several times, and writes results/bench/joints.csv and
 results/bench/README.md. Ratios are of two runs that follow each other, so that what disturbs the
@@ -23,7 +23,7 @@ from statistics import median
 from typing import Any, Callable, Iterable, Sequence
 
 HERE = Path(__file__).resolve().parent
-REPOSITORY = HERE.parent
+REPOSITORY = HERE.parents[1]
 TIMEOUT_S = 600
 OURS, YADES = "joint", "sphere"
 VARIANTS = (OURS, YADES, "joint_isothermal")
@@ -320,13 +320,13 @@ ThermalExpansionEngine sets the strain of all 2 n bodies in every step.
 make bench
 ```
 
-or `PYTHONPATH=build/python /usr/bin/python3 bench/run.py --build build [--repetitions N]`; every
+or `PYTHONPATH=build/python /usr/bin/python3 studies/bench/run.py --build build [--repetitions N]`; every
 run is in `joints.csv`. `--threads 2` compares both with `-j2` by wall time and refuses on a busy
 machine. One measurement alone:
 
 ```
 PYTHONPATH=build/python STATEJUMP_BENCH_VARIANT=joint STATEJUMP_BENCH_SIZE=100 STATEJUMP_BENCH_STEPS=15000 \\
-    yade -n -x -j1 bench/yade_joints.py
+    yade -n -x -j1 studies/bench/yade_joints.py
 ```
 """
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Moreau and Jean's scheme here and in Siconos; writes results/motion/siconos.md and siconos.csv.
 
-    PYTHONPATH=build/python /usr/bin/python3 bench/siconos_moreau_jean.py
+    PYTHONPATH=build/python /usr/bin/python3 studies/bench/siconos_moreau_jean.py
 
 A journal bounces in a bearing that stands on an elastic link, and a second one bounces in a bore of the first: two
 clearance revolutes, rigid contact, Coulomb friction, Newton's restitution, five displacements. The same theta and the
@@ -172,7 +172,7 @@ Explanation: [Motion beside the DEM](../../docs/validation/motion.md#beside-sico
 ## Again
 
 ```
-PYTHONPATH=build/python /usr/bin/python3 bench/siconos_moreau_jean.py
+PYTHONPATH=build/python /usr/bin/python3 studies/bench/siconos_moreau_jean.py
 ```
 """
 

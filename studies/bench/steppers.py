@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Steps of cases by the JointStepper beside YADE's loop; writes results/bench/steppers.md and steppers.csv.
 
-    PYTHONPATH=build/python /usr/bin/python3 bench/steppers.py
+    PYTHONPATH=build/python /usr/bin/python3 studies/bench/steppers.py
 
 A chain of 1000 joints, the damped rib and Table 1, in turn, one thread: CPU time of the steps without YADE's start.
 The steps of the chain are those between two samples; rib and Table 1 are run with their samples and with few.
@@ -89,7 +89,7 @@ machine; here it is a ratio to YADE's loop in the same run. Load average of the 
 Samples are those of a StateRecorder, worked up in blocks by Python in YADE, in both alike; the steps of the chain are
 without.
 
-Again: `PYTHONPATH=build/python /usr/bin/python3 bench/steppers.py [--repetitions N]`.
+Again: `PYTHONPATH=build/python /usr/bin/python3 studies/bench/steppers.py [--repetitions N]`.
 """
 
 

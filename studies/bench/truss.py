@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Time and memory of the quasi-static truss solver against the number of joints.
 
-    PYTHONPATH=build/python /usr/bin/python3 bench/truss.py [--largest 1000000] [--trusses ring umbrella]
+    PYTHONPATH=build/python /usr/bin/python3 studies/bench/truss.py [--largest 1000000] [--trusses ring umbrella]
 
 Two trusses, one temperature cycle, ten points a branch: the ring with preload as
 `statejump truss ring` makes it, and the umbrella with cables between its ribs, whose friction scatters so
@@ -38,8 +38,8 @@ ITEMS = ("node", "link", "revolute", "spring", "torsion_spring")
 BUSY_LOAD = 0.5  # above it others have their share of the cores
 HEAD = """# Quasi-static truss solver against the number of joints
 
-`PYTHONPATH=build/python /usr/bin/python3 bench/truss.py`: one cycle, ten points a branch, with {threads} (results
-have the same bits with any number of threads). `read` is CPU time, `solve` the time that passes, `CPU` that of
+`PYTHONPATH=build/python /usr/bin/python3 studies/bench/truss.py`: one cycle, ten points a branch, with
+{threads} (results have the same bits with any number of threads). `read` is CPU time, `solve` the time that passes, `CPU` that of
 all threads together. Events: changes of stick, slip and contact. The ring of many bays is stiff around each
 joint, and none slips from 100 on; in the umbrella every joint slips out and back, each at its own temperature.
 Items are read and checked from HDF5 tables beside the case file, or as Python objects; memory is the peak of the

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Cost of a joint and step of trusses in the DEM; writes results/bench/truss_dem.md and truss_dem.csv.
 
-    PYTHONPATH=build/python /usr/bin/python3 bench/truss_dem.py
+    PYTHONPATH=build/python /usr/bin/python3 studies/bench/truss_dem.py
 
 Chains of blocks with friction from 100 to 10 000 joints, one thread, with energy account. Two runs of different
 length each: their difference has neither start nor samples.
@@ -87,7 +87,7 @@ A chain has one link and one pad on a floor per joint; its blocks stick, which c
 ## Again
 
 ```
-PYTHONPATH=build/python /usr/bin/python3 bench/truss_dem.py [--repetitions N]
+PYTHONPATH=build/python /usr/bin/python3 studies/bench/truss_dem.py [--repetitions N]
 ```
 """
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Speed of the umbrella rib in both models; writes results/bench/umbrella.md and umbrella.csv.
 
-    PYTHONPATH=build/python /usr/bin/python3 bench/umbrella.py --build build
+    PYTHONPATH=build/python /usr/bin/python3 studies/bench/umbrella.py --build build
 """
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ CPU time, the five in random order in one process.
 {reduced}
 
 Frictionless engine over the bare loop: **{ratio:.2f}**. Required: at most 3. The bare loop
-(`bench/engine/bare_linkage.hpp`) has the same arithmetic and nothing else: no energy account, no
+(`studies/bench/engine/bare_linkage.hpp`) has the same arithmetic and nothing else: no energy account, no
 samples, no events, no laws to choose from. The adaptive method takes far fewer steps: its time is
 shown per fixed step for comparison.
 
@@ -103,7 +103,7 @@ Wall time of the steps, with energy account and 2000 samples, without the start 
 ## Again
 
 ```
-PYTHONPATH=build/python /usr/bin/python3 bench/umbrella.py --build build [--repetitions N]
+PYTHONPATH=build/python /usr/bin/python3 studies/bench/umbrella.py --build build [--repetitions N]
 ```
 """
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Cost of a contact step in a bore of triangles beside the analytic bearing, and by the JointStepper.
 
-    yade -n -x -j1 bench/yade_bore.py                   # prints a table, writes results/bench/bore.md
-    FACETS=1000,10000 REPORT=bore.md yade -n -x -j1 bench/yade_bore.py
+    yade -n -x -j1 studies/bench/yade_bore.py                   # prints a table, writes results/bench/bore.md
+    FACETS=1000,10000 REPORT=bore.md yade -n -x -j1 studies/bench/yade_bore.py
 
 100 journals, each in its bearing, one wall for all. Three loads: at rest under a slowly rising
 temperature; and sliding, slowly or fast, where the force on the journals turns by 30 degrees per
@@ -17,7 +17,7 @@ from pathlib import Path
 from statistics import median
 
 here = Path(sys.argv[0]).resolve().parent
-sys.path += [str(here.parent / "build" / "python")]
+sys.path += [str(here.parents[1] / "build" / "python")]
 from statejump_yade import *
 
 R1, R2, load, dt, joints = 5e-3, 5.1e-3, 10.0, 1e-6, 100
@@ -96,7 +96,7 @@ sizes = [int(n) for n in os.environ.get("FACETS", "1000,10000,100000,1000000").s
 lines = [
     "# Cost of a contact in a bore of triangles beside the analytic bearing",
     "",
-    "`yade -n -x -j1 bench/yade_bore.py`: 100 journals (R1 = 5 mm, c = 0.1 mm), CPU time per contact and",
+    "`yade -n -x -j1 studies/bench/yade_bore.py`: 100 journals (R1 = 5 mm, c = 0.1 mm), CPU time per contact and",
     "step of the whole YADE step, medians of five. At rest: under a slowly rising temperature. Sliding:",
     "the force turns and the contacts run around their bores, slowly at 30 degrees per second, fast once in",
     "20 ms: the point of contact then moves at 1.6 m/s, 1.6 um in a step, and the smooth wall is asked in",
@@ -122,5 +122,5 @@ for size in sizes:
             f"| {stepper:.0f} ns | **{gain:.2f}** |"
         )
         print(lines[-1], flush=True)
-report = Path(os.environ.get("REPORT", here.parent / "results" / "bench" / "bore.md"))
+report = Path(os.environ.get("REPORT", here.parents[1] / "results" / "bench" / "bore.md"))
 report.write_text("\n".join(lines) + "\n")

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Processor time of ``import statejump_yade`` in a YADE that has just started.
 
-    /usr/bin/python3 bench/yade_import.py --build build [--build OTHER] [--repetitions 20]
+    /usr/bin/python3 studies/bench/yade_import.py --build build [--build OTHER] [--repetitions 20]
 
 Of several builds, one YADE of each in turn. Setting up is what follows the loading of the library: the guard, which
 compares the declared interface with that YADE, and the registration of classes. Medians, lowest and highest. Exit

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One measurement of run.py: n contacts in YADE for a number of steps. Prints one line of JSON.
 
-    STATEJUMP_BENCH_VARIANT=joint STATEJUMP_BENCH_SIZE=100 yade -n -x -j1 bench/yade_joints.py
+    STATEJUMP_BENCH_VARIANT=joint STATEJUMP_BENCH_SIZE=100 yade -n -x -j1 studies/bench/yade_joints.py
 
 Variants, all with 2 n bodies, n contacts, the same collider and integrator:
 
@@ -170,7 +170,7 @@ def measure():
 def table1():
     import statejump_yade  # noqa: F401  the one of PYTHONPATH, whatever the script looks for
 
-    script = Path(sys.argv[0]).resolve().parents[1] / "yade_scripts" / "examples" / "table1.py"
+    script = Path(sys.argv[0]).resolve().parents[2] / "yade_scripts" / "examples" / "table1.py"
     output = io.StringIO()
     start_wall, start = time.perf_counter(), time.process_time()
     with contextlib.redirect_stdout(output):

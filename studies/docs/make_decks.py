@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes docs/reference/decks.md: the use of every card and field of a deck, from the tables of the import.
 
-    PYTHONPATH=build/python /usr/bin/python3 docs/make_decks.py
+    PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_decks.py
 
 A test requires that the committed page is what this writes.
 """
@@ -14,7 +14,7 @@ from statejump.kinds.truss.importing.abaqus.table import ELEMENTS, KEYWORDS
 from statejump.kinds.truss.importing.contract import markdown
 from statejump.kinds.truss.importing.nastran.table import CARDS, CONTROL, PARAMS
 
-PAGE = Path(__file__).resolve().parent / "reference" / "decks.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "reference" / "decks.md"
 HEAD = """# Cards of decks
 
 After this page you know what [`statejump truss import`](../howto/import.md) does with every card of a Nastran deck and

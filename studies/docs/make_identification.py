@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Tables and pictures of docs/validation/identification.md: noisy loops of known joints from other models, identified.
 
-    PYTHONPATH=build/python /usr/bin/python3 docs/make_identification.py [--repetitions N] [--choices N]
-    PYTHONPATH=build/python /usr/bin/python3 docs/make_identification.py --random N
+    PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_identification.py [--repetitions N] [--choices N]
+    PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_identification.py --random N
 
 Each loop is computed once, by the contact kernel, the closed form, the truss solver or YADE; every repetition adds
 noise of its own to the force. ``--random`` draws joints with play and with soft stops, and paths of constant, growing
@@ -28,7 +28,7 @@ from statejump.identification.fit import Fits, intervals
 from statejump.identification.loop import read_loop
 from statejump.identification.models import MODELS
 
-PICTURES = Path(__file__).parent / "identification"
+PICTURES = Path(__file__).resolve().parents[2] / "docs" / "identification"
 NOISE = 0.01  # of half of the loop's force
 CONFIDENCE = 0.95
 # Triangles to both sides: a first loading and two cycles.

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Makes each kind of mistake, runs the command on it and writes the message to docs/reference/mistakes.md.
 
-    PYTHONPATH=build/python /usr/bin/python3 docs/make_mistakes.py
+    PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_mistakes.py
 
 A test requires that the committed page is what this writes.
 """
@@ -16,7 +16,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-REPOSITORY = Path(__file__).resolve().parents[1]
+REPOSITORY = Path(__file__).resolve().parents[2]
 PAGE = REPOSITORY / "docs" / "reference" / "mistakes.md"
 
 
@@ -102,7 +102,7 @@ After this page you know the message of each mistake, and the exit status of eve
 mistake and generates the page:
 
 ```
-PYTHONPATH=build/python /usr/bin/python3 docs/make_mistakes.py
+PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_mistakes.py
 ```
 
 A message is one sentence on standard error with file, key, value and allowed values. For a misspelt name it suggests

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pictures and table of docs/validation/partial_slip.md: the eleven cases, each against closed forms and many punches.
 
-    PYTHONPATH=build/python /usr/bin/python3 docs/make_partial_slip.py
+    PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_partial_slip.py
 """
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from statejump import laws  # noqa: E402
 
 YOUNG, SHEAR, RADIUS, MU, LOAD = 38.5e9, 7.9e9, 0.01, 0.3, 10.0  # E*, G* [Pa], m, -, N
 KAPPA = YOUNG / (4 * SHEAR)
-PICTURES = Path(__file__).parent / "partial_slip"
+PICTURES = Path(__file__).resolve().parents[2] / "docs" / "partial_slip"
 STEPS = 50
 PUNCHES = 20000
 

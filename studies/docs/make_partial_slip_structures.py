@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Picture and tables of docs/validation/partial_slip_structures.md: state jumps from microslip to gross slip.
 
-    PYTHONPATH=build/python /usr/bin/python3 docs/make_partial_slip_structures.py [--dem]
+    PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_partial_slip_structures.py [--dem]
 
 With --dem bar, rib and ring run in YADE as well, some twenty minutes; without, the bar's marks and the tables of the
 other two are left out.
@@ -25,7 +25,7 @@ from statejump.kinds.loading import parse_case  # noqa: E402
 from statejump.kinds.truss import generate, solve  # noqa: E402
 from statejump.kinds.truss.generate.document import TABLE1_LENGTH_M  # noqa: E402
 
-PICTURE = Path(__file__).parent / "partial_slip" / "structures.png"
+PICTURE = Path(__file__).resolve().parents[2] / "docs" / "partial_slip" / "structures.png"
 FRICTION_N = 300.0  # of the bar: a preload that slides as a whole above 20 K or so
 INCREMENTS = 200
 RING_CYCLES = 30

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Table of docs/howto/surface.md: how well an umbrella of eight ribs repeats, by days it has been through.
 
-    PYTHONPATH=build/python /usr/bin/python3 docs/make_repeatability.py [--samples N]
+    PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_repeatability.py [--samples N]
 """
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws the shipped slider-crank with and without play at its pin: docs/motion/slider_crank.png.
 
-    PYTHONPATH=build/python /usr/bin/python3 docs/make_slider_crank.py
+    PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_slider_crank.py
 """
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 import statejump as sj
 from statejump.core import figures
 
-REPOSITORY = Path(__file__).resolve().parents[1]
+REPOSITORY = Path(__file__).resolve().parents[2]
 
 
 def main() -> None:

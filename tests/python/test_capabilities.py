@@ -19,7 +19,7 @@ from statejump.report import capabilities as present
 from statejump.schema.fields import definition, section
 
 PROTOCOLS = [value for module in (protocol, design, present) for value in vars(module).values()
-             if value in protocol._COMMANDS]
+             if isinstance(value, type) and value in protocol._COMMANDS]
 
 
 @pytest.mark.parametrize("name", kinds.names())
