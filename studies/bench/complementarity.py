@@ -4,7 +4,8 @@
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/complementarity.py [--problems 10000] [--siconos 10]
 
 Six families of studies/bench/piles.py in the plane and in space, one contact to 200. With --siconos N the first N
-problems of each family and dimension also go to the solvers of Debian's python3-siconos, and all are judged by its merit.
+problems of each family and dimension also
+go to the solvers of Debian's python3-siconos, and all are judged by its merit.
 Writes results/bench/complementarity.md.
 """
 from __future__ import annotations
@@ -28,8 +29,8 @@ from statejump.core.output import write_atomically
 LARGEST, TOLERANCE = 200, 1e-10
 HEAD = f"""# Frictional contact problems: share solved, iterations, time
 
-`PYTHONPATH=build/python /usr/bin/python3 studies/bench/complementarity.py --problems N --siconos M`: random problems with one
-contact to {LARGEST}, as many small as large ones (logarithmic), friction 0 to 1, W of any rank. Solved: both merits of
+`PYTHONPATH=build/python /usr/bin/python3 studies/bench/complementarity.py --problems N --siconos M`:
+random problems with one contact to {LARGEST}, as many small as large ones (logarithmic), friction 0 to 1, W of any rank. Solved: both merits of
 [complementarity.md](../../docs/theory/complementarity.md) are at most {TOLERANCE:g}. CPU time of one core.
 """
 

@@ -39,7 +39,8 @@ BUSY_LOAD = 0.5  # above it others have their share of the cores
 HEAD = """# Quasi-static truss solver against the number of joints
 
 `PYTHONPATH=build/python /usr/bin/python3 studies/bench/truss.py`: one cycle, ten points a branch, with
-{threads} (results have the same bits with any number of threads). `read` is CPU time, `solve` the time that passes, `CPU` that of
+{threads} (results have the same bits with any number of threads). `read` is CPU time, `solve` the time that passes,
+`CPU` that of
 all threads together. Events: changes of stick, slip and contact. The ring of many bays is stiff around each
 joint, and none slips from 100 on; in the umbrella every joint slips out and back, each at its own temperature.
 Items are read and checked from HDF5 tables beside the case file, or as Python objects; memory is the peak of the
