@@ -16,7 +16,7 @@ from click.testing import CliRunner
 
 from conftest import results_in
 from statejump import _engine
-from statejump.cli.paper import figures_command
+from studies.paper.commands import figures_command
 from statejump.core.errors import Interrupted, StatejumpError
 from statejump.core.yade_process import Samples
 from statejump.kinds.loading import load_case

@@ -223,7 +223,7 @@ from statejump.core.figures import panels
 panels(1, 1, (2, 2))
 print(matplotlib.get_backend().lower(), "matplotlib.pyplot" in sys.modules)
 """
-    done = subprocess.run([sys.executable, "-c", program], env={"PYTHONPATH": str(BUILT)}, capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-c", program], env={"PYTHONPATH": f"{BUILT}:{REPOSITORY}"}, capture_output=True, text=True)
     assert done.stdout.split() == ["svg", "False"], done.stderr
 
 
