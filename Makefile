@@ -38,8 +38,8 @@ bench:
 	./scripts/setup.sh run build bench
 	$(call configure,BENCH)
 	$(compile)
-	PYTHONPATH=$(BUILD)/python $(PYTHON) bench/run.py --build $(BUILD)
-	PYTHONPATH=$(BUILD)/python $(PYTHON) bench/umbrella.py --build $(BUILD)
+	PYTHONPATH=$(BUILD)/python $(PYTHON) studies/bench/run.py --build $(BUILD)
+	PYTHONPATH=$(BUILD)/python $(PYTHON) studies/bench/umbrella.py --build $(BUILD)
 
 package: build
 	./scripts/setup.sh package

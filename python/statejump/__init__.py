@@ -19,6 +19,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from statejump import _paths
+from statejump._version import __version__
 
 if TYPE_CHECKING:
     from statejump.api import (
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
         statics as statics,
         sweep as sweep,
     )
-    from statejump.case import Case as Case
+    from statejump.core.case import Case as Case
     from statejump.core.comparison import Comparison as Comparison, Quantity as Quantity
     from statejump.core.errors import StatejumpError as StatejumpError
     from statejump.core.run import Column as Column, Event as Event, Run as Run
@@ -42,13 +43,11 @@ if sys.version_info[:2] != _paths.PYTHON_VERSION:
         "statejump was built for {} ({}.{}); this is {} ({}.{})".format(
             _paths.PYTHON, *_paths.PYTHON_VERSION, sys.executable, *sys.version_info[:2]))
 
-__version__ = "0.1.0"
-
 # Where each name of the public interface is.
 _PLACES = {
     **dict.fromkeys(("bore", "compare", "identify", "load", "montecarlo", "read", "statics", "sweep"),
                     "statejump.api"),
-    "Case": "statejump.case",
+    "Case": "statejump.core.case",
     **dict.fromkeys(("Comparison", "Quantity"), "statejump.core.comparison"),
     "StatejumpError": "statejump.core.errors",
     **dict.fromkeys(("Column", "Event", "Run"), "statejump.core.run"),

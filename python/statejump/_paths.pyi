@@ -2,6 +2,7 @@
 from pathlib import Path
 
 SHARE: Path
+_SHARE: str
 YADE_SCRIPTS: Path
 SCHEMA: Path
 PYTHON: str

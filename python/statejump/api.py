@@ -4,24 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
-from statejump.case import Case, Progress
+from statejump.core.case import Case, Progress
+from statejump.control.capabilities import JointStatics, RestSets
 from statejump.core.comparison import FIRST, SECOND, Comparison, of_two
 from statejump.core.errors import StatejumpError
+from statejump.core.later import Later
 from statejump.core.run import Run
+from statejump.kinds import require
 from statejump.kinds.loading import load_case
+from statejump.kinds.protocol import ModelComparison, RunDifference
 
 if TYPE_CHECKING:
-    import pandas
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
     from statejump.bores import Bore
-    from statejump.core.tables import Shown
     from statejump.identification import Identification
     from statejump.campaign import Campaign
     from statejump.results.contents import Result
+
+_BORE, _IDENTIFIED = Later("statejump.bores:measured"), Later("statejump.identification:identified")
+_SWEEP, _MONTECARLO = Later("statejump.campaign:sweep"), Later("statejump.campaign:montecarlo")
+_READ = Later("statejump.results.read:read")
 
 
 def load(source: str | Path | Mapping[str, Any]) -> Case:
@@ -31,7 +34,7 @@ def load(source: str | Path | Mapping[str, Any]) -> Case:
         keys as a dict
     :raises StatejumpError: there is no such file, or the case is not allowed: file, key, value, range
     """
-    return Case(load_case(source))
+    return load_case(source)
 
 
 def compare(first: Run, second: Run) -> Comparison:
@@ -50,9 +53,8 @@ def compare(first: Run, second: Run) -> Comparison:
     case = first.definition
     if first.model != second.model:
         by_model = {run.model: run for run in (first, second)}
-        found: Comparison = case.behaviour.ability("compare", case)(case, by_model["reduced"], by_model["dem"])
-        return found
-    rows = case.behaviour.ability("difference", case)(case, first, second.at(first.time_s))
+        return require(case, ModelComparison).compare(case, by_model["reduced"], by_model["dem"])
+    rows = require(case, RunDifference).difference(case, first, second.at(first.time_s))
     return Comparison(case, {FIRST: first, SECOND: second}, tuple(of_two(rows)))
 
 
@@ -61,25 +63,8 @@ def read(path: str | Path) -> Result:
 
     :raises StatejumpError: no such file, not ours, of a newer layout, cut off or damaged
     """
-    from statejump.results.read import read as read_file
-
-    return read_file(path)
-
-
-class RestSets(Protocol):
-    """Where a joint can rest; each kind of case has its own."""
-
-    def frame(self) -> pandas.DataFrame:
-        """Return the sets as a table, units in the names of the columns."""
-
-    def plot(self, axes: Axes | None = None) -> Figure:
-        """Draw the sets; into given axes, or into a new figure."""
-
-    def told(self) -> list[Shown | str]:
-        """Return what a command prints, tables and lines."""
-
-    def write(self, folder: Path) -> list[Path]:
-        """Write the sets and their picture into a folder; return the paths."""
+    found: Result = _READ(path)
+    return found
 
 
 def statics(case: Case, friction_coefficient: float | None = None) -> RestSets:
@@ -89,9 +74,7 @@ def statics(case: Case, friction_coefficient: float | None = None) -> RestSets:
     :param friction_coefficient: instead of the case's own
     :raises StatejumpError: the kind of case has no such answer, or its mesh cannot be used
     """
-    definition = case.definition
-    found: RestSets = definition.behaviour.ability("statics", definition)(definition, friction_coefficient)
-    return found
+    return require(case, JointStatics).statics(case, friction_coefficient)
 
 
 def bore(
@@ -105,9 +88,8 @@ def bore(
     :param flip: turn every face over, of a file whose normals point into the material
     :raises StatejumpError: the file is not a bore; the sentence says what is wrong and where
     """
-    from statejump.bores import measured
-
-    return measured(Path(path), unit_m=unit_m, journal_radius_m=journal_radius_m, flip=flip)
+    found: Bore = _BORE(Path(path), unit_m=unit_m, journal_radius_m=journal_radius_m, flip=flip)
+    return found
 
 
 def identify(
@@ -130,10 +112,10 @@ def identify(
     :param journal_radius_m: of a moment of friction [m], likewise
     :raises StatejumpError: the file is no loop, or there is no such joint
     """
-    from statejump.identification import identified
-
-    return identified(source, model=model, start=start, confidence=confidence, target=target,
-                      normal_force_N=normal_force_N, journal_radius_m=journal_radius_m)
+    found: Identification = _IDENTIFIED(
+        source, model=model, start=start, confidence=confidence, target=target, normal_force_N=normal_force_N,
+        journal_radius_m=journal_radius_m)
+    return found
 
 
 def sweep(
@@ -151,9 +133,8 @@ def sweep(
         column of a run, of one of its items; see :mod:`statejump.campaign.outputs`
     :raises StatejumpError: there is no such key, or the kind of case has no outcomes
     """
-    from statejump.campaign import sweep as run_sweep
-
-    return run_sweep(case.definition, values, model=model, workers=workers, progress=progress, outputs=outputs)
+    found: Campaign = _SWEEP(case, values, model=model, workers=workers, progress=progress, outputs=outputs)
+    return found
 
 
 def montecarlo(
@@ -170,7 +151,6 @@ def montecarlo(
     :param outputs: as of :func:`sweep`
     :raises StatejumpError: there is no such key or distribution
     """
-    from statejump.campaign import montecarlo as run_montecarlo
-
-    return run_montecarlo(case.definition, distributions, samples=samples, seed=seed, model=model, workers=workers,
-                          progress=progress, outputs=outputs)
+    found: Campaign = _MONTECARLO(case, distributions, samples=samples, seed=seed, model=model, workers=workers,
+                                  progress=progress, outputs=outputs)
+    return found

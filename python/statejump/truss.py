@@ -20,12 +20,16 @@ from collections.abc import Callable, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, ParamSpec
 
-from statejump.case import Case, Progress
+from statejump.core.case import Case, Progress
+from statejump.control.capabilities import ControlStudy, Creaking, DesignAnswers
+from statejump.control.study import Places, Study
 from statejump.core.errors import Range
 from statejump.core.progress import shown
+from statejump.kinds import require
 from statejump.kinds.loading import parse_case
 from statejump.kinds.truss import generate
 from statejump.kinds.truss.generate.document import Document
+from statejump.report.capabilities import CaseDrawing
 from statejump.schema.paths import plain
 from statejump.schema.rules import WHOLE, Rule
 
@@ -33,7 +37,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from statejump.control.study import Study
     from statejump.kinds.truss.answers.study import TrussAnswers
     from statejump.kinds.truss.creak import Creak
 
@@ -54,7 +57,7 @@ def _making(document: Callable[Keys, Document]) -> Callable[Keys, Case]:
     def make(*given: Keys.args, **keys: Keys.kwargs) -> Case:
         bound = inspect.signature(document).bind(*plain(given), **plain(keys))
         number.check("n", bound.arguments["n"])
-        return Case(parse_case(document(*bound.args, **bound.kwargs)))
+        return parse_case(document(*bound.args, **bound.kwargs))
 
     make.__module__ = __name__
     make.__signature__ = inspect.signature(document).replace(return_annotation="Case")  # type: ignore[attr-defined]
@@ -78,9 +81,7 @@ def draw(case: Case, axes: Axes | None = None, names: bool = False) -> Figure:
     :param names: whether all nodes are named, however many there are
     :raises StatejumpError: the case is of another kind, or the axes are not those of three dimensions
     """
-    asked = case.definition
-    figure: Figure = asked.behaviour.ability("draw", asked)(asked, axes, names)
-    return figure
+    return require(case, CaseDrawing).draw(case, axes, names)
 
 
 def creak(case: Case, node: str, *, progress: Progress = False) -> Creak:
@@ -92,10 +93,9 @@ def creak(case: Case, node: str, *, progress: Progress = False) -> Creak:
     :param progress: True: show it on standard error; or what is called with the finished share, 0 to 1
     :raises StatejumpError: the case is of another kind, there is no such node, or a step has no solution
     """
-    asked = case.definition
-    ability = asked.behaviour.ability("creak", asked)
+    kind = require(case, Creaking)
     with shown(progress, "motion") as tell:
-        found: Creak = ability(asked, node, tell)
+        found: Creak = kind.creak(case, node, tell)
     return found
 
 
@@ -115,9 +115,8 @@ def answers(
     :param progress: True: show it on standard error; or what is called with the finished share of each part
     :raises StatejumpError: the case is of another kind, there is no such output, or the solver finds no path
     """
-    asked = case.definition
-    found: TrussAnswers = asked.behaviour.ability("answers", asked)(
-        asked, output=output, cycles=cycles, each=each, step=step, sensitivity=sensitivity,
+    found: TrussAnswers = require(case, DesignAnswers).answers(
+        case, output=output, cycles=cycles, each=each, step=step, sensitivity=sensitivity,
         phase=lambda label: shown(progress, label),
     )
     return found
@@ -141,12 +140,9 @@ def control(
         that was scanned
     :raises StatejumpError: the case is of another kind, there is no such node or key, or the case has no path
     """
-    from statejump.control.study import Places
-
-    asked = case.definition
-    ability = asked.behaviour.ability("control", asked)
+    kind = require(case, ControlStudy)
     with shown(progress, "control") as tell:
-        found: Study = ability(asked, jump_below=jump_below, tell=tell, places=Places(node, add_spring, scale))
+        found = kind.control(case, jump_below=jump_below, tell=tell, places=Places(node, add_spring, scale))
     return found
 
 

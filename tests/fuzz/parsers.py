@@ -87,7 +87,7 @@ def cases(folder: Path) -> Reader:
     """Case files, as text and as dict; what is taken comes back from its own JSON, and every tenth is run."""
     from statejump import load
     from statejump.core.errors import StatejumpError
-    from statejump.core.limits import history_of
+    from statejump.kinds.limits import history_of
     from statejump.kinds.loading import load_case, parse_case
 
     texts = [path.read_bytes() for path in sorted((REPOSITORY / "cases").rglob("*.toml"))
@@ -109,7 +109,7 @@ def cases(folder: Path) -> Reader:
         again = parse_case(json.loads(json.dumps(given_only(case.to_dict()))))
         if again.to_dict() != case.to_dict():
             raise Fault("the case is another one after a round through JSON")
-        if run and case.behaviour.can("reduced") and history_of(case, "reduced").samples < 20_000:
+        if run and case.behaviour.has_model("reduced") and history_of(case, "reduced").samples < 20_000:
             with contextlib.suppress(StatejumpError):  # refused in a sentence
                 load(source).reduced()
         return True

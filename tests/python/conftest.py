@@ -18,7 +18,7 @@ import pytest
 BUILT = Path(os.environ["STATEJUMP_PYTHON_DIR"])
 COMMAND = os.environ["STATEJUMP_COMMAND"]
 REPOSITORY = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(BUILT))
+sys.path[:0] = [str(BUILT), str(REPOSITORY)]  # the latter for studies
 from statejump import _paths  # noqa: E402
 
 # Of the failure of whatever needs YADE, where statejump was built without it.

@@ -118,7 +118,7 @@ def test_checks_of_a_bar_on_a_slider() -> None:
     made("table1", joint__preload_force_N=629969.0)
     made("table1", joint__preload_force_N=-629969.0)
     stable = stable_step.stable_time_step(made("table1"))
-    assert made("table1", dem__time_step_s=stable).dem.time_step_s == stable
+    assert made("table1", dem__time_step_s=stable).dem_settings.time_step_s == stable
     assert "must be above 0 and at most the stable time step" in refused("table1", dem__time_step_s=nextafter(stable, 1))
     # A link that heating or cooling leaves no length.
     cold = {"shape": "table", "table_time_s": [0, 1, 2], "table_temperature_change_K": [0, -1000, 0]}

@@ -20,7 +20,7 @@ from statejump.core.errors import StatejumpError
 from statejump.kinds.loading import load_case
 from statejump.kinds.spring_slider import control as control_spring_slider
 from statejump.kinds.umbrella import control_ensemble, control_loaded
-from statejump.kinds.umbrella.control import FRICTION, SPRING
+from statejump.kinds.umbrella.control_parameters import FRICTION, SPRING
 from statejump.schema.paths import with_values as changed
 
 PRELOAD = control_spring_slider.PRELOAD
@@ -50,7 +50,7 @@ def command(*arguments: object) -> None:
 
 
 def study_of(case: Case, jump_below: float | None = None, runs: int | None = None) -> Study:
-    return case.behaviour.ability("control", case)(case, jump_below=jump_below, runs=runs)
+    return case.behaviour.control(case, jump_below=jump_below, runs=runs)
 
 
 # ---------------------------------------------------------------- spring_slider

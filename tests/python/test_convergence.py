@@ -37,7 +37,7 @@ def found_of(case: SpringSliderCase) -> convergence.Convergence:
     """A study whose errors fall with the period, and in proportion to the step."""
     slower, finer = convergence.variants(case)
     runs = ([dem_like(variant, 1e-8 / (1 + place)) for place, variant in enumerate(slower)],
-            [dem_like(variant, 1e-8 * variant.dem.time_step_fraction) for variant in finer])
+            [dem_like(variant, 1e-8 * variant.dem_settings.time_step_fraction) for variant in finer])
     return convergence.compared(case, (slower, finer), runs)
 
 
@@ -51,11 +51,11 @@ def table1() -> SpringSliderCase:
 def test_variants_change_the_period_and_the_step_alone(table1: SpringSliderCase) -> None:
     slower, finer = convergence.variants(table1)
     assert [case.period_s / table1.period_s for case in slower] == list(convergence.PERIOD_FACTORS)
-    assert [case.dem.time_step_fraction for case in finer] == list(convergence.STEP_FRACTIONS)
+    assert [case.dem_settings.time_step_fraction for case in finer] == list(convergence.STEP_FRACTIONS)
     assert {case.period_s for case in finer} == {table1.period_s / 16}
     slower, finer = convergence.variants(table1, decades=2)
     assert [case.period_s / table1.period_s for case in slower[-3:]] == [4, 40, 400]
-    assert [case.dem.time_step_fraction for case in finer[-3:]] == pytest.approx([0.025, 0.0025, 0.00025])
+    assert [case.dem_settings.time_step_fraction for case in finer[-3:]] == pytest.approx([0.025, 0.0025, 0.00025])
     data = table1.to_dict()
     data["thermal"] = {"shape": "table", "table_time_s": [0, 2.0, 4.0], "table_temperature_change_K": [0, 100.0, 0]}
     data["dem"] = {}

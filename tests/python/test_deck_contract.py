@@ -14,7 +14,7 @@ from statejump.kinds.truss.importing.abaqus.table import KEYWORDS
 from statejump.kinds.truss.importing.contract import BLANK, IDLE, REFUSED, USED, Card, idle, refused, table, used
 from statejump.kinds.truss.importing.nastran.table import CARDS, CONTROL, PARAMS
 
-SCRIPT = Path(__file__).resolve().parents[2] / "docs" / "make_decks.py"
+SCRIPT = Path(__file__).resolve().parents[2] / "studies" / "docs" / "make_decks.py"
 TABLES = {"cards": CARDS, "parameters": PARAMS, "commands": CONTROL, "keywords": KEYWORDS}
 
 
@@ -61,6 +61,6 @@ def test_positions_of_fields_repeat() -> None:
 
 def test_the_page_is_current() -> None:
     found = maker()
-    assert found.PAGE.read_text(encoding="utf-8") == found.page(), "run docs/make_decks.py"
+    assert found.PAGE.read_text(encoding="utf-8") == found.page(), "run studies/docs/make_decks.py"
     for name in ("CQUAD4", "W1A", "NODAL THICKNESS", "`B32`: beam", "K2GG", "WTMASS"):
         assert name in found.page()

@@ -16,7 +16,7 @@ from statejump.cli import main as cli
 from statejump.cli import models
 from statejump.core import errors
 
-SCRIPT = REPOSITORY / "docs" / "make_mistakes.py"
+SCRIPT = REPOSITORY / "studies" / "docs" / "make_mistakes.py"
 
 
 def make_mistakes() -> Any:
@@ -33,7 +33,7 @@ MISTAKES = [mistake for group in MAKER.GROUPS.values() for mistake in group]
 
 
 def test_page_of_mistakes_is_current() -> None:
-    assert MAKER.PAGE.read_text(encoding="utf-8") == MAKER.table(), "run docs/make_mistakes.py"
+    assert MAKER.PAGE.read_text(encoding="utf-8") == MAKER.table(), "run studies/docs/make_mistakes.py"
 
 
 @pytest.mark.parametrize("mistake", MISTAKES, ids=lambda mistake: mistake.what)

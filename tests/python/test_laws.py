@@ -181,7 +181,7 @@ def test_impact(name: str, ratio: float) -> None:
 
 def test_paper_joint_is_that_of_the_case(cases: Path) -> None:
     umbrella = load_case(cases / "umbrella.toml")
-    paper, case = curves.paper_joint(), umbrella.behaviour.ability("laws", umbrella)(umbrella)
+    paper, case = curves.paper_joint(), umbrella.behaviour.laws(umbrella)
     for field in ("journal_radius_m", "bearing_radius_m", "contact_length_m", "effective_young_modulus_Pa",
                   "reduced_mass_kg"):
         assert getattr(paper, field) == pytest.approx(getattr(case, field), rel=1e-14)

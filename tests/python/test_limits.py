@@ -12,7 +12,7 @@ import pytest
 
 from conftest import COMMAND
 from statejump import load, read
-from statejump.core import limits
+from statejump.kinds import limits
 from statejump.core.errors import NotAllowed, NotWritten
 from statejump.core.results_folder import ResultsFolder
 from statejump.kinds.spring_slider import reduced
@@ -60,7 +60,7 @@ def test_history_that_leaves_cycles_out_is_the_whole_one_there(cases: Path) -> N
     for name, column in run.at(between).history.items():
         assert np.array_equal(column.values, whole.at(between).history[name].values), name
     kind = case.definition.behaviour
-    assert kind.ability("outcomes", case.definition)(case.definition, run) == kind.ability("outcomes", case.definition)(
+    assert kind.outcomes(case.definition, run) == kind.outcomes(
         case.definition, whole)
     assert run.plot() is not None
 

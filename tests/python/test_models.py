@@ -79,8 +79,8 @@ def test_expanding_pads_are_announced(table1: Case) -> None:
 
 def test_steps_fill_the_program_exactly(table1: Case) -> None:
     steps = dem.number_of_steps(table1)
-    assert steps % table1.dem.samples_per_cycle == 0
-    wanted = table1.dem.time_step_fraction * stable_step.stable_time_step(table1)
+    assert steps % table1.dem_settings.samples_per_cycle == 0
+    wanted = table1.dem_settings.time_step_fraction * stable_step.stable_time_step(table1)
     assert 0 < dem.time_step(table1) <= wanted
 
 
@@ -150,7 +150,7 @@ def test_drift_of_later_cycles_is_noticed(cases: Path) -> None:
 
     def drift_of(displacement_m: np.ndarray) -> float:
         run = result.dem_run(case, {**columns, "displacement_m": displacement_m}, {})
-        return compare.loop_drift(run, case.dem.samples_per_cycle, 10)
+        return compare.loop_drift(run, case.dem_settings.samples_per_cycle, 10)
 
     assert drift_of(x) < 1e-15  # the exact loop closes to rounding of 1 mm
     drift = drift_of(x + np.linspace(0, 1e-5, len(x)))

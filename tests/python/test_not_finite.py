@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from statejump import load
-from statejump.case import Case
+from statejump.core.case import Case
 from statejump.core.comparison import Comparison, models, share
 from statejump.core.run import Run
 from statejump.results.difference import difference
@@ -70,7 +70,7 @@ def as_dem(case: Case, run: Run) -> Run:
 
 
 def rows_of(case: Case, reduced: Run, dem: Run) -> Comparison:
-    return case.definition.behaviour.ability("compare", case.definition)(case.definition, reduced, dem)
+    return case.definition.behaviour.compare(case.definition, reduced, dem)
 
 
 def spoilt(run: Run, group: str, name: str, value: float, place: int | None = None) -> Run:

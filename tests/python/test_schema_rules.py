@@ -17,12 +17,13 @@ from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, Unread
 from statejump.schema import json_schema, toml
 from statejump.schema.fields import (
     Attached, Section, attached, attached_to_json, choice, default_of, definition, fields_of, numbers, optional_section,
-    parameter, rule_of, section, structure, switch, tables, text, texts, whole,
+    parameter, rule_of, section, switch, tables, text, texts, whole,
 )
 from statejump.schema.item_tables import BLOCK, ItemColumns, ItemTable, by_name, each, with_rows
 from statejump.schema.items import Item
 from statejump.schema.paths import attribute_of, filled, keys_of, set_value, value_of, with_keys_moved, with_values
 from statejump.schema.rules import check_name, is_finite_number, suggestion
+from statejump.schema.structure import structure
 
 
 class Arrays(Attached):

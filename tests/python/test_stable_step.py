@@ -46,7 +46,7 @@ def test_spring_slider_by_hand(undamped) -> None:
     """Floor at twice its 100 N, R = 50 mm, E* = 70e9/1.82, G* = 70e9/8.84: a, 2 E* a, 8 G* a; bar 1.26e6 N/m."""
     modulus, shear = 70e9 / (2 * 0.91), 70e9 / (4 * 1.7 * 1.3)
     width = (200 * 0.05 / (4 / 3 * modulus)) ** (1 / 3)
-    mass = 2700 * 9e-6 * 0.5 / 3 + undamped.dem.slider_mass_kg
+    mass = 2700 * 9e-6 * 0.5 / 3 + undamped.dem_settings.slider_mass_kg
     across, along = 2 * modulus * width, 70e9 * 9e-6 / 0.5 + 8 * shear * width
     expected = 2 * sqrt(mass / max(across, along))
     assert stable_step.stable_time_step(undamped) == pytest.approx(expected, rel=1e-12)

@@ -19,11 +19,12 @@ import statejump as sj
 from statejump.core.errors import StatejumpError
 from statejump.core.figures import save
 from statejump.kinds.loading import load_case, parse_case
+from statejump.kinds.truss.arrays import GROUND, distances
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.draw_symbols import COLOURS
 from statejump.kinds.truss.generate import GENERATORS
 from statejump.kinds.truss.generate.document import to_toml, write
-from statejump.kinds.truss.resolved import GROUND, ResolvedTruss, distances
+from statejump.kinds.truss.resolved import ResolvedTruss
 
 BAR = {"young_modulus_Pa": 70e9, "cross_section_area_m2": 9e-6, "thermal_expansion_per_K": 2e-5, "mass_kg": 1}
 EXAMPLES = ("chain_10", "iwan_10", "mast_6", "ring_12", "umbrella_8", "umbrella_rib")
@@ -530,9 +531,9 @@ def test_umbrella_rib_is_the_umbrella_case(cases: Path) -> None:
     for key, value in case.thermal.to_dict().items():
         assert getattr(truss.programs[0], key) == value, key
     assert rib.samples_per_cycle == case.samples_per_cycle
-    assert rib.dem.link_damping_ratio == case.damping.axial_damping_ratio
-    assert rib.dem.pin_damping_N_m_s_per_rad == case.damping.pin_damping_N_m_s_per_rad
-    assert case.joint.dissipation_law == "none" and rib.dem.contact_damping_ratio == 0
+    assert rib.dem_settings.link_damping_ratio == case.damping.axial_damping_ratio
+    assert rib.dem_settings.pin_damping_N_m_s_per_rad == case.damping.pin_damping_N_m_s_per_rad
+    assert case.joint.dissipation_law == "none" and rib.dem_settings.contact_damping_ratio == 0
 
 
 def test_ribs_of_an_umbrella_are_turned_copies() -> None:

@@ -183,7 +183,7 @@ def test_kinds_with_one_jump_refuse_places(cases: Path) -> None:
     for name in ("table1.toml", "umbrella_bias.toml"):
         case = load_case(cases / name)
         with pytest.raises(StatejumpError) as refused:
-            case.behaviour.ability("control", case)(case, places=Places("A"))
+            case.behaviour.control(case, places=Places("A"))
         assert "--node = 'A' is not allowed: a case of kind" in str(refused.value)
 
 

@@ -458,7 +458,7 @@ def test_path_ends_when_progress_says_so() -> None:
 
 def wandering_mast() -> dict[str, Any]:
     """A mast whose 45 latches want to slip in the first step, each of its links as warm as chance has it."""
-    spec = importlib.util.spec_from_file_location("histories", ROOT / "bench" / "histories.py")
+    spec = importlib.util.spec_from_file_location("histories", ROOT / "studies" / "bench" / "histories.py")
     assert spec is not None and spec.loader is not None
     histories = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(histories)

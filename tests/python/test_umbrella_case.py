@@ -257,7 +257,7 @@ def test_defaults() -> None:
         "hertz_internal", "none", "mindlin", "material")
     assert (joint.restitution, joint.friction_v0_m_per_s, joint.friction_v1_m_per_s) == (1.0, 0.0, 1e-3)
     assert (thermal.period_s, thermal.cycles, case.start.mode, case.output.samples_per_cycle) == (1.0, 1, "rest", 2000)
-    assert (case.reduced.method, case.reduced.steps_per_cycle, case.dem.steps_per_cycle) == ("rk4", 100_000, 100_000)
+    assert (case.reduced_settings.method, case.reduced_settings.steps_per_cycle, case.dem_settings.steps_per_cycle) == ("rk4", 100_000, 100_000)
     assert (case.ensemble.reduced_runs, case.ensemble.dem_runs, case.ensemble.seed) == (100, 30, 1)
     assert case.title == "small"
 

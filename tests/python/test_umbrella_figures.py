@@ -16,20 +16,20 @@ from click.testing import CliRunner
 
 from conftest import results_in
 from statejump import _engine
-from statejump.cli.paper import figures_command
+from studies.paper.commands import figures_command
 from statejump.core.errors import Interrupted, StatejumpError
 from statejump.core.yade_process import Samples
 from statejump.kinds.loading import load_case
 from statejump.kinds.umbrella import dem, reduced as model
-from statejump.paper.claims import measures, verdicts
-from statejump.paper.claims.findings import Amplification, Envelope, Findings, FirstContact
-from statejump.paper.claims.page import page
-from statejump.paper.claims.statistics import (
+from studies.paper.claims import measures, verdicts
+from studies.paper.claims.findings import Amplification, Envelope, Findings, FirstContact
+from studies.paper.claims.page import page
+from studies.paper.claims.statistics import (
     FAILS, HOLDS, IN_PART, IN_THE_MEAN, UNTESTED, Groups, trend, two_sample_test,
 )
-from statejump.paper.claims.verdicts import Claim
-from statejump.paper.figures import closed_forms, study
-from statejump.paper.figures.runs import Study
+from studies.paper.claims.verdicts import Claim
+from studies.paper.figures import closed_forms, study
+from studies.paper.figures.runs import Study
 from statejump.schema.paths import with_values
 
 RANDOM = np.random.default_rng(7)
@@ -276,7 +276,7 @@ def tiny(edited: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> Path:
     """A case of few runs and steps; the reduced model with other steps stands for YADE."""
 
     def execute(case: Any, offset_m: np.ndarray | None = None) -> Samples:
-        done = model.integrate(with_values(case, {"reduced.steps_per_cycle": case.dem.steps_per_cycle}), offset_m)
+        done = model.integrate(with_values(case, {"reduced.steps_per_cycle": case.dem_settings.steps_per_cycle}), offset_m)
         keys = ("first_contact_time_s", "first_contact_temperature_change_K")
         return Samples(done.columns(), {key: getattr(done, key) for key in keys})
 

@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 import math
+import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from conftest import BUILT
+from conftest import BUILT, REPOSITORY
 from statejump import _paths
-from statejump.cli import paper as commands
+from studies.paper import commands
 from statejump.core import yade_process
 from statejump.core.errors import StatejumpError
 from statejump.kinds.loading import load_case
 from statejump.kinds.umbrella import dem, reduced as model
-from statejump.paper import energy, hold, slow
-from statejump.paper.common import made_by
+from studies.paper import energy, hold, slow
+from studies.paper.common import made_by
 from statejump.schema.paths import with_values
 
 
@@ -215,13 +217,13 @@ def test_studies_leave_the_callers_matplotlib_alone():
 import sys
 import matplotlib
 matplotlib.use("svg")
-import statejump.kinds.umbrella.figure, statejump.paper.energy, statejump.paper.hold, statejump.paper.slow
-import statejump.paper.figures.study
+import statejump.kinds.umbrella.figure, studies.paper.energy, studies.paper.hold, studies.paper.slow
+import studies.paper.figures.study
 from statejump.core.figures import panels
 panels(1, 1, (2, 2))
 print(matplotlib.get_backend().lower(), "matplotlib.pyplot" in sys.modules)
 """
-    done = subprocess.run([sys.executable, "-c", program], env={"PYTHONPATH": str(BUILT)}, capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-c", program], env={"PYTHONPATH": f"{BUILT}:{REPOSITORY}"}, capture_output=True, text=True)
     assert done.stdout.split() == ["svg", "False"], done.stderr
 
 
@@ -247,3 +249,21 @@ def test_ensemble_does_not_depend_on_the_number_of_workers(cases, monkeypatch):
     for name in ("time_s", "theta2_rad", "end_eccentricity_m"):
         assert getattr(found[1], name).tobytes() == getattr(found[2], name).tobytes(), name
     assert len(np.unique(found[1].jump_rad)) == 6  # the starts do differ
+
+
+def test_studies_are_commands_where_they_are(statejump: Any, tmp_path: Path) -> None:
+    assert statejump("slow", "--help").status == 0
+    without = ("from statejump import _paths; _paths._SHARE = {!r}\n"
+               "from statejump.cli.main import COMMANDS; print('slow' in COMMANDS, 'reduced' in COMMANDS)")
+    environment = {**os.environ, "PYTHONPATH": str(BUILT)}
+    found = subprocess.run([sys.executable, "-c", without.format(str(tmp_path))], capture_output=True, text=True,
+                           check=True, env=environment)
+    assert found.stdout.split() == ["False", "True"]
+    module = subprocess.run([sys.executable, "-m", "studies.paper", "slow", "--help"], capture_output=True, text=True,
+                            check=True, cwd=REPOSITORY, env=environment)
+    assert "slower and slower cycles" in " ".join(module.stdout.split())
+
+
+def test_studies_are_of_ribs(statejump: Any) -> None:
+    refused = statejump("slow", "cases/table1.toml")
+    assert refused.status == 2 and "'statejump slow' is for 'umbrella'" in refused.errors

@@ -133,7 +133,7 @@ def test_energy_of_a_truss_is_measured_by_friction_or_by_what_is_stored(cases: P
     run = truss_run(still, forces, energy)
     for friction, scale, name in ((4, 4, "friction_work"), (0, 3 + 2, "largest_stored")):
         spent = replace(run, energy={**run.energy, "friction_dissipation_J": Column(friction * ramp)})
-        compare = case.definition.behaviour.ability("compare", case.definition)
+        compare = case.behaviour.compare
         row = by_name(list(compare(case.definition, run, spent).rows))[f"energy_residual_over_{name}"]
         assert row.dem == pytest.approx((10 + 1 - 3 - 0.5 - friction - 2 - 1) / scale, rel=EXACT)
 

@@ -10,7 +10,9 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from statejump import _engine
+from statejump.core import libraries
 from statejump.core.errors import NotAllowed, StatejumpError
+from statejump.core.later import Later
 from statejump.core.tables import Shown
 
 if TYPE_CHECKING:
@@ -18,6 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+_DRAWN, _SAVED = Later("statejump.bores.picture:drawn"), Later("statejump.core.figures:save")
+_TOLD, _HTML, _WRITTEN = (Later(f"statejump.bores.words:{name}") for name in ("told", "html", "write"))
 ANGLES = 1024  # samples around a section
 SECTIONS = 5  # along the bore
 HARMONICS = range(2, 13)
@@ -145,7 +149,7 @@ class Bore:
         """Return a row per section, from one end to the other, units in the names of the columns: place along the
         axis from the middle, radius and centre of the circle of least squares, roundness error, and of every
         harmonic amplitude and the angle of its largest radius."""
-        import pandas
+        pandas = libraries.pandas()
 
         rows = []
         for each in self.sections:
@@ -162,30 +166,21 @@ class Bore:
         :param axes: axes to draw into, for the sections and for the harmonics; None: a new figure
         :return: the figure; matplotlib's backend is left alone
         """
-        from statejump.bores import picture
-
-        return picture.drawn(self, axes)
+        return _DRAWN(self, axes)
 
     def told(self) -> list[Shown | str]:
         """Return what a command prints of it."""
-        from statejump.bores import words
-
-        return words.told(self)
+        return _TOLD(self)
 
     def write(self, folder: Path) -> list[Path]:
         """Write ``bore.csv`` and the picture into a folder; return the paths."""
-        from statejump.bores import picture, words
-        from statejump.core.figures import save
-
-        return [words.write(self, folder), *save(picture.drawn(self), folder, "roundness")]
+        return [_WRITTEN(self, folder), *_SAVED(_DRAWN(self), folder, "roundness")]
 
     def __repr__(self) -> str:
         return f"Bore({self.name!r}, mean radius {self.mesh.mean_radius_m:.6g} m, {self.mesh.face_count:,} faces)"
 
     def _repr_html_(self) -> str:
-        from statejump.bores import words
-
-        return words.html(self)
+        return _HTML(self)
 
 
 # How a failure of each kind is cured: the sentence, and the setting that does it.

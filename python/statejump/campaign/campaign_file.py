@@ -9,18 +9,22 @@ from typing import Any
 
 import tomli_w
 
-from statejump.campaign import outputs
+from statejump.campaign.checked_outputs import checked
+from statejump.campaign.outputs import PATTERN
 from statejump.campaign.plan import MONTECARLO, MOST_SAMPLES, SWEEP, Plan, plan_of
 from statejump.campaign.sampling import Values, Varied, number_of_points
 from statejump.campaign.vary import MonteCarloVary, SweepVary, check_apart, varied
 from statejump.core.case import Case
 from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, UnknownKey
 from statejump.core.run import MODELS
+from statejump.kinds import of, require
 from statejump.kinds.loading import load_case
+from statejump.kinds.protocol import Outcomes, supports
 from statejump.schema.fields import (
-    CHOICE, Section, choice, definition, fields_of, rule_of, section, structure, tables, text, texts, whole,
+    CHOICE, Section, choice, definition, fields_of, rule_of, section, tables, text, texts, whole,
 )
 from statejump.schema.rules import FOLDER_NAME
+from statejump.schema.structure import structure
 from statejump.schema.toml import read_toml
 
 MODEL_NAMES = tuple(MODELS)
@@ -34,7 +38,7 @@ class SweepHeader(Section):
     title: str = text("", "one line for figures")
     case: str = text(..., "case file, relative to the campaign file")
     model: str = choice("reduced", MODEL_NAMES, CHOICE + ": the fast one")
-    outputs: list[str] = texts([], "more to record, HOW:COLUMN[ITEM].AXIS", pattern=outputs.PATTERN)
+    outputs: list[str] = texts([], "more to record, HOW:COLUMN[ITEM].AXIS", pattern=PATTERN)
 
 
 @definition
@@ -99,7 +103,7 @@ def _campaign(path: Path, text_read: str, data: Mapping[str, Any], command: str)
     ):
         raise MissingKey("vary", "at least one table says what varies", section="[[vary]]")
     try:
-        asked = outputs.checked(header.outputs, case)
+        asked = checked(header.outputs, case)
     except NotAllowed as refused:
         refused.key = f"campaign.{refused.key}" if refused.key == "outputs" else refused.key
         raise
@@ -123,7 +127,7 @@ def plan_for(
     :param asked: outputs beside the outcomes of the kind
     :raises StatejumpError: as of :func:`load_campaign`
     """
-    case.behaviour.ability("outcomes", case)
+    require(case, Outcomes)
     check_campaign(case, model, case.name)
     if command == MONTECARLO:
         for name, value in (("samples", samples), ("seed", seed)):
@@ -139,7 +143,7 @@ def plan_for(
             "vary": [dict(table) for _, table in named]}
     return plan_of(case, command=command, model=model, vary=found, seed=seed,
                    samples=points_of(found) if samples is None else samples, name=name,
-                   title=case.title, text=tomli_w.dumps(said), asked=outputs.checked(asked, case))
+                   title=case.title, text=tomli_w.dumps(said), asked=checked(asked, case))
 
 
 def vary_tables(path: Path) -> list[tuple[str, Mapping[str, Any]]]:
@@ -175,8 +179,8 @@ def check_campaign(case: Case, model: str, named: str, before: str = "") -> None
     :param named: how the caller calls the case
     :param before: what stands before the keys of the case and of the model
     """
-    behaviour = case.behaviour
-    if not behaviour.can("outcomes"):
+    behaviour = of(case)
+    if not supports(behaviour, Outcomes):
         raise NotAllowed(f"{before}case", named, f"no campaign runs {case.kind!r}")
     rule_of(fields_of(SweepHeader)["model"]).check(f"{before}model", model)
     if model not in behaviour.campaign_models():

@@ -32,7 +32,7 @@ dask.config.set(_QUIET)
 
 from distributed import Client, LocalCluster, Status  # noqa: E402
 
-from statejump import __version__  # noqa: E402
+from statejump._version import __version__  # noqa: E402
 from statejump.core.errors import NotAllowed, StatejumpError, shown  # noqa: E402
 from statejump.core.scratch import scratch  # noqa: E402
 
@@ -184,7 +184,7 @@ def _existing(address: str) -> Iterator[Client]:
 def _check_security(address: str) -> None:
     """Raise SchedulerUnusable where Dask's configuration asks for encryption that the address has not, or has no
     certificates for TLS that can be read."""
-    from distributed.security import Security
+    from distributed.security import Security  # of addresses tls:// only
 
     security = Security()
     if not address.startswith("tls://"):

@@ -97,7 +97,7 @@ def _here(campaign: Plan, missing: list[int], account: _Account) -> list[int]:
 def _on_workers(
     campaign: Plan, missing: list[int], scheduler: str | None, workers: int | None, account: _Account
 ) -> None:
-    from statejump.campaign.distribute import workers_for
+    from statejump.campaign.distribute import workers_for  # Dask, 0.6 s; small campaigns run without it
 
     done = account.done
     wanted = min(workers or len(os.sched_getaffinity(0)), len(missing))

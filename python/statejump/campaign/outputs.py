@@ -14,11 +14,12 @@ from difflib import get_close_matches
 
 import numpy as np
 
-from statejump.core.case import Case
 from statejump.core.errors import NotAllowed, StatejumpError
+from statejump.core.later import Later
 from statejump.core.run import AXES, GROUPS, Column, Run
 from statejump.core.units import split_unit, unit_of
 
+_HISTORY = Later("statejump.surface:history")
 FORM = re.compile(r"(?P<how>\w+):(?:(?P<group>links|contacts|surface)\.)?(?P<column>\w+)(?:\[(?P<item>.*)\])?"
                   r"(?:\.(?P<axis>\w+))?")
 # Of a column over time; which of them need every sample of a run, not only its ends.
@@ -39,7 +40,7 @@ PATTERN = re.sub(r"\?P<\w+>", "", FORM.pattern)
 LIKE = "must be HOW:COLUMN[ITEM].AXIS, as 'jump:displacement_m[P].x'"
 
 
-def _parts(name: str) -> re.Match[str]:
+def parts(name: str) -> re.Match[str]:
     found = FORM.fullmatch(name) if isinstance(name, str) else None
     if found is None:
         raise NotAllowed("outputs", name, LIKE)
@@ -50,7 +51,7 @@ def _parts(name: str) -> re.Match[str]:
 
 def needs_all_samples(name: str) -> bool:
     """Whether an output needs every sample of a run."""
-    return _parts(name)["how"] not in ENDS
+    return parts(name)["how"] not in ENDS
 
 
 def unit(name: str) -> str:
@@ -78,10 +79,10 @@ def values(names: Sequence[str], run: Run) -> dict[str, float]:
     columns: dict[tuple[str | None, bool], dict[str, Column]] = {}
     found = {}
     returned: Run | None = None
-    if any(_parts(name)["how"] == JUMP for name in names):
+    if any(parts(name)["how"] == JUMP for name in names):
         run.definition.need_jump("an output 'jump:...'")
     for name in names:
-        asked = _parts(name)
+        asked = parts(name)
         group, repeats = asked["group"], asked["how"] == REPEAT
         if repeats and returned is None:
             returned = _returned(run, name)
@@ -102,7 +103,7 @@ def _returned(run: Run, name: str) -> Run:
 
 
 def _value(name: str, run: Run, columns: dict[str, Column]) -> float:
-    asked = _parts(name)
+    asked = parts(name)
     if asked["column"] not in columns:
         where = next((f"{group}." for group in GROUPS[2:] if asked["column"] in getattr(run, group)), "")
         raise NotAllowed("outputs", name, f"did you mean {where}{asked['column']}?" if where else
@@ -136,10 +137,8 @@ def _columns(run: Run, group: str | None) -> dict[str, Column]:
 
 
 def _surface(run: Run, name: str) -> dict[str, Column]:
-    from statejump.surface import history
-
     try:
-        return {key: Column(values) for key, values in history(run).items()}
+        return {key: Column(values) for key, values in _HISTORY(run).items()}
     except StatejumpError as refused:
         raise NotAllowed("outputs", name, refused.phrase(), remedy=refused.remedy) from None
 
@@ -150,20 +149,3 @@ def _near(what: str, given: str, known: Sequence[str]) -> str:
         return f"did you mean {near[0]}?"
     listed = ", ".join(known[:12]) + (", ..." if len(known) > 12 else "")
     return f"there is no such {what.removesuffix('s')}; there are {listed}" if known else f"there are no {what}"
-
-
-def checked(given: Sequence[str], case: Case) -> tuple[str, ...]:
-    """Return outputs after they were taken from one run of the reduced model of the case itself.
-
-    :raises NotAllowed: what is wrong with one of them
-    """
-    names = tuple(given)
-    for place, name in enumerate(names):
-        _parts(name)
-        if name in names[:place]:
-            raise NotAllowed("outputs", name, "it is there twice")
-    if names:
-        from statejump.campaign.work import sampled
-
-        values(names, sampled(case, "reduced", names))
-    return names

@@ -9,11 +9,11 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from statejump import __version__
+from statejump._version import __version__
 from statejump.campaign import outputs
 from statejump.campaign.sampling import Random, Values, Varied, montecarlo_draws, montecarlo_values, sweep_values
 from statejump.core.case import Case
-from statejump.kinds import registered
+from statejump.kinds import of, registered
 from statejump.schema.fields import attached_to_json, rule_of
 from statejump.schema.paths import attribute_of, filled
 
@@ -106,7 +106,7 @@ class Plan(Recipe):
         a campaign may be extended."""
         resolved = {
             "version": __version__, "command": self.command, "model": self.model, "seed": self.seed,
-            "case": self.case.to_dict(), "vary": [asdict(parameter) for parameter in self.vary],
+            "case": self.case.with_defaults(), "vary": [asdict(parameter) for parameter in self.vary],
         }
         return hashlib.sha256(json.dumps(resolved, sort_keys=True, default=attached_to_json).encode()).hexdigest()
 
@@ -119,10 +119,10 @@ def plan_of(
 
     :param asked: outputs beside the outcomes of the kind
     """
-    at_end = () if case.ending is None else case.behaviour.AT_PROGRAM_END
+    at_end = () if case.ending is None else of(case).AT_PROGRAM_END
     return Plan(
         command=command, model=model, case_data=case.origin.document, vary=vary, seed=seed,
-        outcomes=(*case.behaviour.outcome_names(case), *at_end, *asked), outputs=asked,
+        outcomes=(*of(case).outcome_names(case), *at_end, *asked), outputs=asked,
         kinds=tuple(registered()), name=name,
         title=title or name, case=case, samples=samples, file=file, text=text,
     )

@@ -15,14 +15,19 @@ from statejump.campaign.plan import Plan
 from statejump.campaign.summary import COLUMNS, shown, summary, write_summary
 from statejump.campaign.tables import Table, make_table, write_csv, write_hdf5
 from statejump.core.errors import Interrupted
+from statejump.core.later import Later
 from statejump.core.progress import Tell
 from statejump.core.tables import Shown, write_json
+from statejump.core.yade_process import find_yade
 
 if TYPE_CHECKING:
     import pandas
     from matplotlib.figure import Figure
 
-    from statejump.case import Case
+    from statejump.core.case import Case
+
+_FIGURES, _SAVED = Later("statejump.campaign.plots:figures"), Later("statejump.core.figures:save")
+_TABLE = Later("statejump.core.html:table")
 
 
 @dataclass(frozen=True)
@@ -46,9 +51,7 @@ class Campaign:
     @property
     def case(self) -> Case:
         """The case without variation."""
-        from statejump.case import Case
-
-        return Case(self.plan.case)
+        return self.plan.case
 
     def __len__(self) -> int:
         return self.plan.samples
@@ -78,9 +81,7 @@ class Campaign:
         :param name: ``distributions`` or ``correlations`` of random samples, ``sweep`` of a grid
         :raises ValueError: there is no such figure, or every sample failed
         """
-        from statejump.campaign.plots import figures
-
-        found = figures(self.plan, self.table)
+        found = _FIGURES(self.plan, self.table)
         if not found:
             raise ValueError("nothing to draw: every sample failed")
         if name is not None and name not in found:
@@ -110,15 +111,12 @@ class Campaign:
 
     def write(self, folder: Path) -> list[Path]:
         """Write tables, summary, figures and how the last run went; return the paths of the results."""
-        from statejump.campaign.plots import figures
-        from statejump.core.figures import save
-
         csv, hdf5 = folder / "samples.csv", folder / "samples.h5"
         write_csv(self.table, csv)
         write_hdf5(self.plan, self.table, hdf5)
         written = [csv, hdf5, *write_summary(self.plan, self.summary(), folder)]
-        for name, figure in figures(self.plan, self.table).items():
-            written += save(figure, folder, name)
+        for name, figure in _FIGURES(self.plan, self.table).items():
+            written += _SAVED(figure, folder, name)
         self._write_run(folder)
         return written
 
@@ -137,15 +135,13 @@ class Campaign:
         return f"Campaign({self.plan.command} of {self.plan.case.name!r}, {counts})"
 
     def _repr_html_(self) -> str:
-        from statejump.core.html import table
-
         found = self.summary()
         rows = [(name, *(shown(entry[key]) for key in COLUMNS)) for name, entry in found["outcomes"].items()]
         failures = "".join(
             f"<p>failed: {entry['samples']:,} sample(s): {escape(entry['sentence'])}</p>" for entry in found["failures"]
         )
         title = f"{self.plan.title}: {len(self):,} samples"
-        return f"<h4>{escape(title)}</h4>{table(('outcome', *COLUMNS.values()), rows)}{failures}"
+        return f"<h4>{escape(title)}</h4>{_TABLE(('outcome', *COLUMNS.values()), rows)}{failures}"
 
 
 def run(plan: Plan, workers: int | None, tell: Tell) -> Campaign:
@@ -179,7 +175,5 @@ def run_in(
 
 def _check_yade(plan: Plan, scheduler: str | None) -> None:
     """Raise FailedRun where the DEM is to run on this machine without YADE: before workers are started."""
-    from statejump.core.yade_process import find_yade
-
     if plan.model == "dem" and scheduler is None:
         find_yade()

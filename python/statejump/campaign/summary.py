@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from statejump import __version__
+from statejump._version import __version__
 from statejump.campaign.plan import Plan
 from statejump.campaign.sampling import Independent
 from statejump.campaign.tables import Table
@@ -38,7 +38,7 @@ def statistics(values: np.ndarray) -> dict[str, float | None]:
 
 def spearman(parameter: np.ndarray, outcome: np.ndarray) -> float | None:
     """Rank correlation over the samples that have the outcome; None: one of the two is constant."""
-    from scipy.stats import rankdata
+    from scipy.stats import rankdata  # 0.5 s; workers do without
 
     there = np.isfinite(outcome)
     if np.count_nonzero(there) < 3:

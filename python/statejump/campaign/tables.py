@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from statejump import __version__
+from statejump._version import __version__
 from statejump.campaign.plan import Plan
 from statejump.campaign.work import Batch
-from statejump.core import tables
+from statejump.core import libraries, tables
 from statejump.core.hdf5 import made
 from statejump.schema.fields import attached_to_json
 
@@ -44,7 +44,7 @@ class Table:
 
     def frame(self) -> pandas.DataFrame:
         """Return a row per sample: varied keys, outcomes, error."""
-        import pandas
+        pandas = libraries.pandas()
 
         columns: dict[str, np.ndarray | list[str]] = {**self.parameters, **self.outcomes, "error": self.error}
         frame = pandas.DataFrame(columns)
@@ -85,13 +85,13 @@ def write_csv(table: Table, path: Path) -> None:
 
 def write_hdf5(campaign: Plan, table: Table, path: Path) -> None:
     """Write groups ``parameters`` and ``outcomes``, each column with its unit, and ``failed``."""
-    import h5py
+    h5py = libraries.h5py()
 
     with made(path) as file:
         file.attrs["campaign"] = campaign.text
         file.attrs["command"] = campaign.command
         file.attrs["model"] = campaign.model
-        file.attrs["case"] = json.dumps(campaign.case.to_dict(), default=attached_to_json)
+        file.attrs["case"] = json.dumps(campaign.case.with_defaults(), default=attached_to_json)
         file.attrs["key_sha256"] = campaign.key
         if campaign.seed is not None:
             file.attrs["seed"] = campaign.seed

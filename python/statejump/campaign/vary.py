@@ -17,7 +17,8 @@ from statejump.campaign.plan import MONTECARLO, MOST_SAMPLES, SWEEP
 from statejump.campaign.sampling import DISTRIBUTIONS, Distribution, Independent, Values, Varied
 from statejump.core.case import Case
 from statejump.core.errors import MissingKey, NotAllowed, UnknownKey
-from statejump.kinds import kind, kinds_that_can
+from statejump.kinds import kind, names_of_kinds_with
+from statejump.kinds.protocol import Outcomes
 from statejump.schema.fields import (
     CHOICE, Section, choice, definition, fields_of, numbers, parameter, rule_of, text, texts, whole,
 )
@@ -36,7 +37,7 @@ def numbers_of(model: type[Case]) -> dict[str, Any]:
 
 def _expression() -> str:
     """Regular expression of the keys that can vary, for editors."""
-    paths = sorted({path for name in kinds_that_can("outcomes") for path in numbers_of(kind(name).Case)})
+    paths = sorted({path for name in names_of_kinds_with(Outcomes) for path in numbers_of(kind(name).Case)})
     return "(?:" + "|".join(re.escape(path).replace(r"\*", ".+") for path in paths) + ")"
 
 
@@ -133,17 +134,17 @@ def _overlap(one: str, other: str, case: Case) -> bool:
 
 def _items(case: Case, path: str) -> list[str]:
     """Names of the items of the list that a path begins with."""
-    return [item.name for item in getattr(case, split_path(path)[0])]
+    return [item.name for item in case.part(split_path(path)[0])]
 
 
 def _own_value(case: Case, path: str) -> float | None:
     """What the case itself says, of a pattern if its items agree; None: nothing."""
     section, item, key = split_path(path)
     if not item:
-        found: float | None = getattr(getattr(case, section), key)
+        found: float | None = getattr(case.part(section), key)
         return found
     wanted = set(meant(item, _items(case, path)))
-    values = {getattr(one, key) for one in getattr(case, section) if one.name in wanted}
+    values = {getattr(one, key) for one in case.part(section) if one.name in wanted}
     return values.pop() if len(values) == 1 else None
 
 

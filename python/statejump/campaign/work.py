@@ -15,8 +15,9 @@ from statejump.core.case import Case
 from statejump.core.errors import StatejumpError
 from statejump.core.progress import silent
 from statejump.core.run import Run
-from statejump.kinds import KINDS, register
+from statejump.kinds import KINDS, has, of, register, require
 from statejump.kinds.loading import parse_case
+from statejump.kinds.protocol import DemModel, QuickModel, ReducedModel
 
 
 @dataclass(frozen=True)
@@ -34,13 +35,12 @@ def sampled(case: Case, model: str, outputs: Sequence[str]) -> Run:
 
     :raises StatejumpError: the run failed
     """
-    behaviour = case.behaviour
     if model == "dem":
-        found: Run = behaviour.dem(case, silent)
-    elif behaviour.can("quick") and not any(needs_all_samples(name) for name in outputs):
-        found = behaviour.ability("quick", case)(case)
+        found: Run = require(case, DemModel).dem(case, silent)
+    elif has(case, QuickModel) and not any(needs_all_samples(name) for name in outputs):
+        found = require(case, QuickModel).quick(case)
     else:
-        found = behaviour.ability("reduced", case)(case, silent)
+        found = require(case, ReducedModel).reduced(case, silent)
     return found
 
 
@@ -51,8 +51,8 @@ def outcome(case: Case, model: str, outputs: Sequence[str] = ()) -> dict[str, fl
     """
     run = sampled(case, model, outputs)
     # A sample whose program ends at the reference temperature, among others that do not, lacks these.
-    nothing = dict.fromkeys(case.behaviour.AT_PROGRAM_END, nan)
-    return nothing | case.behaviour.recorded(case, run) | values(outputs, run)
+    nothing = dict.fromkeys(of(case).AT_PROGRAM_END, nan)
+    return nothing | of(case).recorded(case, run) | values(outputs, run)
 
 
 def run_sample(recipe: Recipe, index: int) -> Sample:

@@ -12,7 +12,9 @@ from statejump.campaign.plan import MONTECARLO, Plan
 from statejump.core.errors import NotAllowed
 from statejump.core.output import write_atomically
 from statejump.core.samples import read_samples
+from statejump.kinds import of, require
 from statejump.kinds.loading import parse_case
+from statejump.kinds.protocol import DemResult
 from statejump.schema.paths import filled
 
 
@@ -26,7 +28,7 @@ def write_table(campaign: Plan, path: Path) -> None:
 
     The script takes the values from their columns; the campaign file tells case and outcomes.
     """
-    if campaign.file is None or "dem" not in campaign.case.behaviour.campaign_models():
+    if campaign.file is None or "dem" not in of(campaign.case).campaign_models():
         raise NotAllowed("--yade-batch", cause=f"no such campaign runs {campaign.case.kind!r}", file=campaign.file)
     columns = [column_of(parameter.keys[0]) for parameter in campaign.vary]
     # Tables have neither blanks nor '#' in a value.
@@ -52,12 +54,12 @@ class BatchSample:
 
     def dem_values(self) -> dict[str, Any]:
         """Return what the scene needs."""
-        return self.case.behaviour.dem_values(self.case)
+        return of(self.case).dem_values(self.case)
 
     def outcomes(self, samples: Path) -> dict[str, float]:
         """Return the outcomes of a run that left its samples, and what it says of itself beside them."""
         about = json.loads(samples.with_name(samples.name + ".json").read_text(encoding="utf-8"))
-        behaviour, case = self.case.behaviour, self.case
-        run = behaviour.ability("dem_run", case)(case, read_samples(samples), about)
-        found: dict[str, float] = behaviour.recorded(case, run)
+        case = self.case
+        run = require(case, DemResult).dem_run(case, read_samples(samples), about)
+        found: dict[str, float] = of(case).recorded(case, run)
         return found

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from statejump.bores.measure import NoBore, check_journal, measured
 from statejump.cli.terminal import QUIET, RESULTS, make_console, print_shown
 from statejump.core.errors import NotAllowed
 from statejump.core.results_folder import Results
@@ -32,8 +33,6 @@ def bore_command(
     Example:
       statejump bore bearing.stl --scale 0.001 --journal-radius 5e-3
     """
-    from statejump.bores.measure import NoBore, check_journal, measured
-
     console = make_console(quiet)
     check_journal("--journal-radius", journal_radius)
     try:

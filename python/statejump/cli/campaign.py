@@ -9,6 +9,8 @@ import click
 
 from statejump.campaign.campaign_file import check_workers, load_campaign, plan_for, vary_tables
 from statejump.campaign.plan import MONTECARLO, SWEEP, Plan
+from statejump.campaign.result import run_in
+from statejump.campaign.yade_batch import write_table
 from statejump.cli.terminal import QUIET, RESULTS, CaseFile, make_console, print_shown, progress, since_start_s
 from statejump.core.errors import FailedRun, MissingKey, NotAllowed
 from statejump.core.results_folder import Results
@@ -68,9 +70,6 @@ def _command(name: str, text: str) -> click.Command:
         quiet: bool, tables: tuple[Path, ...] = (), samples: int | None = None, seed: int | None = None,
         outputs: tuple[str, ...] = (),
     ) -> None:
-        from statejump.campaign.result import run_in
-        from statejump.campaign.yade_batch import write_table
-
         console = make_console(quiet)
         check_workers("--workers", workers)
         if workers is not None and scheduler is not None:

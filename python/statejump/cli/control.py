@@ -10,9 +10,12 @@ import click
 
 from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, print_shown, undivided
 from statejump.control import study
+from statejump.control.capabilities import ControlStudy
 from statejump.control.study import Places, Study, Sweep, number
 from statejump.core.results_folder import Results
 from statejump.core.tables import Shown
+from statejump.kinds import require
+from statejump.kinds.protocol import DemInput
 
 LONGEST_NOTE = 60  # of a table; control.csv has all of it
 
@@ -77,15 +80,15 @@ def control_command(
       statejump control cases/table1.toml --jump-below 5e-6
       statejump control ring_12 --node J1 --jump-below 1e-6 --add-spring J0 J2 --free 'revolute.*.friction_coefficient'
     """
-    from statejump.control import plot
+    from statejump.control import plot  # matplotlib, 0.4 s, after the study
 
     console = make_console(quiet)
-    case = loaded(case_file, "control", *(["dem_input"] if with_dem else []))
+    case = loaded(case_file, ControlStudy, *([DemInput] if with_dem else []))
     if with_dem:
-        case.behaviour.check_dem(case)
+        case.check_dem()
     with results.folder(case.name, case) as folder:
         with undivided(console, "control") as tell:
-            done: Study = case.behaviour.ability("control", case)(
+            done: Study = require(case, ControlStudy).control(
                 case, jump_below=jump_below, runs=runs, with_dem=with_dem, tell=tell,
                 places=Places(node, add_spring, free))
         written = folder.publish(

@@ -7,7 +7,9 @@ from pathlib import Path
 import click
 
 from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, progress
+from statejump.control.capabilities import ConvergenceStudy
 from statejump.core.results_folder import Results
+from statejump.kinds import require
 
 
 @click.command("convergence")
@@ -25,10 +27,10 @@ def convergence_command(case_file: Path, decades: int, results: Results, quiet: 
       statejump convergence cases/table1.toml
     """
     console = make_console(quiet)
-    case = loaded(case_file, "convergence")
-    case.behaviour.check_dem(case)
+    case = loaded(case_file, ConvergenceStudy)
+    case.check_dem()
     with results.folder(case.name, case) as folder:
         with progress(console, "convergence") as tell:
-            found = case.behaviour.ability("convergence", case)(case, tell, decades)
+            found = require(case, ConvergenceStudy).convergence(case, tell, decades)
         _, text = folder.publish(found.write(folder.staged))
     console.print(text.read_text(encoding="utf-8"))

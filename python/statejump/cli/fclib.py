@@ -7,10 +7,14 @@ from typing import TYPE_CHECKING
 
 import click
 
+from statejump import fclib
 from statejump.cli.suggesting import Suggesting
 from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, undivided
 from statejump.core.errors import NotAllowed
+from statejump.core.output import check_suffix, check_target
 from statejump.core.results_folder import Results
+from statejump.kinds import require
+from statejump.kinds.protocol import ContactProblems
 
 if TYPE_CHECKING:
     from statejump.fclib import Merit
@@ -55,9 +59,6 @@ def solve_command(file: Path, output: Path | None, tolerance: float, method: str
     Example:
       statejump fclib solve Capsules-i125-1213.hdf5 -o solved.hdf5
     """
-    from statejump import fclib
-    from statejump.core.output import check_suffix, check_target
-
     console = make_console(quiet)
     if output is not None:
         check_suffix("--output", output, ".hdf5", ".h5")
@@ -92,13 +93,11 @@ def write_command(case_file: Path, number: int, results: Results, quiet: bool) -
     Example:
       statejump fclib write cases/trusses/ring_12.toml --number 50
     """
-    from statejump import fclib
-
     console = make_console(quiet)
-    case = loaded(case_file, "contact_problems")
+    case = loaded(case_file, ContactProblems)
     try:
         with undivided(console, f"{case.name}, path") as tell, results.folder(f"{case.name}/fclib", case) as folder:
-            found = case.behaviour.ability("contact_problems", case)(case, number, tell)
+            found = require(case, ContactProblems).contact_problems(case, number, tell)
             written = []
             for place, one in enumerate(found, start=1):
                 path = folder.staged / f"step_{place:0{len(str(number))}d}.hdf5"

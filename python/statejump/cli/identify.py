@@ -9,6 +9,7 @@ import click
 from statejump.cli.terminal import QUIET, RESULTS, make_console, print_shown
 from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.core.results_folder import Results
+from statejump.identification import identified
 
 # The arguments of the library as options of the command.
 OPTIONS = {"model": "--model", "start": "--start", "confidence": "--confidence", "target": "--for",
@@ -47,8 +48,6 @@ def identify_command(
     Example:
       statejump identify hinge.csv --normal-force 100
     """
-    from statejump.identification import identified
-
     console = make_console(quiet)
     with results.folder(f"identify_{loop_file.stem}") as folder:
         try:

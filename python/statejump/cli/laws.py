@@ -16,6 +16,8 @@ from statejump.cli.terminal import QUIET, RESULTS, CaseFile, loaded, make_consol
 from statejump.core.errors import StatejumpError
 from statejump.core.output import check_suffix
 from statejump.core.results_folder import Results
+from statejump.kinds import require
+from statejump.kinds.protocol import JointOfLaws
 from statejump.laws import build, curves
 from statejump.laws.drive import drive_file
 from statejump.laws.traits import KINDS, catalogue
@@ -58,7 +60,7 @@ def show_command(case_file: Path | None, results: Results, quiet: bool) -> None:
     if problems:
         raise StatejumpError("; ".join(problems))
     console = make_console(quiet)
-    case = loaded(case_file, "laws") if case_file is not None else None
+    case = loaded(case_file, JointOfLaws) if case_file is not None else None
     for kind in KINDS:
         table = Table(title=f"{kind.replace('_', ' ').capitalize()} laws", show_lines=True)
         for heading in ("name", "formula", "range", "source", "holds a static load"):
@@ -70,7 +72,7 @@ def show_command(case_file: Path | None, results: Results, quiet: bool) -> None:
         if case is None:
             joint, name = curves.paper_joint(), "laws"
         else:
-            joint, name = case.behaviour.ability("laws", case)(case), f"laws_{case.name}"
+            joint, name = require(case, JointOfLaws).laws(case), f"laws_{case.name}"
         written = folder.publish(curves.figure(joint, folder.staged, name))
     console.print(f"curves: {', '.join(str(name) for name in written)}")
 

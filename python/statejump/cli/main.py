@@ -15,7 +15,8 @@ from typing import Any, TextIO
 
 import click
 
-from statejump import __version__
+from statejump import _paths
+from statejump._version import __version__
 from statejump.cli import streams
 from statejump.cli.suggesting import Suggesting
 from statejump.core import errors
@@ -56,13 +57,17 @@ TASKS: dict[str, dict[str, tuple[str, str]]] = {
         "export": ("results:export_command", "CSV tables and ParaView files of a result file."),
         "schema": ("schema:schema_command", "JSON Schema of case and campaign files."),
     },
-    "The paper": {
-        "figures": ("paper:figures_command", "The paper's Figs 13-16 in both models, and its claims in numbers."),
-        "slow": ("paper:slow_command", "Slow heating tends to the quasi-static path."),
-        "hold": ("paper:hold_command", "Friction that creeps and friction that holds."),
-        "energy": ("paper:energy_command", "Energy account of CASE over time steps."),
-    },
 }
+# Studies beside the package: there in the repository, not in an installation.
+STUDIES = "studies.paper.commands"
+SHARE = os.path.join(os.path.dirname(_paths.__file__), _paths._SHARE)
+if os.path.isfile(os.path.join(SHARE, *STUDIES.split(".")) + ".py"):
+    TASKS["The paper"] = {
+        "figures": (f"{STUDIES}:figures_command", "The paper's Figs 13-16 in both models, and its claims in numbers."),
+        "slow": (f"{STUDIES}:slow_command", "Slow heating tends to the quasi-static path."),
+        "hold": (f"{STUDIES}:hold_command", "Friction that creeps and friction that holds."),
+        "energy": (f"{STUDIES}:energy_command", "Energy account of CASE over time steps."),
+    }
 COMMANDS = {name: found for commands in TASKS.values() for name, found in commands.items()}
 
 
@@ -76,7 +81,11 @@ class Commands(Suggesting):
         if name not in COMMANDS:
             return None
         module, _, attribute = COMMANDS[name][0].partition(":")
-        found: click.Command = getattr(import_module(f"statejump.cli.{module}"), attribute)
+        if module != STUDIES:
+            module = f"statejump.cli.{module}"
+        elif SHARE not in sys.path:
+            sys.path.append(SHARE)
+        found: click.Command = getattr(import_module(module), attribute)
         return found
 
     def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:

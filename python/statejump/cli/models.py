@@ -8,23 +8,30 @@ import click
 from rich.console import Console
 
 from statejump import api
+from statejump.cli.results import compare_files
 from statejump.cli.terminal import (
     CASE, QUIET, RESULTS, CaseFile, loaded, make_console, print_comparison, print_shown, progress,
 )
-from statejump.case import Case
+from statejump.core.case import Case
 from statejump.core.errors import Interrupted, TolerancesMissed
-from statejump.core.limits import check_memory, history_of
+from statejump.kinds.limits import check_memory, history_of
 from statejump.core.results_folder import Results, ResultsFolder
 from statejump.core.run import Run, warnings_of
+from statejump.kinds import require
+from statejump.kinds.protocol import (
+    DemInput, DynamicModel, FiniteElements, ModelComparison, QuasiStaticModel, ReducedModel,
+)
+from statejump.report.capabilities import RunText
+from statejump.results.read import is_result_file
+from statejump.results.record import save
 
 
 def _told(case: Case, runs: dict[str, Run], console: Console) -> None:
-    definition = case.definition
-    print_shown(definition.behaviour.ability("told", definition)(definition, runs), console)
+    print_shown(require(case, RunText).told(case, runs), console)
 
 
 def _warn(case: Case, runs: dict[str, Run], console: Console) -> None:
-    notes = case.definition.thermal_notes if case.definition.has_jump else ()
+    notes = case.thermal_notes if case.has_jump else ()
     for warning in warnings_of(runs.values()):
         console.print(f"{'note' if warning in notes else 'warning'}: {warning}")
 
@@ -32,16 +39,14 @@ def _warn(case: Case, runs: dict[str, Run], console: Console) -> None:
 def _check(case: Case, folder: ResultsFolder, *models: str) -> None:
     """Refuse what the machine has no memory or no room for, before anything is computed."""
     for model in models:
-        check_memory(case.definition, model)
-    folder.check_space(sum(history_of(case.definition, model).disk_bytes for model in models))
+        check_memory(case, model)
+    folder.check_space(sum(history_of(case, model).disk_bytes for model in models))
 
 
 def _finish(model: str, case: Case, run: Run, folder: ResultsFolder, console: Console) -> None:
     """Write the run of one model, and tell of it."""
-    from statejump.results.record import save
-
     runs = {model: run}
-    written = folder.publish([save(model, case.definition, runs, folder.staged)])
+    written = folder.publish([save(model, case, runs, folder.staged)])
     _told(case, runs, console)
     _warn(case, runs, console)
     console.print(f"results: {written[0]}, history: {folder.path / f'{model}_history.csv'}")
@@ -75,10 +80,10 @@ def reduced_command(case_file: Path, dynamic: bool, slow: bool, results: Results
     if slow:
         if dynamic:
             raise click.UsageError("'--dynamic' is with inertia, '--quasi-static' without.")
-        _quasi_static(Case(loaded(case_file, "quasi_static")), results, console)
+        _quasi_static(loaded(case_file, QuasiStaticModel), results, console)
         return
-    case = Case(loaded(case_file, "dynamic" if dynamic else "reduced"))
-    with results.folder(_folder_name(case, dynamic), case.definition) as folder:
+    case = loaded(case_file, DynamicModel if dynamic else ReducedModel)
+    with results.folder(_folder_name(case, dynamic), case) as folder:
         _check(case, folder, "reduced")
         try:
             with progress(console, "reduced model") as tell:
@@ -89,7 +94,7 @@ def reduced_command(case_file: Path, dynamic: bool, slow: bool, results: Results
 
 
 def _quasi_static(case: Case, results: Results, console: Console) -> None:
-    with results.folder(f"{case.name}_quasi_static", case.definition) as folder:
+    with results.folder(f"{case.name}_quasi_static", case) as folder:
         found = case.quasi_static()
         written = folder.publish(found.write(folder.staged))
     print_shown(found.told(), console)
@@ -110,11 +115,9 @@ def _dem(command: str, case: Case, before: dict[str, Run], folder: ResultsFolder
 def _kept(command: str, model: str, case: Case, before: dict[str, Run], folder: ResultsFolder,
           stopped: Interrupted) -> Interrupted:
     """Write what an interrupted run has; return what to tell of it."""
-    from statejump.results.record import save
-
     if not isinstance(stopped.run, Run):
         return stopped
-    written = folder.publish([save(command, case.definition, {**before, model: stopped.run}, folder.staged)])
+    written = folder.publish([save(command, case, {**before, model: stopped.run}, folder.staged)])
     return Interrupted(f"interrupted; the {len(stopped.run)} samples so far are in {written[0]}")
 
 
@@ -130,8 +133,8 @@ def dem_command(case_file: Path, results: Results, quiet: bool) -> None:
       statejump dem cases/table1.toml
     """
     console = make_console(quiet)
-    case = Case(loaded(case_file, "dem_input"))
-    with results.folder(case.name, case.definition) as folder:
+    case = loaded(case_file, DemInput)
+    with results.folder(case.name, case) as folder:
         _check(case, folder, "dem")
         _finish("dem", case, _dem("dem", case, {}, folder, console), folder, console)
 
@@ -153,12 +156,8 @@ def compare_command(files: tuple[Path, ...], dynamic: bool, finite: bool, result
       statejump compare --fe cases/table1.toml
       statejump compare results/table1/reduced.h5 results/table1/dem.h5
     """
-    from statejump.results.read import is_result_file
-
     console = make_console(quiet)
     if len(files) > 1 or is_result_file(files[0]):
-        from statejump.cli.results import compare_files
-
         if dynamic or finite:
             option = "--dynamic" if dynamic else "--fe"
             raise click.UsageError(f"'{option}' is for a case, result files say themselves what ran.")
@@ -168,18 +167,16 @@ def compare_command(files: tuple[Path, ...], dynamic: bool, finite: bool, result
 
 
 def _compare_case(case_file: Path, dynamic: bool, finite: bool, results: Results, console: Console) -> None:
-    from statejump.core.figures import save as save_figure
-    from statejump.results.record import save
-
-    case = Case(loaded(case_file, "compare", "dem_input", *(["dynamic"] if dynamic else []),
-                       *(["fe"] if finite else [])))
+    from statejump.core.figures import save as save_figure  # matplotlib, 0.4 s; compare alone draws
+    case = loaded(case_file, ModelComparison, DemInput, *([DynamicModel] if dynamic else []),
+                  *([FiniteElements] if finite else []))
     case.check_dem()
-    with results.folder(_folder_name(case, dynamic), case.definition) as folder:
+    with results.folder(_folder_name(case, dynamic), case) as folder:
         _check(case, folder, "reduced", "dem")
         with progress(console, "reduced model") as tell:
             reduced = case.reduced(tell, dynamic=dynamic)
         # What it refuses is refused before YADE runs.
-        elements = case.definition.behaviour.ability("fe", case.definition)(case.definition) if finite else None
+        elements = require(case, FiniteElements).fe(case) if finite else None
         dem = _dem("compare", case, {"reduced": reduced}, folder, console)
         comparison = api.compare(reduced, dem)
         if elements is not None:
@@ -188,7 +185,7 @@ def _compare_case(case_file: Path, dynamic: bool, finite: bool, results: Results
         files = comparison.write(folder.staged)
         figures = save_figure(comparison.plot(), folder.staged, case.name)
         written = folder.publish(
-            [save("compare", case.definition, runs, folder.staged, comparison), files[0], *figures])
+            [save("compare", case, runs, folder.staged, comparison), files[0], *figures])
     _told(case, runs, console)
     print_comparison(case.title, comparison.rows, console)
     for note in comparison.notes:

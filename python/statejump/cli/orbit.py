@@ -6,8 +6,10 @@ from pathlib import Path
 
 import click
 
+from statejump import orbit
 from statejump.cli.terminal import QUIET, make_console
 from statejump.core.errors import NotAllowed
+from statejump.core.output import check_suffix, check_target
 
 
 def _interval(text: str) -> tuple[float, float]:
@@ -44,9 +46,6 @@ def orbit_command(file: Path, output: Path, period: float, shadow: tuple[str, ..
     Example:
       statejump orbit members.csv --period 5400 --shadow 1800:3900 -o orbit.csv
     """
-    from statejump import orbit
-    from statejump.core.output import check_suffix, check_target
-
     console = make_console(quiet)
     check_suffix("--output", output, ".csv")
     check_target(output)

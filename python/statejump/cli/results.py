@@ -163,11 +163,11 @@ def export_command(
         if form in ("csv", "all"):
             written += export_csv.write_all(result, there.staged)
         if form == "xlsx":
-            from statejump.results import export_xlsx  # takes a while to load
+            from statejump.results import export_xlsx  # openpyxl, 0.2 s, which may be missing
 
             written.append(export_xlsx.write(result, there.staged / f"{file.stem}.xlsx"))
         elif form != "csv":
-            from statejump.results import export_vtk, paraview_script  # VTK takes half a second to load
+            from statejump.results import export_vtk, paraview_script  # VTK, 0.5 s
 
             try:
                 with progress(console, "VTK files") as report:

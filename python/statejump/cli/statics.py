@@ -6,7 +6,9 @@ from pathlib import Path
 
 import click
 
+from statejump import api
 from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, print_shown
+from statejump.control.capabilities import JointStatics
 from statejump.core.results_folder import Results
 
 
@@ -21,12 +23,9 @@ def statics_command(case_file: Path, results: Results, quiet: bool) -> None:
     Example:
       statejump statics cases/statics_journal.toml
     """
-    from statejump import api
-    from statejump.case import Case
-
     console = make_console(quiet)
-    case = Case(loaded(case_file, "statics"))
-    with results.folder(case.name, case.definition) as folder:
+    case = loaded(case_file, JointStatics)
+    with results.folder(case.name, case) as folder:
         statics = api.statics(case)
         written = folder.publish(statics.write(folder.staged))
     print_shown(statics.told(), console)

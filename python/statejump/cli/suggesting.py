@@ -16,7 +16,7 @@ class Suggesting(click.Group):
         try:
             return super().resolve_command(ctx, args)
         except click.UsageError as unknown:
-            from difflib import get_close_matches
+            from difflib import get_close_matches  # for misspelt words, not to start the command
 
             near = get_close_matches(args[0], self.list_commands(ctx), n=1)
             if near and self.get_command(ctx, args[0]) is None:

@@ -20,6 +20,7 @@ from statejump.core.errors import Interrupted
 from statejump.core.progress import console, counted, on_console
 from statejump.core.results_folder import Results
 from statejump.core.tables import Shown
+from statejump.kinds import require
 from statejump.kinds.loading import found_case, load_case
 
 __all__ = ["CASE", "QUIET", "RESULTS", "WAIT", "CaseFile", "counted", "loaded", "make_console", "number",
@@ -76,11 +77,11 @@ def since_start_s() -> float:
     return time.clock_gettime(time.CLOCK_BOOTTIME) - started_s
 
 
-def loaded(case_file: Path, *abilities: str) -> Case:
-    """Load a case and refuse it if its kind lacks an ability that the command needs."""
+def loaded(case_file: Path, *capabilities: type) -> Case:
+    """Load a case and refuse it if its kind lacks a capability that the command needs."""
     case = load_case(case_file)
-    for ability in abilities:
-        case.behaviour.ability(ability, case)
+    for capability in capabilities:
+        require(case, capability)
     return case
 
 

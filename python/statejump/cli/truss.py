@@ -12,20 +12,24 @@ from typing import Any
 
 import click
 
-from statejump.case import Case
+from statejump.core.case import Case
 from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, print_shown, progress
 from statejump.cli.suggesting import Suggesting
 from statejump.cli.truss_answers import answers_command
 from statejump.cli.truss_files import TABLES, new_files
 from statejump.cli.truss_import import import_command
 from statejump.cli.truss_surface import surface_command
+from statejump.control.capabilities import Creaking
 from statejump.core.errors import NotWritten, StatejumpError
 from statejump.core.results_folder import Results
 from statejump.core.thermal import SHAPES
 from statejump.core.units import split_unit
-from statejump.kinds.truss.case import Revolute, TrussReduced
+from statejump.kinds import require
+from statejump.kinds.truss.sections import Revolute, TrussReduced
 from statejump.kinds.truss.generate.document import write
+from statejump.report.capabilities import CaseDrawing
 from statejump.schema.fields import fields_of, rule_of
+from statejump.schema.json_schema import head_line
 from statejump.schema.rules import folder_name
 from statejump.truss import LARGEST, LEAST, MAKERS
 
@@ -88,9 +92,7 @@ def _generator_command(kind: str, function: Callable[..., Case]) -> click.Comman
         ]
         line = " ".join(["statejump truss", kind, str(n), *given, *["--tables"] * tables, "-o",
                          shlex.quote(output.name)])
-        from statejump.schema.json_schema import head_line
-
-        write(case.definition.origin.data, output,
+        write(case.origin.data, output,
               [head_line(case.kind, output), f"# Made by: {line}", "# Units are in the names."], beside)
         joints = len(case.slider) + len(case.revolute)
         console.print(f"{output}: nodes {len(case.node)}, links {len(case.link)}, joints {joints}")
@@ -130,12 +132,12 @@ def draw_command(case_file: Path, names: bool, results: Results, quiet: bool) ->
     Example:
       statejump truss draw cases/trusses/ring_12.toml
     """
-    from statejump.core.figures import save
+    from statejump.core.figures import save  # matplotlib, 0.4 s; one command of many draws
 
     console = make_console(quiet)
-    case = loaded(case_file, "draw")
+    case = loaded(case_file, CaseDrawing)
     with results.folder(case.name, case) as folder:
-        drawn = case.behaviour.ability("draw", case)(case, names=names)
+        drawn = require(case, CaseDrawing).draw(case, names=names)
         written = folder.publish(save(drawn, folder.staged, f"{case.name}_truss"))
     console.print(f"drawing: {', '.join(str(path) for path in written)}")
 
@@ -154,10 +156,10 @@ def creak_command(case_file: Path, node: str, results: Results, quiet: bool) -> 
       statejump truss creak cases/trusses/chain_10.toml --node N10
     """
     console = make_console(quiet)
-    case = loaded(case_file, "creak")
+    case = loaded(case_file, Creaking)
     with results.folder(f"{case.name}_creak", case) as folder:
         with progress(console, "motion") as tell:
-            found = case.behaviour.ability("creak", case)(case, node, tell)
+            found = require(case, Creaking).creak(case, node, tell)
         written = folder.publish(found.write(folder.staged))
     print_shown(found.told(), console)
     console.print(f"results: {', '.join(str(path) for path in written)}")

@@ -9,10 +9,12 @@ from pathlib import Path
 import click
 
 from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, progress
+from statejump.control.capabilities import DesignAnswers
 from statejump.core.errors import Interrupted, NotAllowed, Range
 from statejump.core.results_folder import Results
 from statejump.core.progress import Tell
 from statejump.core.units import plain
+from statejump.kinds import require
 from statejump.schema.rules import WHOLE, Rule
 
 FRAMES = Rule(WHOLE, allowed=Range(0, 1_000_000))
@@ -50,7 +52,7 @@ def answers_command(
       statejump truss answers cases/trusses/mast_6.toml --cycles 5 --output node:R6 --each
     """
     console = make_console(quiet)
-    case = loaded(case_file, "answers")
+    case = loaded(case_file, DesignAnswers)
 
     def phase(label: str) -> AbstractContextManager[Tell]:
         return progress(console, f"{case.name}, {label}")
@@ -58,7 +60,7 @@ def answers_command(
     try:
         with results.folder(folder_of(case.name, output), case) as folder:
             FRAMES.check("frames", frames)
-            found = case.behaviour.ability("answers", case)(
+            found = require(case, DesignAnswers).answers(
                 case, output=output, cycles=cycles, each=each, step=step, sensitivity=not skip_sensitivity, phase=phase,
             )
             written = folder.publish(found.write(folder.staged, frames, phase))

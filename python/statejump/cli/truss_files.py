@@ -8,6 +8,8 @@ from typing import Any
 
 from statejump.core.errors import StatejumpError
 from statejump.core.output import check_suffix, check_target
+from statejump.kinds.truss.generate.document import table_path
+from statejump.kinds.truss.sections import sections_in_files
 
 # Of the option --tables.
 TABLES: dict[str, Any] = {
@@ -23,9 +25,6 @@ def new_files(output: Path, tables: bool, force: bool) -> tuple[str, ...]:
     :param force: whether files may be overwritten
     :raises StatejumpError: one of the files is there already, or cannot be written
     """
-    from statejump.kinds.truss.case import sections_in_files
-    from statejump.kinds.truss.generate.document import table_path
-
     check_suffix("--output", output, ".toml")
     beside = sections_in_files() if tables else ()
     for path in (output, *(table_path(output, section) for section in beside)):

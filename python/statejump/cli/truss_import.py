@@ -5,17 +5,17 @@ from __future__ import annotations
 import os
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from statejump.cli.terminal import QUIET, make_console, print_table
 from statejump.cli.truss_files import TABLES, new_files
 from statejump.core.errors import NotAllowed, StatejumpError, printable
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.importing import Units
-
+from statejump.kinds.loading import parse_case
+from statejump.kinds.truss.generate.document import write
+from statejump.kinds.truss.importing import SYSTEMS, Options, Units, case_document, checked, hints, read, summary
+from statejump.schema.json_schema import head_line
+from statejump.schema.rules import folder_name
 
 # Keys whose number is out of range where the units of a deck are others than SI.
 UNIT_KEYS = ("cross_section_area_m2", "young_modulus_Pa", "density_kg_per_m3", "position_m", "mass_kg")
@@ -60,8 +60,6 @@ def _refuse_units(file: Path, given: dict[str, str | float | None]) -> None:
 
 
 def _units(system: str | None, length: float | None, force: float | None) -> Units:
-    from statejump.kinds.truss.importing import SYSTEMS, Units
-
     if system is None:
         return Units(length or 1.0, force or 1.0)
     for option, value in (("--length-unit", length), ("--force-unit", force)):
@@ -136,12 +134,6 @@ def import_command(
       statejump truss import mast.bdf -o mast.toml --length-unit 0.001
       statejump truss import mast.bdf -o mast.toml --members-file day.csv --reference-temperature 293.15 --lead-in 3600
     """
-    from statejump.kinds.loading import parse_case
-    from statejump.kinds.truss.generate.document import write
-    from statejump.kinds.truss.importing import Options, case_document, checked, hints, read, summary
-    from statejump.schema.json_schema import head_line
-    from statejump.schema.rules import folder_name
-
     console = make_console(quiet)
     beside = new_files(output, tables, force)
     deck = read(file, form, bars, Options(frozenset(name.lstrip("*").upper() for name in ignored), beams_as_bars, step,

@@ -8,12 +8,17 @@ from typing import TYPE_CHECKING
 import click
 import numpy as np
 
+from statejump import surface
+from statejump.campaign.outputs import unit
 from statejump.cli.terminal import QUIET, RESULTS, CaseFile, loaded, make_console, print_shown, undivided
 from statejump.core.errors import MissingKey, NotAllowed, StatejumpError
 from statejump.core.results_folder import Results
 from statejump.core.table_files import SUFFIXES, read_columns
 from statejump.core.tables import Shown, write_columns, write_csv
 from statejump.core.units import plain
+from statejump.kinds import require
+from statejump.kinds.protocol import ReducedModel
+from statejump.surface import repeatability, told
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -62,9 +67,6 @@ def surface_command(
       statejump truss surface cases/trusses/umbrella_8.toml
       statejump truss surface nodes.csv --focal-length 2.5 --zernike 36
     """
-    from statejump import surface
-    from statejump.surface import told
-
     console = make_console(quiet)
     if (samples is None) != (column is None):
         raise MissingKey("--column" if column is None else "--samples", "--samples and --column go together")
@@ -80,7 +82,7 @@ def surface_command(
             for option, given in (("--axis", axis), ("--focal-length", focal_length)):
                 if given is not None:
                     raise NotAllowed(option, beside="beside a case", cause="its section [reflector] says it")
-            case = loaded(file, "reduced")
+            case = loaded(file, ReducedModel)
             name, notes = case.name, list(case.thermal_notes)
             design, states, history = _of_case(case, measure, console)
         tables = {state: [*told.state_rows(design, moved, measure, direction), *told.zernike_rows(design, moved, terms)]
@@ -115,11 +117,9 @@ def _of_case(
 ) -> tuple[Design, dict[str, np.ndarray], dict[str, np.ndarray]]:
     """Return the surface of a case, its displacements where it is farthest from its design and at the end, and its
     history."""
-    from statejump import surface
-
     design, nodes = surface.reflector_of(case)
     with undivided(console, f"{case.name}, reduced model") as tell:
-        run = case.behaviour.ability("reduced", case)(case, tell)
+        run = require(case, ReducedModel).reduced(case, tell)
     history = surface.history(run, measure)
     moves = np.asarray(run.history["position_m"].values)[:, nodes] - design.position_m
     worst = int(np.argmax(history["rms_design_m"]))
@@ -134,9 +134,6 @@ def _shown(title: str, rows: list[tuple[str, str, float]]) -> Shown:
 
 
 def _repeatability(samples: Path, column: str, share: float, length_m: float) -> str:
-    from statejump.campaign.outputs import unit
-    from statejump.surface import repeatability
-
     columns = read_columns(samples)
     lengths = [name for name in columns if unit(name) == "m" and np.issubdtype(columns[name].dtype, np.number)]
     if column not in lengths:

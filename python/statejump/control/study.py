@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from statejump.core import libraries
 from statejump.core.case import Case
 from statejump.core.errors import NotAllowed
 from statejump.core.tables import write_csv, write_json
@@ -132,7 +133,7 @@ class Study:
 
     def frame(self) -> pandas.DataFrame:
         """Return all that was swept as a table, units in the names of its columns."""
-        import pandas
+        pandas = libraries.pandas()
 
         return pandas.DataFrame(self.rows(), columns=self.columns())
 
@@ -256,3 +257,11 @@ def write(case_name: str, study: Study, folder: Path) -> list[Path]:
         "remarks": study.remarks,
     })
     return [table, summary]
+
+
+def with_notes(study: Callable[..., Study], case: Case, **settings: Any) -> Study:
+    """Return a study of a case that has a state jump, with the notes on its temperature program."""
+    case.need_jump("'statejump control'")
+    found = study(case, **settings)
+    found.remarks += case.thermal_notes
+    return found

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The definition of a case: what all kinds have in common, header and temperature program."""
+"""A case: header and temperature program, which all kinds have, and what one can do with it."""
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from statejump.core import thermal as programs
 from statejump.core.errors import NotAllowed, StatejumpError
+from statejump.core.later import Later
 from statejump.core.thermal import CaseThermal, Ending
 from statejump.schema.fields import CHOICE, Section, definition, evolved, fields_of, section, text
 from statejump.schema.item_tables import with_rows
-from statejump.schema.paths import set_value
+from statejump.schema.paths import set_value, value_of
 from statejump.schema.rules import FOLDER_NAME
 
 if TYPE_CHECKING:
@@ -21,11 +22,18 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from statejump import _engine
-    from statejump.core.temperature_files import MemberProgram
-    from statejump.core.thermal import Thermal
-    from statejump.kinds.protocol import Kind
+    from statejump.core.run import Run
+    from statejump.core.thermal import MemberProgram, Thermal
 
-__all__ = ["CHOICE", "Case", "CaseHeader", "Origin"]
+__all__ = ["CHOICE", "Case", "CaseHeader", "Origin", "Progress"]
+
+Progress = bool | Callable[[float], None]
+# Names of sections of a kind that are methods of all cases; the attribute is called NAME_settings.
+_METHODS = ("reduced", "dem")
+_PARSED, _KIND = Later("statejump.kinds.loading:parse_case"), Later("statejump.kinds:of")
+_TEXT, _SAVED = Later("statejump.core.case_files:text_of"), Later("statejump.core.case_files:save")
+_HTML = Later("statejump.core.html:case_html")
+_RUN, _PATHS, _CHECKED = (Later(f"statejump.kinds.running:{name}") for name in ("run", "quasi_static", "check_dem"))
 
 
 @definition
@@ -64,10 +72,16 @@ class Origin:
 
 @definition
 class Case(Section):
-    """A whole case in SI units, immutable. Each kind has its own sections. What one can do with a case is the same
-    for all kinds, see :class:`statejump.Case`.
+    """A case in SI units, checked as a whole and immutable, and what one can do with it.
+
+    :func:`statejump.load` makes it.
+
+    Each kind has its own class with its own sections. They are attributes, ``case.joint.friction_coefficient``;
+    ``case["dem.threads"]`` reaches every key, also those of the sections ``[reduced]`` and ``[dem]``, whose names are
+    those of the models here: as attributes they are ``case.reduced_settings`` and ``case.dem_settings``.
     """
 
+    NAMED: ClassVar[bool] = True
     KIND: ClassVar[str]
     # Keys that once stood elsewhere, by that place; both are understood, see :func:`statejump.schema.paths.current`.
     MOVED: ClassVar[Mapping[str, str]] = {}
@@ -76,6 +90,16 @@ class Case(Section):
 
     case: CaseHeader = section(CaseHeader, required=True)
     thermal: CaseThermal = section(CaseThermal, required=True)
+
+    if TYPE_CHECKING:
+        # Sections of the kind, for programs that check types: ``statejump.load`` returns a case of any kind.
+        def __getattr__(self, name: str) -> Any: ...
+
+    def __init_subclass__(cls) -> None:
+        for name in _METHODS:
+            if name in vars(cls).get("__annotations__", {}):
+                raise TypeError(f"{cls.__name__}.{name}: a case has a method of that name; call the attribute "
+                                f"{name}_settings and declare it with section(..., name={name!r})")
 
     def __attrs_post_init__(self) -> None:
         # What nothing says of the period is settled here, so that every reader finds a number.
@@ -87,7 +111,8 @@ class Case(Section):
         object.__setattr__(self, "_ending", ending)
 
     def __getstate__(self) -> dict[str, Any]:
-        kept = {*fields_of(type(self)), "_ending", "_origin"}  # what else is there was derived, partly by the engine
+        fields = (attribute.name for attribute in fields_of(type(self)).values())
+        kept = {*fields, "_ending", "_origin"}  # what else is there was derived, partly by the engine
         return {name: value for name, value in vars(self).items() if name in kept}
 
     def _given_programs(self) -> Sequence[Thermal | MemberProgram]:
@@ -133,13 +158,70 @@ class Case(Section):
         found: Origin | None = self.__dict__.get("_origin")
         if found is not None:
             return found
-        return Origin(self.as_file())
+        return Origin(self.to_dict())
 
-    def as_file(self) -> dict[str, Any]:
-        """Return sections and keys with all defaults as a file of this kind may have them: sections that the case lacks
-        and lists without items are left out."""
-        return {name: part for name, part in self.to_dict().items()
+    def with_defaults(self) -> dict[str, Any]:
+        """Return all sections and keys with all defaults, also those that no file has."""
+        return super().to_dict()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return sections and keys with all defaults, as a dict that :func:`statejump.load` takes: sections that the
+        case lacks and lists without items are left out."""
+        return {name: part for name, part in self.with_defaults().items()
                 if name not in self.NOT_IN_FILE and part is not None and part != []}
+
+    def to_toml(self) -> str:
+        """Return the case as the text of a case file, with the keys that were given and without defaults.
+
+        :raises NotAllowed: it holds the histories of members, which stand in a file of their own
+        """
+        text: str = _TEXT(self)
+        return text
+
+    def save(self, path: str | Path) -> Path:
+        """Write the case as a case file, histories of members as a table beside it; return its path.
+
+        :raises NotWritten: it cannot be written
+        :raises NotAllowed: the name does not end with ``.toml``
+        """
+        written: Path = _SAVED(self, Path(path))
+        return written
+
+    def reduced(self, progress: Progress = False, *, dynamic: bool = False) -> Run:
+        """Run the reduced model.
+
+        :param progress: True: show it on standard error; or what is called with the finished share, 0 to 1
+        :param dynamic: with inertia, where the reduced model has none without being asked: the motion of a truss
+        :raises StatejumpError: the kind has no such reduced model, or the run could not be finished
+        """
+        run: Run = _RUN(self, "dynamic" if dynamic else "reduced", progress)
+        return run
+
+    def quasi_static(self) -> Any:
+        """Return the paths of infinitely slow heating, of a case whose reduced model has inertia: a loaded rib, with
+        rigid and, where its laws allow, elastic links.
+
+        :raises StatejumpError: the kind has no such paths, or nothing loads the joint at the start
+        """
+        return _PATHS(self)
+
+    def dem(self, progress: Progress = False) -> Run:
+        """Run the case in YADE, in a process of its own.
+
+        :param progress: True: show it on standard error; or what is called with the finished share, 0 to 1
+        :raises StatejumpError: the kind has no DEM, YADE is missing or failed
+        :raises Interrupted: Ctrl-C; its ``run`` has the samples so far
+        """
+        self.check_dem()
+        run: Run = _RUN(self, "dem", progress)
+        return run
+
+    def check_dem(self) -> None:
+        """Check what :meth:`dem` needs, as far as it is known before anything is solved.
+
+        :raises StatejumpError: the kind has no DEM, the DEM cannot represent a part, or YADE is missing
+        """
+        _CHECKED(self)
 
     def with_origin(self, origin: Origin) -> Case:
         """Say where the case comes from, and return the case itself."""
@@ -196,28 +278,46 @@ class Case(Section):
         """Return the case with other values, checked as a whole.
 
         :param changes: value by key: ``section.key`` as in the case file, ``section.item.key`` of an item of a
-            list, ``section.*.key`` of all of them, ``section.joint*.key`` of those whose name fits
+            list, ``section.*.key`` of all of them, ``section.joint*.key`` of those that fit; None takes a key away, so
+            that its default holds
         :raises StatejumpError: there is no such key, or the case is not allowed with these values
         """
-        from statejump.kinds.loading import parse_case
-
         origin, data = self.origin, deepcopy(self.origin.document)
         for path, value in changes.items():
             set_value(type(self), data, path, value)
-        return parse_case(data, file=origin.file, text="", files_from=origin.folder)
+        made: Case = _PARSED(data, file=origin.file, text="", files_from=origin.folder)
+        return made
 
     def __getitem__(self, path: str) -> Any:
-        """Return the value of ``section.key``, or of ``section.item.key`` of an item of a list."""
-        from statejump.schema.paths import value_of
+        """Return the value of ``section.key``, or of ``section.item.key`` of an item of a list.
 
+        :raises StatejumpError: there is no such key or item
+        """
         return value_of(self, path)
 
     @property
-    def behaviour(self) -> Kind[Any]:
-        """The kind as an object: everything that can be done with the case."""
-        from statejump.kinds import kind
+    def behaviour(self) -> Any:
+        """The object of its kind, see :class:`statejump.Kind`."""
+        return _KIND(self)
 
-        return kind(self.KIND)
+    @property
+    def definition(self) -> Case:
+        """The case itself, for scripts of earlier versions."""
+        return self
+
+    def __dir__(self) -> list[str]:
+        model = type(self)
+        return sorted({*super().__dir__(), *fields_of(model)}.difference(model.NOT_IN_FILE))
+
+    def __hash__(self) -> int:
+        return hash((self.kind, self.name))
+
+    def __repr__(self) -> str:
+        return f"Case({self.name!r}, {self.kind})"
+
+    def _repr_html_(self) -> str:
+        html: str = _HTML(self)
+        return html
 
 
 def no_length_left(key: str, thermal_expansion_per_K: float, case: Case) -> None:

@@ -12,8 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 
-import numpy as np
-
+from statejump.core.conversion import SAME, Conversion
 from statejump.core.errors import StatejumpError, UnknownKey
 from statejump.core.units import split_unit
 
@@ -25,26 +24,6 @@ QUANTITIES = {"m": "length", "N": "force", "s": "time", "K": "temperature", "rad
 _BRACKETS = (re.compile(r"(.*?)\s*\[([^\[\]]*)\]"), re.compile(r"(.*?)\s*\(([^()]*)\)"))
 _SLASH = re.compile(r"(.*?)\s*/\s*(.+)")
 NO_UNIT = ("", "-", "1")
-
-
-@dataclass(frozen=True)
-class Conversion:
-    """Numbers of one unit become those of another: x · factor/divisor + offset. The divisor keeps 12.5 mm at 0.0125 m
-    exactly as if it were written so."""
-
-    factor: float = 1.0
-    divisor: float = 1.0
-    offset: float = 0.0
-
-    def __call__(self, values: np.ndarray) -> np.ndarray:
-        if self.factor != 1:
-            values = values * self.factor
-        if self.divisor != 1:
-            values = values / self.divisor
-        return values + self.offset if self.offset else values
-
-
-SAME = Conversion()
 
 
 @dataclass(frozen=True)
@@ -145,6 +124,6 @@ def conversion(unit: str, wanted: str, change: bool = False) -> Conversion | Non
     """
     if unit == wanted:
         return SAME
-    from statejump.core import unit_library
+    from statejump.core import unit_library  # pint, 0.3 s; few tables need it
 
     return unit_library.conversion(unit, wanted, change)

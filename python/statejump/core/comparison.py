@@ -8,7 +8,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from statejump.core import libraries
 from statejump.core.errors import NotAllowed
+from statejump.core.later import Later
 from statejump.core.run import Run
 from statejump.core.tables import write_json, write_rows
 
@@ -24,6 +26,8 @@ CLOSED_FORM, REDUCED, DEM, FE = "closed_form", "reduced", "dem", "fe"
 # Of two runs of one model, or of two files.
 FIRST, SECOND = "first", "second"
 SIDES = (CLOSED_FORM, REDUCED, DEM, FE, FIRST, SECOND)
+_DRAWN, _HTML = Later("statejump.core.figures:drawn"), Later("statejump.core.html:comparison_html")
+_SAVED = Later("statejump.results.record:save_as")
 
 
 @dataclass(frozen=True)
@@ -148,15 +152,13 @@ class Comparison:
 
     def frame(self) -> pandas.DataFrame:
         """Return a row per compared quantity."""
-        import pandas
+        pandas = libraries.pandas()
 
         return pandas.DataFrame(table(self.rows))
 
     def plot(self, axes: Axes | Sequence[Axes] | None = None) -> Figure:
         """Draw the models on top of each other; see :meth:`statejump.Run.plot`."""
-        from statejump.core.figures import drawn
-
-        return drawn(self.case, list(self.models.values()), axes)
+        return _DRAWN(self.case, list(self.models.values()), axes)
 
     def save(self, path: str | Path) -> Path:
         """Write both models as a result file (HDF5), which :func:`statejump.read` reads; return its path.
@@ -164,12 +166,11 @@ class Comparison:
         :raises NotWritten: it cannot be written
         :raises NotAllowed: its name does not end with ``.h5``, or these are two runs of one model
         """
-        from statejump.results.record import save_as
-
         if FIRST in self.models:
             raise NotAllowed("path", str(path), "a result file holds one run of a model; save both runs",
                              beside="for two runs of one model")
-        return save_as(Path(path), "compare", self.case, self.models, self)
+        written: Path = _SAVED(Path(path), "compare", self.case, self.models, self)
+        return written
 
     def write(self, folder: Path) -> list[Path]:
         """Write ``comparison.json`` and ``comparison.csv``."""
@@ -182,9 +183,8 @@ class Comparison:
         return f"Comparison({self.case.name}, {verdict})"
 
     def _repr_html_(self) -> str:
-        from statejump.core.html import comparison_html
-
-        return comparison_html(self)
+        html: str = _HTML(self)
+        return html
 
 
 def write_comparison_csv(rows: Sequence[Quantity], folder: Path) -> Path:

@@ -345,7 +345,7 @@ def fields(kind: str, message: str, exit_status: int, **details: Any) -> dict[st
 
 def to_json(failure: dict[str, Any]) -> str:
     """Return the fields of a failure as one line."""
-    import json
+    import json  # not to start the command
 
     line = json.dumps(failure, ensure_ascii=False, allow_nan=False)
     return _CONTROL.sub(lambda found: f"\\u{ord(found[0]):04x}", line)

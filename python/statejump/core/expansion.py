@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from statejump.core.errors import NotAllowed
-from statejump.core.temperature_files import MemberProgram
-from statejump.core.thermal import LARGEST_CHANGE_K, Thermal, rows
+from statejump.core.thermal import LARGEST_CHANGE_K, MemberProgram, Thermal, rows
 from statejump.schema.fields import Section, definition, numbers
 
 if TYPE_CHECKING:

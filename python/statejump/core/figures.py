@@ -20,6 +20,8 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from statejump.core.output import write_bytes
+from statejump.kinds import require
+from statejump.report.capabilities import RunSheet
 
 if TYPE_CHECKING:
     from statejump.core.case import Case
@@ -99,7 +101,7 @@ def drawn(case: Case, runs: Sequence[Run], axes: Axes | Sequence[Axes] | None = 
     :param axes: axes to draw into: they get the panels in their order; None: a new figure
     :return: the figure
     """
-    sheet: Sheet = case.behaviour.ability("sheet", case)(case, runs)
+    sheet: Sheet = require(case, RunSheet).sheet(case, runs)
     if axes is not None:
         given = [axes] if isinstance(axes, Axes) else list(np.ravel(np.asarray(axes, dtype=object)))
         for panel, place in zip((panel for panel in sheet.panels if panel is not None), given):

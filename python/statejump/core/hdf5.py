@@ -13,8 +13,11 @@ import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, Any
 
+import numpy as np
+
+from statejump.core import libraries
 from statejump.core.errors import Unreadable
 from statejump.core.output import write_bytes
 from statejump.core.reading import is_file
@@ -45,7 +48,7 @@ def made(path: Path) -> Iterator[h5py.File]:
 
     :raises NotWritten: it cannot be written
     """
-    import h5py
+    h5py = libraries.h5py()
 
     with h5py.File(path.name, "w", driver="core", backing_store=False, libver=("earliest", "v110"),
                    track_order=False) as file:
@@ -75,7 +78,7 @@ def opened(path: Path) -> Iterator[h5py.File]:
     try:
         with path.open("rb") as stream:
             _check(stream, path)
-            import h5py
+            h5py = libraries.h5py()
 
             with h5py.File(stream, "r") as file:
                 yield file
@@ -109,9 +112,9 @@ def objects(file: h5py.File, path: Path) -> dict[str, h5py.Group | h5py.Dataset]
     :raises Unreadable: an object of another kind, or one that stands at two places; a link that is not to an object of
         this file; numbers in another file; a data set that claims to hold more than its bytes can
     """
-    import h5py
+    h5py = libraries.h5py()
 
-    found: dict[str, h5py.Group | h5py.Dataset] = {}
+    found: dict[str, Any] = {}
     seen = {h5py.h5o.get_info(file.id).addr}
     size = path.stat().st_size
     groups = [("", file)]
@@ -139,8 +142,6 @@ def objects(file: h5py.File, path: Path) -> dict[str, h5py.Group | h5py.Dataset]
 
 def _check_texts(item: h5py.Group | h5py.Dataset, place: str, path: Path) -> None:
     """Raise Unreadable where a name or a text among the attributes is not UTF-8: no page could be written with it."""
-    import numpy as np
-
     texts = {place: place, **{f"{place}@{key}": value for key, value in item.attrs.items()}}
     for called, value in texts.items():
         try:
@@ -157,7 +158,7 @@ def _check_stored(item: h5py.Dataset, place: str, size: int, path: Path) -> int:
 
     :param size: bytes of the file, without those that stand for data sets that were not written
     """
-    import h5py
+    h5py = libraries.h5py()
 
     made = item.id.get_create_plist()
     if made.get_external_count() or made.get_layout() == h5py.h5d.VIRTUAL:

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from html import escape
-from typing import TYPE_CHECKING
 
+from statejump.core.case import Case
+from statejump.core.comparison import Comparison, sides
 from statejump.core.errors import StatejumpError
+from statejump.core.run import MODELS, Run
 from statejump.core.units import text, unit_of
-
-if TYPE_CHECKING:
-    from statejump.core.case import Case
-    from statejump.core.comparison import Comparison
-    from statejump.core.run import Run
+from statejump.kinds import has, require
+from statejump.report.capabilities import CaseText
 
 MOST_EVENTS = 12
 
@@ -33,14 +32,12 @@ def _title(run: Run) -> str:
 
 def case_html(case: Case) -> str:
     """Return a case in words, as HTML."""
-    sentences = case.behaviour.describe(case) if hasattr(case.behaviour, "describe") else []
+    sentences = require(case, CaseText).describe(case) if has(case, CaseText) else []
     return f"<h4>{escape(case.title)}</h4><p>{escape(' '.join(sentences))}</p>"
 
 
 def run_html(run: Run) -> str:
     """Return what sums up a run, as HTML."""
-    from statejump.core.run import MODELS
-
     rows = [(name, text(value, unit_of(name))) for name, value in sorted(run.summary.items())]
     events = [
         (event.kind, event.joint, text(event.temperature_change_K, "K"), text(event.time_s, "s"))
@@ -59,8 +56,6 @@ def run_html(run: Run) -> str:
 
 def comparison_html(comparison: Comparison) -> str:
     """Return the rows of a comparison and the verdict, as HTML."""
-    from statejump.core.comparison import sides
-
     known = sides(comparison.rows)
     rows = [
         (row.name, *(text(row.values[side], row.unit) if side in row.values else "" for side in known),

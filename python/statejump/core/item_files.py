@@ -17,8 +17,10 @@ from typing import Any
 import attrs
 import numpy as np
 
+from statejump.core import libraries
 from statejump.core.column_units import Column, matched
 from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey, Unreadable
+from statejump.core.hdf5 import objects
 from statejump.core.output import write_atomically
 from statejump.core.reading import is_file
 from statejump.core.table_files import SUFFIXES as TEXT_SUFFIXES, Place, Table, open_table, quoted
@@ -169,9 +171,7 @@ def _lists(table: Table, split: Sequence[Sequence[str]], width: int, place: Plac
 
 
 def _hdf5(path: Path, model: type[Section], words: Numbering) -> dict[str, np.ndarray | Texts]:
-    import h5py
-
-    from statejump.core.hdf5 import objects
+    h5py = libraries.h5py()
 
     try:
         if not h5py.is_hdf5(path):
@@ -185,7 +185,7 @@ def _hdf5(path: Path, model: type[Section], words: Numbering) -> dict[str, np.nd
 
 
 def _of_data_set(path: Path, column: Column, rule: Rule, data: Any, words: Numbering) -> np.ndarray | Texts:
-    import h5py
+    h5py = libraries.h5py()
 
     name = column.name
     lists = rule.form in (NUMBERS, TEXTS)

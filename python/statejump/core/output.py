@@ -13,13 +13,9 @@ import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import IO
 
-from statejump import _paths
 from statejump.core.errors import NotAllowed, NotWritten
-
-if TYPE_CHECKING:
-    from statejump.core.case import Case
 
 PARTIAL = ".partial"
 
@@ -140,19 +136,3 @@ def _replacing(path: Path) -> Iterator[int]:
             os.close(descriptor)
     except OSError as error:
         raise not_written(path, error) from None
-
-
-def made_by(command: str, case: Case) -> str:
-    """Return how a file was made, for its text: the command with the case file, relative to the current folder or as
-    the case that comes with the program is called.
-
-    :param command: as ``statejump hold``
-    """
-    file = case.origin.file
-    if file is None:
-        return f"`{command}` of case {case.name}, which was made in Python"
-    for folder in (Path.cwd(), _paths.SHARE):
-        if file.resolve().is_relative_to(folder.resolve()):
-            file = file.resolve().relative_to(folder.resolve())
-            break
-    return f"`{command} {file.as_posix()}`"

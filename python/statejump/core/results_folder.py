@@ -173,7 +173,7 @@ def _sync(paths: Sequence[Path]) -> None:
         for path in paths:
             synced(path)
         return
-    from concurrent.futures import ThreadPoolExecutor
+    from concurrent.futures import ThreadPoolExecutor  # for sets of many files
 
     with ThreadPoolExecutor(SYNCED_AT_ONCE) as pool:
         list(pool.map(synced, paths))

@@ -38,7 +38,7 @@ def _file(folder: Path, case: Case) -> str:
 
 
 def _checksum(case: Case) -> str:
-    text = json.dumps(case.to_dict(), sort_keys=True, default=attached_to_json)
+    text = json.dumps(case.with_defaults(), sort_keys=True, default=attached_to_json)
     return hashlib.sha256(text.encode()).hexdigest()
 
 

@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from statejump.core import libraries
 from statejump.core.errors import ABSENT, MissingPart, NotAllowed, StatejumpError, UnknownKey
+from statejump.core.later import Later
 from statejump.core.tables import write_columns
 from statejump.core.units import unit_of
 from statejump.schema.rules import suggestion
@@ -22,8 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from statejump.case import Case
-    from statejump.core.case import Case as Definition
+    from statejump.core.case import Case
 
 # What a contact does at a sample; the number is the place in this list.
 CONTACT_STATES = ("separated", "stick", "slip", "at_stop")
@@ -32,6 +33,8 @@ MODELS = {"reduced": "reduced model", "dem": "DEM"}
 GROUPS = ("history", "energy", "links", "contacts")
 AXES = ("x", "y", "z")
 Columns = Mapping[str, np.ndarray]
+_COLUMNS, _SAVED = Later("statejump.kinds:columns_of"), Later("statejump.results.record:save_as")
+_DRAWN, _HTML = Later("statejump.core.figures:drawn"), Later("statejump.core.html:run_html")
 
 
 class Parts(dict[str, Any]):
@@ -139,7 +142,7 @@ class Events(Sequence[Event]):
 
     def frame(self) -> pandas.DataFrame:
         """Return a row per event, units in the names of the columns."""
-        import pandas
+        pandas = libraries.pandas()
 
         return pandas.DataFrame([vars(event) for event in self._events], columns=list(Event.__dataclass_fields__))
 
@@ -192,7 +195,7 @@ class Run:
     events: Events
     summary: Mapping[str, float]
     names: Mapping[str, list[str]] = field(default_factory=dict)
-    case_of: Callable[[], Definition] | None = field(default=None, repr=False, compare=False)
+    case_of: Callable[[], Case] | None = field(default=None, repr=False, compare=False)
     warnings: tuple[str, ...] = ()
     complete: bool = True
     about: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
@@ -206,7 +209,7 @@ class Run:
                 object.__setattr__(self, name, Named(getattr(self, name), what))
 
     def __getstate__(self) -> dict[str, Any]:
-        case_of: Callable[[], Definition] | None = None
+        case_of: Callable[[], Case] | None = None
         if self.case_of is not None:
             try:
                 case_of = partial(_same, self.definition)
@@ -216,7 +219,7 @@ class Run:
         return {**state, "case_of": case_of, "native": None, "sampler": None}
 
     @cached_property
-    def definition(self) -> Definition:
+    def definition(self) -> Case:
         """What the case says that ran. :raises StatejumpError: this version does not understand it any more"""
         if self.case_of is None:
             raise ValueError("this run was made without a case")
@@ -225,9 +228,7 @@ class Run:
     @property
     def case(self) -> Case:
         """The case that ran. :raises StatejumpError: this version does not understand it any more"""
-        from statejump.case import Case
-
-        return Case(self.definition)
+        return self.definition
 
     @property
     def time_s(self) -> np.ndarray:
@@ -312,10 +313,7 @@ class Run:
 
     def _ordered(self, names: Mapping[str, Any]) -> list[str]:
         """Return names of columns in the order of the kind; those that it does not know last, by name."""
-        from statejump import kinds
-
-        kind = self.kind or self.definition.kind
-        known = kinds.kind(kind).COLUMNS if kind in kinds.names() else ("time_s", "temperature_change_K")
+        known = _COLUMNS(self.kind or self.definition.kind)
         return [name for name in known if name in names] + sorted(set(names).difference(known))
 
     def _items(self, name: str, column: Column) -> Iterator[tuple[str, np.ndarray]]:
@@ -332,7 +330,7 @@ class Run:
 
         :param groups: any of ``history``, ``energy``, ``links``, ``contacts``; see :meth:`flat`
         """
-        import pandas
+        pandas = libraries.pandas()
 
         return pandas.DataFrame(self.flat(groups))
 
@@ -346,9 +344,8 @@ class Run:
         :raises NotWritten: it cannot be written
         :raises NotAllowed: its name does not end with ``.h5``
         """
-        from statejump.results.record import save_as
-
-        return save_as(Path(path), self.model, self.definition, {self.model: self})
+        written: Path = _SAVED(Path(path), self.model, self.definition, {self.model: self})
+        return written
 
     def plot(self, axes: Axes | Sequence[Axes] | None = None) -> Figure:
         """Draw the run.
@@ -356,17 +353,14 @@ class Run:
         :param axes: axes to draw into, one or several: the figure's panels in their order; None: a new figure
         :return: the figure; matplotlib's backend is left alone
         """
-        from statejump.core.figures import drawn
-
-        return drawn(self.definition, [self], axes)
+        return _DRAWN(self.definition, [self], axes)
 
     def __repr__(self) -> str:
         return f"Run({MODELS.get(self.model, self.model)}, {len(self)} samples, {len(self.events)} events)"
 
     def _repr_html_(self) -> str:
-        from statejump.core.html import run_html
-
-        return run_html(self)
+        html: str = _HTML(self)
+        return html
 
 
 def columns_of(columns: Columns) -> tuple[dict[str, Column], dict[str, Column]]:

@@ -102,7 +102,7 @@ class Table:
         units = [cell.strip().strip("[]()").strip() for cell in row[:len(names)]]
         if len(units) < len(names) or any(_NUMERIC.search(unit) for unit in units) or not any(units):
             return names
-        from statejump.core.unit_library import is_unit
+        from statejump.core.unit_library import is_unit  # pint, 0.3 s; few tables need it
 
         if not all(unit in NO_UNIT or is_unit(unit) for unit in units):
             return names

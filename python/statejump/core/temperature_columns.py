@@ -10,8 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from statejump.core.column_units import Column, Conversion, conversion, matched, splits
+from statejump.core import libraries
+from statejump.core.column_units import Column, conversion, matched, splits
+from statejump.core.conversion import Conversion
 from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey, Unreadable
+from statejump.core.hdf5 import objects
 from statejump.core.reading import is_file
 from statejump.core.table_files import SUFFIXES as TEXT_SUFFIXES, Table, numbers_of, open_table, quoted
 from statejump.schema.toml import LARGEST_BYTES
@@ -170,9 +173,7 @@ def _values(table: Table, line: int, row: Sequence[str], places: Sequence[int]) 
 
 
 def _hdf5(path: Path) -> Read:
-    import h5py
-
-    from statejump.core.hdf5 import objects
+    h5py = libraries.h5py()
 
     try:
         if not h5py.is_hdf5(path):
@@ -200,7 +201,7 @@ def _hdf5(path: Path) -> Read:
 
 
 def _array(found: Mapping[str, Any], name: str, dimension: int, path: Path) -> Numbers:
-    import h5py
+    h5py = libraries.h5py()
 
     item = found.get(f"/{name}")
     if not isinstance(item, h5py.Dataset) or item.dtype.kind not in "iuf" or len(item.shape or ()) != dimension:
@@ -209,7 +210,7 @@ def _array(found: Mapping[str, Any], name: str, dimension: int, path: Path) -> N
 
 
 def _names(found: Mapping[str, Any], path: Path) -> tuple[str, ...]:
-    import h5py
+    h5py = libraries.h5py()
 
     item = found.get("/members")
     if not isinstance(item, h5py.Dataset) or len(item.shape or ()) != 1 or h5py.check_string_dtype(item.dtype) is None:

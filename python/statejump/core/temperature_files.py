@@ -9,7 +9,6 @@ from __future__ import annotations
 import difflib
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,7 +20,7 @@ from statejump.core.plausibility import warn_of_reference
 from statejump.core.table_files import quoted
 from statejump.core.temperature_columns import Read, listed, of_means, read_columns, refuse
 from statejump.core.thermal import (
-    KEYS_OF_FILES, LARGEST_CHANGE_K, LONGEST_TABLE_S, SAME_TEMPERATURE_K, SAME_TIME, Thermal,
+    KEYS_OF_FILES, LARGEST_CHANGE_K, LONGEST_TABLE_S, SAME_TEMPERATURE_K, SAME_TIME, MemberProgram, Thermal,
 )
 from statejump.schema.fields import Attached, Section, fields_of, rule_of
 
@@ -29,25 +28,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Numbers = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class MemberProgram:
-    """The table of one member, as a temperature program has it."""
-
-    table_time_s: Numbers
-    table_temperature_change_K: Numbers
-    cycles: int
-    shape: str = "table"
-
-    @property
-    def period_s(self) -> float:
-        """Length of a cycle [s]."""
-        return float(self.table_time_s[-1])
-
-    def repeated(self, cycles: int) -> MemberProgram:
-        """Return the program with another number of cycles."""
-        return MemberProgram(self.table_time_s, self.table_temperature_change_K, cycles)
 
 
 class Histories(Attached):

@@ -9,20 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from statejump import _engine
 from statejump.core.errors import ABSENT, MissingKey, NotAllowed
 from statejump.schema.fields import (
-    CHOICE, Section, choice, definition, fields_of, numbers, parameter, rule_of, switch, text, whole,
+    CHOICE, Section, choice, definition, evolved, fields_of, numbers, parameter, rule_of, switch, text, whole,
 )
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from statejump import _engine
-    from statejump.core.temperature_files import MemberProgram
 
 SHAPES = ("triangle", "half_sine", "sine", "table")
 PERIOD_s = 1.0  # where nothing says how long a cycle lasts
@@ -66,6 +65,10 @@ class Thermal(Section):
         None, "s", 0, LONGEST_TABLE_S, "straight way back from the file's last row; none", above=True
     )
 
+    def repeated(self, cycles: int) -> Self:
+        """Return the program with another number of cycles."""
+        return evolved(self, cycles=cycles)
+
 
 @definition
 class CaseThermal(Thermal):
@@ -77,6 +80,25 @@ class CaseThermal(Thermal):
 
     return_to_reference: bool = switch(
         True, "whether a table that ends elsewhere returns to ΔT = 0 at its mean rate, or until period_s")
+
+
+@dataclass(frozen=True)
+class MemberProgram:
+    """The table of one member, as a temperature program has it."""
+
+    table_time_s: NDArray[np.float64]
+    table_temperature_change_K: NDArray[np.float64]
+    cycles: int
+    shape: str = "table"
+
+    @property
+    def period_s(self) -> float:
+        """Length of a cycle [s]."""
+        return float(self.table_time_s[-1])
+
+    def repeated(self, cycles: int) -> MemberProgram:
+        """Return the program with another number of cycles."""
+        return MemberProgram(self.table_time_s, self.table_temperature_change_K, cycles)
 
 
 @dataclass(frozen=True)
@@ -285,6 +307,4 @@ def returns_s(programs: Sequence[Thermal | MemberProgram], period_s: float) -> N
 
 def program(thermal: Thermal | MemberProgram, period_s: float) -> _engine.ThermalProgram:
     """Return a temperature program as the engine's."""
-    from statejump import _engine
-
     return _engine.ThermalProgram(**parameters(thermal, period_s))

@@ -41,7 +41,7 @@ class Samples:
 
 def common_values(case: Case, number_of_steps: int) -> dict[str, Any]:
     """Return what the YADE script needs of a case of any kind, as plain values; keys as in the case file."""
-    values = case.to_dict()
+    values = case.with_defaults()
     values["period_s"] = case.period_s
     values["thermal"].update(parameters(case.thermal, case.period_s))
     values["number_of_samples"] = case.samples_per_cycle * case.thermal.cycles
@@ -57,7 +57,7 @@ def stepper() -> Any:
 
 def find_yade() -> str:
     """Return the yade command: STATEJUMP_YADE if set, otherwise from PATH."""
-    from shutil import which  # as the others below: cases know this module, few of them start YADE
+    from shutil import which  # cases know this module, few of them start YADE
 
     if not _paths.YADE:
         raise FailedRun("YADE is missing", cause="this statejump was built without it",
@@ -73,7 +73,7 @@ def find_yade() -> str:
 def _dying_with_us() -> Callable[[], None]:
     """Return what a new process calls so that the kernel kills it with the thread that waits for it: a YADE whose
     caller was killed would run on."""
-    import ctypes
+    import ctypes  # as which
 
     prctl = ctypes.PyDLL(None).prctl  # found before the process is there, which shall do as little as it can
 
@@ -107,7 +107,7 @@ def run(case: Case, values: Mapping[str, Any], make_run: MakeRun, tell: Tell) ->
 
 def execute(values: Mapping[str, Any], tell: Tell) -> Samples:
     """Run a resolved case in YADE; see :func:`run`. Of an interrupted one ``run`` is :class:`Samples`."""
-    from statejump.core.scratch import scratch
+    from statejump.core.scratch import scratch  # as which
 
     name, threads = values["case"]["name"], values["dem"]["threads"]
     command = [find_yade(), "-n", "-x", f"-j{threads}", str(_paths.YADE_SCRIPTS / "runner" / "run_case.py")]
@@ -141,7 +141,7 @@ def execute(values: Mapping[str, Any], tell: Tell) -> Samples:
 
 def _watch(command: list[str], environment: dict[str, str], tell: Tell) -> None:
     """Run the command and pass its progress on. :raises FailedRun: what went wrong"""
-    import subprocess
+    import subprocess  # as which
 
     failure: dict[str, Any] | None = None
     finished, last = False, ""

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from statejump.core import libraries
 from statejump.core.errors import StatejumpError, Unreadable
 from statejump.core.hdf5 import made, objects
 from statejump.core.reading import is_file
@@ -35,7 +36,7 @@ def read(path: str | Path) -> Problem:
 
     :raises Unreadable: no such file, not HDF5, another problem than a local one, a part is missing or damaged
     """
-    import h5py
+    h5py = libraries.h5py()
 
     path = Path(path)
     if not is_file(path):
@@ -102,7 +103,7 @@ def _stored(file: h5py.File, size: int) -> list[Stored]:
 
 
 def _group(parent: h5py.Group, name: str) -> h5py.Group:
-    import h5py
+    h5py = libraries.h5py()
 
     found = parent.get(name)
     if not isinstance(found, h5py.Group):
@@ -111,7 +112,7 @@ def _group(parent: h5py.Group, name: str) -> h5py.Group:
 
 
 def _numbers(parent: h5py.Group, name: str, whole: bool) -> NDArray[Any]:
-    import h5py
+    h5py = libraries.h5py()
 
     place = f"{parent.name}/{name}"
     found = parent.get(name)
@@ -137,7 +138,7 @@ def _number(parent: h5py.Group, name: str) -> int:
 
 
 def _matrix(parent: h5py.Group, name: str, shape: tuple[int, int]) -> scipy.sparse.spmatrix:
-    from scipy import sparse
+    sparse = libraries.sparse()
 
     group = _group(parent, name)
     rows, columns, kind = (_number(group, key) for key in ("m", "n", "nz"))
@@ -185,7 +186,7 @@ def write(path: str | Path, problem: Problem, solution: Solution | Stored | None
 
     :raises NotWritten: the file cannot be written
     """
-    from scipy import sparse
+    sparse = libraries.sparse()
 
     columns = sparse.csc_matrix(problem.delassus)
     with made(Path(path)) as file:

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from statejump.core import libraries
 from statejump.core.errors import NotAllowed, Range, StatejumpError
+from statejump.core.later import Later
 from statejump.core.tables import Shown, write_columns, write_csv, write_text
 from statejump.core.units import plain
 from statejump.identification import paste
@@ -23,6 +25,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+_DRAWN, _SAVED = Later("statejump.identification.picture:drawn"), Later("statejump.core.figures:save")
+_TABLE = Later("statejump.core.html:table")
 AUTO = "auto"
 CONFIDENCE = Range(0.5, 0.999)
 # A difference of BIC below this is "not worth more than a bare mention" (Kass and Raftery, JASA 90, 1995).
@@ -180,7 +184,7 @@ class Identification:
 
     def frame(self, table: str = "parameters") -> pandas.DataFrame:
         """Return a table: ``parameters``, ``models``, or ``rows`` of the fit."""
-        import pandas
+        pandas = libraries.pandas()
 
         if table == "parameters":
             return pandas.DataFrame(self._rows_of_parameters(), columns=PARAMETER_COLUMNS)
@@ -199,9 +203,7 @@ class Identification:
 
     def plot(self, axes: tuple[Axes, Axes] | None = None) -> Figure:
         """Draw loop, fit and residual; into two given axes, or into a new figure."""
-        from statejump.identification.picture import drawn
-
-        return drawn(self, axes)
+        return _DRAWN(self, axes)
 
     def told(self) -> list[Shown | str]:
         """Return what the command prints."""
@@ -219,8 +221,6 @@ class Identification:
 
     def write(self, folder: Path) -> list[Path]:
         """Write tables, section, distributions and picture into a folder; return the paths."""
-        from statejump.core.figures import save
-
         rows = folder / "fit.csv"
         write_columns(self._columns(), rows)
         note = [f"# {note}" for note in self.notes]
@@ -230,17 +230,15 @@ class Identification:
             write_text(folder / "joint.toml", [*self.joint().splitlines(), *note]),
             write_text(folder / "vary.toml", [f"# identified from {self.loop.name}: how well its loop knows this joint",
                                               *paste.vary(self.distributions())]),
-            *save(self.plot(), folder, "loop"),
+            *_SAVED(self.plot(), folder, "loop"),
         ]
 
     def __repr__(self) -> str:
         return f"Identification({self.loop.name!r}, {self.model}, {self.fit.rows:,} rows)"
 
     def _repr_html_(self) -> str:
-        from statejump.core.html import table
-
         head, *parts = (part for part in self.told() if isinstance(part, Shown))
-        return "".join(f"<h4>{part.title}</h4>{table(part.header, part.rows)}" for part in (*parts, head)) + "".join(
+        return "".join(f"<h4>{part.title}</h4>{_TABLE(part.header, part.rows)}" for part in (*parts, head)) + "".join(
             f"<p>{note}</p>" for note in self.notes)
 
 

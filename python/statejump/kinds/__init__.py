@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import os
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from statejump.core.case import Case
 from statejump.core.errors import StatejumpError
+from statejump.kinds.protocol import Capability, Kind, needed, supports
 from statejump.schema.rules import check_name
-
-if TYPE_CHECKING:
-    from statejump.kinds.protocol import Kind
 
 VARIABLE = "STATEJUMP_KINDS"
 # Where each kind's object is; its module is loaded when it is first asked for.
@@ -78,6 +77,29 @@ def kind(name: str) -> Kind[Any]:
     return _loaded[name]
 
 
-def kinds_that_can(ability: str) -> list[str]:
-    """Return the names of the kinds that have an ability."""
-    return [name for name in names() if kind(name).can(ability)]
+def of(case: Case) -> Kind[Any]:
+    """Return the kind of a case."""
+    return kind(case.KIND)
+
+
+def has(case: Case, protocol: type) -> bool:
+    """Whether the kind of a case has a capability."""
+    return supports(of(case), protocol)
+
+
+def require(case: Case, protocol: type[Capability]) -> Capability:
+    """Return the kind of a case as what has a capability.
+
+    :raises NotAllowed: it lacks the capability; the sentence names the kinds that have it
+    """
+    return needed(of(case), protocol, case)
+
+
+def names_of_kinds_with(protocol: type) -> list[str]:
+    """Return the names of the kinds that have a capability."""
+    return [name for name in names() if supports(kind(name), protocol)]
+
+
+def columns_of(name: str) -> tuple[str, ...]:
+    """Return the columns of a kind in the order of its CSV files; of a kind that is not known the common ones."""
+    return kind(name).COLUMNS if name in names() else ("time_s", "temperature_change_K")

@@ -13,9 +13,10 @@ from statejump.core.errors import StatejumpError
 from statejump.core.item_files import with_tables
 from statejump.core.temperature_files import with_files
 from statejump.kinds import kind, names
-from statejump.schema.fields import Section, definition, fields_of, section, section_of, structure
+from statejump.schema.fields import Section, definition, fields_of, section, section_of
 from statejump.schema.paths import plain, with_keys_moved
 from statejump.schema.rules import check_name
+from statejump.schema.structure import structure
 from statejump.schema.toml import read_toml
 
 SHIPPED = "cases"

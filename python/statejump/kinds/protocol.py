@@ -1,44 +1,165 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a kind of case is: one object with everything that knows the kind.
 
-A kind is a subclass of :class:`Kind` that has a name, a class of cases and the abilities below as methods. An
-ability that it lacks is not there, and what needs it refuses the case with one sentence.
+A kind is a subclass of :class:`Kind` that has a name, a class of cases and capabilities. A capability is a protocol of
+one method, or of methods that belong together. A kind that lacks one leaves its methods out, and what needs it refuses
+the case with one sentence. Capabilities of the layers on the right are :mod:`statejump.control.capabilities` (design)
+and :mod:`statejump.report.capabilities` (text, figures, page).
 
-==================  =====================================================================================
-``reduced``         ``(case, tell) -> Run``: the reduced model; ``tell`` takes the finished share
-``quasi_static``    ``(case)``: paths of infinitely slow heating, of a kind whose ``reduced`` has inertia
-``dynamic``         ``(case, tell) -> Run``: the reduced model with inertia, of a kind whose ``reduced`` has none
-``dem_input``       ``(case) -> dict``: what the scene in YADE needs, as plain values
-``dem_run``         ``(case, columns, about) -> Run``: a finished or interrupted DEM run
-``compare``         ``(case, reduced, dem) -> Comparison``
-``difference``      ``(case, first, second) -> list[Quantity]``: two runs of one model, at the same times
-``sheet``           ``(case, runs) -> Sheet``: figure of one run, or of two on top of each other
-``scene``           ``(case) -> dict``: what to draw of its parts, see :mod:`statejump.results.scene`
-``names``           ``(case) -> dict``: names of the items of columns
-``describe``        ``(case) -> list[str]``: the case in sentences
-``charts``          ``(case) -> list[Chart]``: curves on the page of ``statejump report``
-``event_reason``    ``(case, event, model, runs) -> str``: why only that model has an event; "": it is not known
-``page``            ``(result, case) -> Part | None``: a part of that page that only this kind has
-``outcomes``        ``(case, run) -> dict[str, float]``: what a campaign records of a run, by the names of ``OUTCOMES``
-``quick``           ``(case) -> Run``: the reduced model with as few samples as ``outcomes`` needs; else ``reduced``
-``told``            ``(case, runs) -> list``: what a command prints of runs, tables and lines
-``control``         ``(case, **settings) -> Study``: what makes the state jump smaller, :mod:`statejump.control`
-==================  =====================================================================================
-
-Further abilities are those of single commands and have their names: ``statics``, ``answers``, ``creak``,
-``convergence``, ``fe``, ``hold``, ``slow``, ``energy``, ``figures``, ``laws``, ``contact_problems``.
+A kind of the package names the functions of its methods by their places (:class:`.Later`), so that a command loads no
+more than it needs; a kind of one's own may have plain methods.
 """
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import Any, ClassVar, Generic, Protocol, TypeVar, cast
 
 import numpy as np
 
+from statejump.core import thermal, yade_process
 from statejump.core.case import Case as Definition
+from statejump.core.comparison import Comparison, Quantity
 from statejump.core.errors import NotAllowed
+from statejump.core.later import Later
 from statejump.core.progress import Tell
-from statejump.core.run import Run
+from statejump.core.run import Columns, Run
+from statejump.schema.structure import structure
+
+Capability = TypeVar("Capability")
+# What a message calls a capability: the command that needs it.
+_COMMANDS: dict[type, str] = {}
+_OTHERS = Later("statejump.kinds:names_of_kinds_with")
+
+
+def capability(command: str) -> Callable[[type[Capability]], type[Capability]]:
+    """Declare a protocol as a capability of kinds.
+
+    :param command: that needs it, for the message that refuses other kinds
+    """
+    def declared(protocol: type[Capability]) -> type[Capability]:
+        _COMMANDS[protocol] = command
+        return protocol
+
+    return declared
+
+
+def methods_of(protocol: type) -> list[str]:
+    """Return the names of the methods of a capability."""
+    return [name for name, value in vars(protocol).items() if not name.startswith("_") and callable(value)]
+
+
+@capability("reduced")
+class ReducedModel(Protocol):
+    """The reduced model; ``tell`` takes the finished share."""
+
+    def reduced(self, case: Any, tell: Tell) -> Run: ...
+
+
+@capability("reduced --quasi-static")
+class QuasiStaticModel(Protocol):
+    """Paths of infinitely slow heating, of a kind whose reduced model has inertia."""
+
+    def quasi_static(self, case: Any) -> Any: ...
+
+
+@capability("reduced --dynamic")
+class DynamicModel(Protocol):
+    """The reduced model with inertia, of a kind whose reduced model has none."""
+
+    def dynamic(self, case: Any, tell: Tell) -> Run: ...
+
+
+@capability("dem")
+class DemInput(Protocol):
+    """What the scene in YADE needs, as plain values."""
+
+    def dem_input(self, case: Any) -> dict[str, Any]: ...
+
+
+@capability("dem run")
+class DemResult(Protocol):
+    """A finished or interrupted DEM run of the columns that YADE wrote."""
+
+    def dem_run(self, case: Any, columns: Columns, about: Mapping[str, Any]) -> Run: ...
+
+
+@capability("dem")
+class DemModel(Protocol):
+    """The DEM as a whole; :class:`Kind` makes it of input and result."""
+
+    def dem(self, case: Any, tell: Tell) -> Run: ...
+
+    def check_dem(self, case: Any) -> None: ...
+
+
+@capability("compare")
+class ModelComparison(Protocol):
+    """Both models beside each other."""
+
+    def compare(self, case: Any, reduced: Run, dem: Run) -> Comparison: ...
+
+
+@capability("difference")
+class RunDifference(Protocol):
+    """Two runs of one model, at the same times."""
+
+    def difference(self, case: Any, first: Run, second: Run) -> list[Quantity]: ...
+
+
+@capability("names")
+class ItemNames(Protocol):
+    """Names of the items of columns."""
+
+    def names(self, case: Any) -> dict[str, list[str]]: ...
+
+
+@capability("scene")
+class SceneDescription(Protocol):
+    """What to draw of its parts, see :mod:`statejump.results.scene`."""
+
+    def scene(self, case: Any) -> dict[str, Any]: ...
+
+
+@capability("sweep")
+class Outcomes(Protocol):
+    """What a campaign records of a run, by the names of ``Kind.OUTCOMES``."""
+
+    def outcomes(self, case: Any, run: Run) -> dict[str, float]: ...
+
+
+@capability("quick")
+class QuickModel(Protocol):
+    """The reduced model with as few samples as its outcomes need."""
+
+    def quick(self, case: Any) -> Run: ...
+
+
+@capability("fe")
+class FiniteElements(Protocol):
+    """The case in CalculiX beside the reduced model."""
+
+    def fe(self, case: Any) -> Any: ...
+
+
+@capability("laws")
+class JointOfLaws(Protocol):
+    """The joint as the curves of the contact laws need it."""
+
+    def laws(self, case: Any) -> Any: ...
+
+
+@capability("fclib write")
+class ContactProblems(Protocol):
+    """Frictional contact problems of steps of the path."""
+
+    def contact_problems(self, case: Any, number: int, tell: Tell) -> list[Any]: ...
+
+
+@capability("truss surface")
+class ReflectorSurface(Protocol):
+    """The drawn surface of a reflector and the positions of its nodes (k, 3) [m]."""
+
+    def surface(self, case: Any) -> tuple[Any, np.ndarray]: ...
 
 
 CaseType = TypeVar("CaseType", bound=Definition)
@@ -47,7 +168,7 @@ CaseType = TypeVar("CaseType", bound=Definition)
 class Kind(Generic[CaseType]):
     """A kind of case; see the module.
 
-    ``Case`` is the class of its definitions: keys with unit, range, default and source.
+    ``Case`` is the class of its cases: keys with unit, range, default and source.
     """
 
     name: ClassVar[str]
@@ -66,47 +187,23 @@ class Kind(Generic[CaseType]):
     # Module that builds the scene in YADE, or the path of its file; by default scene_NAME beside the runner.
     SCENE: ClassVar[str] = ""
 
-    def can(self, ability: str) -> bool:
-        """Whether the kind has an ability."""
-        return callable(getattr(self, ability, None))
-
-    def ability(self, name: str, case: Definition) -> Callable[..., Any]:
-        """Return an ability. :raises NotAllowed: the kind lacks it; the sentence says which kinds have it"""
-        if self.can(name):
-            found: Callable[..., Any] = getattr(self, name)
-            return found
-        raise self.refusal(name, case)
-
-    def refusal(self, name: str, case: Definition) -> NotAllowed:
-        """Return why a case of this kind is refused by what needs an ability."""
-        from statejump.kinds import kinds_that_can
-
-        others = " and ".join(repr(other) for other in kinds_that_can(name))
-        command = COMMANDS.get(name, name.replace("_", " "))
-        return NotAllowed("case.kind", self.name, f"'statejump {command}' is for {others or 'no kind of case'}",
-                          file=case.origin.file)
-
     def dem(self, case: CaseType, tell: Tell) -> Run:
         """Run a case in YADE. A kind whose scene needs more than the case itself has its own."""
-        from statejump.core import yade_process
-
-        return yade_process.run(case, self.dem_values(case), self.ability("dem_run", case), tell)
+        return yade_process.run(case, self.dem_values(case), needed(self, DemResult, case).dem_run, tell)
 
     def check_dem(self, case: CaseType) -> None:
         """Raise StatejumpError where the DEM cannot run a case, as far as that is known before anything is solved. A
         kind whose scene needs a solution has its own."""
-        from statejump.core.yade_process import find_yade
-
         self.dem_values(case)
-        find_yade()
+        yade_process.find_yade()
 
     def dem_values(self, case: CaseType) -> dict[str, Any]:
         """Return what the script in YADE reads."""
-        return {"scene": self.scene_module(), **self.ability("dem_input", case)(case)}
+        return {"scene": self.scene_module(), **needed(self, DemInput, case).dem_input(case)}
 
     def has_model(self, model: str) -> bool:
         """Return whether cases of this kind can be run in a model: ``reduced`` or ``dem``."""
-        return self.can({"reduced": "reduced", "dem": "dem_run"}[model])
+        return supports(self, {"reduced": ReducedModel, "dem": DemResult}[model])
 
     def campaign_models(self) -> tuple[str, ...]:
         """Return the models that campaigns run."""
@@ -118,7 +215,7 @@ class Kind(Generic[CaseType]):
 
     def recorded(self, case: CaseType, run: Run) -> dict[str, float]:
         """Return the outcomes of a run, and where its program ends if that is not at the reference temperature."""
-        found: dict[str, float] = self.ability("outcomes", case)(case, run)
+        found = needed(self, Outcomes, case).outcomes(case, run)
         return found if case.ending is None else {**found, **{name: run.summary[name] for name in self.AT_PROGRAM_END}}
 
     def samples(self, case: CaseType, model: str) -> int:
@@ -131,9 +228,6 @@ class Kind(Generic[CaseType]):
 
     def case_from(self, data: Mapping[str, Any]) -> Definition:
         """Return the case of a parsed document. :raises StatejumpError: one failure, without the file's name"""
-        from statejump.core import thermal
-        from statejump.schema.fields import structure
-
         for section in self.Case.NOT_IN_FILE:
             if section in data:
                 raise NotAllowed(f"section [{section}]", cause=self.Case.NOT_IN_FILE[section])
@@ -144,8 +238,18 @@ class Kind(Generic[CaseType]):
         return made
 
 
-# Commands whose name is not that of the ability.
-COMMANDS = {"dem_input": "dem", "dynamic": "reduced --dynamic", "quasi_static": "reduced --quasi-static",
-            "answers": "truss answers", "creak": "truss creak", "draw": "truss draw", "surface": "truss surface",
-            "contact_problems": "fclib write", "outcomes": "sweep", "sheet": "plot"}
-Columns = Mapping[str, np.ndarray]
+def supports(kind: Kind[Any], protocol: type) -> bool:
+    """Whether a kind has a capability."""
+    return all(callable(getattr(type(kind), name, None)) for name in methods_of(protocol))
+
+
+def needed(kind: Kind[Any], protocol: type[Capability], case: Definition) -> Capability:
+    """Return a kind as what has a capability.
+
+    :raises NotAllowed: it lacks the capability; the sentence names the kinds that have it
+    """
+    if supports(kind, protocol):
+        return cast(Capability, kind)
+    others = " and ".join(repr(other) for other in _OTHERS(protocol))
+    raise NotAllowed("case.kind", kind.name, f"'statejump {_COMMANDS[protocol]}' is for {others or 'no kind of case'}",
+                     file=case.origin.file)

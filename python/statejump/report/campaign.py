@@ -68,10 +68,7 @@ class CampaignDocument:
     template = "campaign.html"
 
     def __init__(self, path: Path, identifier: str, source: str) -> None:
-        # What computes campaigns takes a while to load: a page of runs does without.
-        from statejump.campaign import outputs
-        from statejump.campaign.plan import MONTECARLO, SWEEP
-        from statejump.campaign.summary import statistics
+        from statejump.campaign import outputs, plan, summary  # Dask and SciPy, 0.3 s; a page of runs does without
 
         self.source, self.identifier = source, identifier
         try:
@@ -96,7 +93,7 @@ class CampaignDocument:
             self.text = str(attributes["campaign"])
             campaign = tomllib.loads(self.text)["campaign"]
             self.command, self.model = str(attributes["command"]), str(attributes["model"])
-            if self.command not in (MONTECARLO, SWEEP) or self.model not in words.MODELS:
+            if self.command not in (plan.MONTECARLO, plan.SWEEP) or self.model not in words.MODELS:
                 raise ValueError(f"no campaign is {self.command!r} of model {self.model!r}")
         except (KeyError, ValueError, TypeError, AttributeError) as error:
             raise Unreadable("damaged", cause=" ".join(str(error).split()), file=path) from None
@@ -105,7 +102,7 @@ class CampaignDocument:
         self.attributes = {key: value for key, value in attributes.items() if key not in ("campaign", "case")}
         # What the campaign is about comes first.
         self.outcomes.sort(key=lambda outcome: "jump" not in outcome.name)
-        self.statistics = {outcome.name: statistics(outcome.values) for outcome in self.outcomes}
+        self.statistics = {outcome.name: summary.statistics(outcome.values) for outcome in self.outcomes}
 
     def _variables(self, group: h5py.Group) -> list[Variable]:
         found = []
@@ -213,7 +210,7 @@ class CampaignDocument:
 
     def _ranks(self, outcome: Variable) -> dict[str, Any]:
         """How closely an outcome follows each parameter: rank correlation, strongest first."""
-        from statejump.campaign.summary import spearman
+        from statejump.campaign.summary import spearman  # as outputs
 
         bars = [
             {"parameter": parameter.title, "value": spearman(parameter.values, outcome.values)}

@@ -13,6 +13,8 @@ from statejump.core.case import Case
 from statejump.core.charts import TEMPERATURE, Axis, Chart
 from statejump.core.run import Run
 from statejump.core.thin_loops import straight_part
+from statejump.kinds import has, require
+from statejump.report.capabilities import PageCharts
 from statejump.report.words import Words
 
 # What tells of a model, not of the structure.
@@ -26,8 +28,8 @@ def charts_of(case: Case | None, run: Run, words: Words) -> list[Chart]:
 
     :param case: None: this version does not understand the case of the file
     """
-    if case is not None and case.behaviour.can("charts"):
-        found: list[Chart] = case.behaviour.ability("charts", case)(case)
+    if case is not None and has(case, PageCharts):
+        found: list[Chart] = require(case, PageCharts).charts(case)
         return found
     return [
         Chart(TEMPERATURE, Axis(name), f"{words.plain(name)} over temperature", marks=True)

@@ -22,7 +22,9 @@ from statejump.core.comparison import Quantity, sides
 from statejump.core.errors import StatejumpError
 from statejump.core.run import Event, Run
 from statejump.core.units import scale_of, text, unit_of
+from statejump.kinds import has, require
 from statejump.report import charts, words
+from statejump.report.capabilities import EventReasons, PagePart
 from statejump.report.decimation import errors, kept_samples
 from statejump.report.drawing import Drawing
 from statejump.report.energy import Account, account
@@ -75,8 +77,8 @@ class Document:
         self._case = case
         self._cycles = 1 if case is None else case.thermal.cycles
         self.part: Part | None = None
-        if case is not None and case.behaviour.can("page"):
-            self.part = case.behaviour.ability("page", case)(result, case)
+        if case is not None and has(case, PagePart):
+            self.part = require(case, PagePart).page(result, case)
         self._charts = charts.charts_of(case, self._run, self._words) if self.part is None else self.part.charts()
         self._columns = {model: self._full_columns(model, run) for model, run in result.models.items()}
         self._units = {name: column.unit for name, column in self._run.history.items()}
@@ -215,9 +217,9 @@ class Document:
     def _reason(self, event: Event, having: set[str]) -> str:
         """Return why only some of the models have an event, where the kind knows it."""
         case, models = self._case, self.result.models
-        if case is None or having == set(models) or not case.behaviour.can("event_reason"):
+        if case is None or having == set(models) or not has(case, EventReasons):
             return ""
-        reason: str = case.behaviour.ability("event_reason", case)(case, event, next(iter(having)), models)
+        reason: str = require(case, EventReasons).event_reason(case, event, next(iter(having)), models)
         return reason
 
     @property

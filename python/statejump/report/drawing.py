@@ -19,7 +19,8 @@ from statejump.core.errors import Unreadable
 from statejump.core.run import Run
 from statejump.report.words import STATES, Words
 from statejump.results.contents import Result
-from statejump.results.scene import growth, resolve, resolve_point
+from statejump.results.growth import growth
+from statejump.results.scene import resolve, resolve_point
 
 # What the default magnification gives the smallest clearance: a share of the scene's size, but of the
 # shortest link no more than can be told from the link.

@@ -11,7 +11,7 @@ from typing import Any
 from jinja2 import ChoiceLoader, Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from statejump import __version__
+from statejump._version import __version__
 from statejump.core import units
 from statejump.core.errors import NotWritten, StatejumpError, Unreadable
 from statejump.core.output import write_atomically

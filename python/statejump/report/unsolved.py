@@ -11,7 +11,9 @@ from typing import Any
 from statejump.core.case import Case
 from statejump.core.errors import NotAllowed
 from statejump.core.figures import style
+from statejump.kinds import has, require
 from statejump.report import words
+from statejump.report.capabilities import CaseDrawing
 from statejump.report.inputs import sections_of
 from statejump.schema.fields import attached_to_json
 
@@ -29,7 +31,7 @@ class UnsolvedDocument:
     verdict = ("none", "Nothing is solved yet.")
 
     def __init__(self, case: Case, source: str, identifier: str) -> None:
-        if not case.behaviour.can("draw"):
+        if not has(case, CaseDrawing):
             raise NotAllowed("case.kind", case.kind, "a page of a case that is not solved is for 'truss'",
                              file=case.origin.file, remedy=f"'statejump compare {source}' solves it")
         self._case, self.source, self.identifier = case, source, identifier
@@ -45,12 +47,12 @@ class UnsolvedDocument:
         """The drawing as an address that holds it."""
         stream = BytesIO()
         with style():
-            self._case.behaviour.ability("draw", self._case)(self._case).savefig(stream, format="png", dpi=160)
+            require(self._case, CaseDrawing).draw(self._case).savefig(stream, format="png", dpi=160)
         return "data:image/png;base64," + base64.b64encode(stream.getvalue()).decode("ascii")
 
     def inputs(self) -> list[tuple[str, list[tuple[str, str]]]]:
         """Sections of the case with all defaults: key, value."""
-        return sections_of(json.loads(json.dumps(self._case.to_dict(), default=attached_to_json)))
+        return sections_of(json.loads(json.dumps(self._case.with_defaults(), default=attached_to_json)))
 
 
 def is_case(path: Path) -> bool:

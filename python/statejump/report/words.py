@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from statejump.core.case import Case
 from statejump.core.errors import StatejumpError
 from statejump.core.units import split_unit, text
+from statejump.kinds import has, kind, require
+from statejump.report.capabilities import CaseText
 from statejump.schema.fields import fields_of, tables_of
 
 MODELS = {"reduced": "Reduced model", "dem": "DEM (YADE)"}
@@ -87,8 +89,6 @@ class Words:
 
 def of_kind(name: str) -> Words:
     """Return the words of a kind; those of all kinds where there is no such kind."""
-    from statejump.kinds import kind
-
     try:
         found = kind(name)
         return Words(found.WORDS, any(tables_of(attribute) for attribute in fields_of(found.Case).values()))
@@ -98,7 +98,7 @@ def of_kind(name: str) -> Words:
 
 def described(case: Case) -> list[str]:
     """Return a case in sentences: what its kind says of it, then its temperature program."""
-    told: list[str] = case.behaviour.ability("describe", case)(case) if case.behaviour.can("describe") else []
+    told: list[str] = require(case, CaseText).describe(case) if has(case, CaseText) else []
     return [*told, _temperature(case)]
 
 

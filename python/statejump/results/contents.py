@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from statejump.case import Case
-from statejump.core.case import Case as Definition
+from statejump.core.case import Case
 from statejump.core.comparison import Comparison, Quantity
 from statejump.core.errors import StatejumpError
 from statejump.core.run import Run
 from statejump.core.temperature_files import Histories
 from statejump.core.units import unit_of
+from statejump.kinds.loading import parse_case
 
 
 @dataclass(frozen=True)
@@ -85,10 +85,8 @@ class Result:
     members: Histories | None = None  # of a truss whose members have temperatures of their own
 
     @cached_property
-    def definition(self) -> Definition:
+    def definition(self) -> Case:
         """What the case says. :raises StatejumpError: this version does not understand it any more"""
-        from statejump.kinds.loading import parse_case
-
         data = _given(json.loads(self.case_json))
         if self.members is not None:
             data["thermal"]["members"] = self.members
@@ -100,7 +98,7 @@ class Result:
     @property
     def case(self) -> Case:
         """The case. :raises StatejumpError: this version does not understand it any more"""
-        return Case(self.definition)
+        return self.definition
 
     @property
     def comparison(self) -> Comparison | None:

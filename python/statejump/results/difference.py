@@ -14,6 +14,7 @@ from statejump.core.comparison import Quantity, of_two
 from statejump.core.errors import StatejumpError
 from statejump.core.run import Run
 from statejump.core.units import unit_of
+from statejump.kinds import protocol, require
 from statejump.results.contents import Result
 
 # How a case is computed, written and judged; the other sections say what it is.
@@ -185,7 +186,7 @@ def difference(first: Result, second: Result) -> list[RunDifference]:
     """
     check_comparable(first, second)
     complete = first.complete and second.complete
-    judge = first.definition.behaviour.ability("difference", first.definition)
+    judge = require(first.definition, protocol.RunDifference).difference
     found = []
     for names in pairs(first, second):
         one, other = first.models[names[0]], second.models[names[1]]

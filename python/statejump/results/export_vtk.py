@@ -18,8 +18,9 @@ from vtkmodules.vtkCommonDataModel import VTK_LINE, vtkDataObject, vtkPolyData, 
 
 from statejump.core.run import Run
 from statejump.results.contents import Result
+from statejump.results.growth import growth
 from statejump.results.outline import outlines, placed
-from statejump.results.scene import PART_TYPES, growth, resolve, resolve_point
+from statejump.results.scene import PART_TYPES, resolve, resolve_point
 from statejump.results.vtk_data import add_array, cells, file_time, frames_of, points, write, write_series
 
 TYPE_NUMBERS = {name: number for number, name in enumerate(PART_TYPES, start=1)}

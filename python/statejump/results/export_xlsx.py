@@ -46,8 +46,8 @@ def write(result: Result, path: Path) -> Path:
     :raises StatejumpError: openpyxl is missing, or a table is too large for a sheet
     """
     try:
-        from openpyxl import Workbook
-        from openpyxl.cell import WriteOnlyCell
+        from openpyxl import Workbook  # 0.2 s, which may be missing
+        from openpyxl.cell import WriteOnlyCell  # as Workbook
     except ImportError:
         raise StatejumpError("openpyxl is missing", remedy="install Debian's package 'python3-openpyxl', or take "
                              "--format csv") from None

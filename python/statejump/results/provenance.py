@@ -8,7 +8,8 @@ from typing import Any
 import h5py
 import numpy as np
 
-from statejump import __version__, _paths
+from statejump import _paths
+from statejump._version import __version__
 from statejump.core.case import Case
 from statejump.core.run import Run
 
@@ -27,7 +28,7 @@ def provenance(case: Case, dem: Run | None) -> dict[str, Any]:
         "h5py_version": h5py.__version__,
         "hdf5_version": h5py.version.hdf5_version,
     }
-    sections = case.to_dict()
+    sections = case.with_defaults()
     seed = sections.get("ensemble", {}).get("seed")
     if seed is not None:
         found["seed"] = seed

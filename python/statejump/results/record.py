@@ -11,6 +11,8 @@ from statejump.core.comparison import Comparison
 from statejump.core.output import check_suffix
 from statejump.core.run import Run, warnings_of
 from statejump.core.tables import write_json
+from statejump.kinds import require
+from statejump.kinds.protocol import ItemNames, SceneDescription
 from statejump.results import export_csv
 from statejump.results.contents import Answers, Result
 from statejump.results.layout import SUFFIX
@@ -31,7 +33,6 @@ def result_of(
     :param command: ``reduced``, ``dem``, ``compare`` or ``truss answers``
     :param runs: by model
     """
-    kind = case.behaviour
     return Result(
         command=command,
         complete=all(run.complete for run in runs.values()),
@@ -40,10 +41,10 @@ def result_of(
         title=case.title,
         source=case.case.source,
         case_text=case.origin.text,
-        case_json=json.dumps(case.to_dict(), indent=1, default=attached_to_json),
+        case_json=json.dumps(case.with_defaults(), indent=1, default=attached_to_json),
         provenance=provenance(case, runs.get("dem")),
-        names=kind.ability("names", case)(case),
-        scene=kind.ability("scene", case)(case),
+        names=require(case, ItemNames).names(case),
+        scene=require(case, SceneDescription).scene(case),
         models=dict(runs),
         rows=None if comparison is None else comparison.rows,
         reasons=[] if comparison is None else list(comparison.reasons),

@@ -19,7 +19,6 @@ import numpy as np
 
 from statejump.core.errors import StatejumpError
 from statejump.core.run import CONTACT_STATES, Column, Run
-from statejump.results.contents import Result
 
 Value = float | dict[str, Any]
 Point = list[Value] | dict[str, Any]
@@ -136,10 +135,3 @@ def resolve_point(point: Point, run: Run, names: Mapping[str, list[str]]) -> np.
     if isinstance(point, dict):
         return resolve(point, run, names)
     return np.stack([resolve(value, run, names) for value in point], axis=1)
-
-
-def growth(part: dict[str, Any], result: Result, model: str) -> np.ndarray:
-    """Return 1 + thermal strain of a part over the samples: factor of its radii and dimensions."""
-    run = result.models[model]
-    change = resolve(part.get("temperature_change_K", result.scene["temperature_change_K"]), run, result.names)
-    return 1 + part.get("thermal_expansion_per_K", 0.0) * change

@@ -7,7 +7,7 @@ A section is an attrs class; its keys are declared by the functions of this modu
     class Link(Section):
         length_m: float = parameter(..., "m", 0, 1e3, "Table 1", above=True)
 
-A key is checked where its section is made, from a file (:func:`structure`) or in Python. Only this package
+A key is checked where its section is made, from a file (:func:`.structure.structure`) or in Python. Only this package
 knows attrs.
 """
 from __future__ import annotations
@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, cast
 
 import attrs
 
-from statejump.core.errors import MissingKey, NotAllowed, Range, UnknownKey
-from statejump.schema.rules import ATTACHED, NUMBER, NUMBERS, SWITCH, TEXT, TEXTS, WHOLE, Rule, suggestion
+from statejump.core.errors import Range
+from statejump.schema.rules import ATTACHED, NUMBER, NUMBERS, SWITCH, TEXT, TEXTS, WHOLE, Attached, Rule
 
 CHOICE = "choice, the paper is silent"
 RULE, SECTION, TABLES, READ = "rule", "section", "tables", "read"
@@ -28,8 +28,11 @@ TABLES_BESIDE = "tables"  # name of the section that names files of lists, where
 SectionType = TypeVar("SectionType", bound="Section")
 Names = Sequence[str] | Callable[[], Sequence[str]]
 
-# Sections are immutable, made by keyword, and told apart by their values.
-definition = attrs.define(frozen=True, kw_only=True, slots=False)
+
+def definition(model: type[SectionType]) -> type[SectionType]:
+    """Make a class of sections: immutable, made by keyword, told apart by their values."""
+    return attrs.define(model, frozen=True, kw_only=True, slots=False, repr=not model.NAMED,
+                        hash=False if model.NAMED else None)
 
 
 def _check(instance: Any, attribute: attrs.Attribute[Any], value: Any) -> None:
@@ -113,15 +116,6 @@ def numbers(default: Any, unit: str, low: float, high: float, source: str, *, le
     return _key(default, rule, _as_floats)
 
 
-class Attached:
-    """What a key holds that a file cannot say: arrays that were read from another file. Immutable and hashable; a copy
-    of a case has the same."""
-
-    def to_json(self) -> dict[str, Any]:
-        """Return what tells it from others, as JSON takes it: the arrays are no part of a text."""
-        raise NotImplementedError
-
-
 def attached_to_json(value: Any) -> dict[str, Any]:
     """Return what json.dumps writes for a value of a case that it does not know."""
     if isinstance(value, Attached):
@@ -142,14 +136,15 @@ def texts(
 
 
 def section(
-    model: type[Section], *, required: bool = False, made: Callable[[], Section] | None = None
+    model: type[Section], *, required: bool = False, made: Callable[[], Section] | None = None, name: str | None = None
 ) -> Any:
     """Declare a section of a file; one that is not required is all defaults where it is missing.
 
     :param made: returns the section where it is missing, if not with all defaults
+    :param name: in files, where it is not that of the attribute
     """
     default: Any = attrs.NOTHING if required else attrs.Factory(made or model)
-    return attrs.field(default=default, metadata={SECTION: model})
+    return attrs.field(default=default, metadata={SECTION: model}, alias=name)
 
 
 def optional_section(model: type[Section]) -> Any:
@@ -179,6 +174,8 @@ class Section:
     GOES_WITH: ClassVar[dict[str, dict[str, tuple[str, ...]]]] = {}
     # Choice of the section: groups of keys, one of which a name needs as a whole; the other names refuse all of them.
     ONE_OF: ClassVar[dict[str, dict[str, tuple[tuple[str, ...], ...]]]] = {}
+    # Whether its name stands for it: ``repr`` and ``hash`` are its own and not those of all keys.
+    NAMED: ClassVar[bool] = False
 
     if TYPE_CHECKING:
         # Made by attrs, one for each class; what may be given are the keys, and their checks are those of the rules.
@@ -186,7 +183,11 @@ class Section:
 
     def to_dict(self) -> dict[str, Any]:
         """Return keys and values in the order of their declaration, sections as dicts."""
-        return {name: _plain(getattr(self, name)) for name in fields_of(type(self))}
+        return {name: _plain(self.part(name)) for name in fields_of(type(self))}
+
+    def part(self, name: str) -> Any:
+        """Return the value of a key, or of a case a section or list of tables, by its name in files."""
+        return getattr(self, fields_of(type(self))[name].name)
 
 
 def _plain(value: Any) -> Any:
@@ -206,12 +207,13 @@ def evolved(made: SectionType, **values: Any) -> SectionType:
 
 
 def fields_of(model: type[Section]) -> Mapping[str, attrs.Attribute[Any]]:
-    """Return the keys of a section, or the sections of a file, in the order of their first declaration: a kind
-    that declares one of them anew leaves it in its place."""
+    """Return the keys of a section, or the sections of a file, by their names in files and in the order of their first
+    declaration: a kind that declares one of them anew leaves it in its place."""
     if model not in _KNOWN:
-        known = {attribute.name: attribute for attribute in attrs.fields(model)}  # type: ignore[arg-type]
+        known = {attribute.alias: attribute for attribute in attrs.fields(model)}  # type: ignore[arg-type]
         order = dict.fromkeys(
-            attribute.name for base in reversed(model.__mro__) for attribute in base.__dict__.get("__attrs_attrs__", ())
+            attribute.alias for base in reversed(model.__mro__)
+            for attribute in base.__dict__.get("__attrs_attrs__", ())
         )
         _KNOWN[model] = MappingProxyType({name: known[name] for name in order})
     return _KNOWN[model]
@@ -244,69 +246,3 @@ def default_of(attribute: attrs.Attribute[Any]) -> Any:
     """Return the default of a key that is not required."""
     made: Any = attribute.default
     return made.factory() if isinstance(made, attrs.Factory) else made  # type: ignore[arg-type]  # it is a class
-
-
-def structure(model: type[SectionType], data: Mapping[str, Any]) -> SectionType:
-    """Return what a parsed TOML document holds.
-
-    An unknown key is reported first: a misspelt key is missing as well.
-
-    :param model: the file: its fields are sections and lists of tables
-    :raises StatejumpError: one failure, without the file's name
-    """
-    from statejump.schema.items import read_tables
-
-    wanted = fields_of(model)
-    for name in data:
-        if name not in wanted:
-            raise UnknownKey(name, section=f"section [{name}]", **suggestion(name, list(wanted), "[", "]"))
-        keys = section_of(wanted[name])
-        if keys is not None and isinstance(data[name], Mapping):
-            _refuse_unknown(name, keys, data[name])
-    for name, attribute in wanted.items():
-        if name not in data:
-            if is_required(attribute):
-                brackets = "[[{}]]" if tables_of(attribute) else "[{}]"
-                raise MissingKey(name, section=f"section {brackets.format(name)}")
-            continue
-        keys = section_of(attribute)
-        if keys is not None and isinstance(data[name], Mapping):
-            _refuse_missing(name, keys, data[name])
-    made: dict[str, Any] = {}
-    for name, attribute in wanted.items():
-        if name not in data:
-            continue
-        item, keys = tables_of(attribute), section_of(attribute)
-        if item is not None:
-            read = attribute.metadata[READ]
-            made[name] = read(name, data[name]) if read else read_tables(item, name, data[name])
-        elif keys is not None:
-            if data[name] is None and attribute.default is None:
-                continue  # as to_dict() has it
-            if not isinstance(data[name], Mapping):
-                raise NotAllowed(name, data[name], f"must be a section [{name}]")
-            made[name] = _section(keys, name, data[name])
-    return model(**made)
-
-
-def _refuse_unknown(name: str, keys: type[Section], given: Mapping[str, Any]) -> None:
-    known = fields_of(keys)
-    for key in given:
-        if key not in known:
-            raise UnknownKey(f"{name}.{key}", **suggestion(key, list(known), f"{name}.", ""))
-
-
-def _refuse_missing(name: str, keys: type[Section], given: Mapping[str, Any]) -> None:
-    for key, attribute in fields_of(keys).items():
-        if key not in given and is_required(attribute):
-            raise MissingKey(f"{name}.{key}", rule_of(attribute).needs(), allowed=rule_of(attribute).allowed)
-
-
-def _section(keys: type[SectionType], name: str, given: Mapping[str, Any]) -> SectionType:
-    try:
-        return keys(**given)
-    except NotAllowed as refused:
-        assert refused.key is not None
-        refused.value = given.get(refused.key, refused.value)  # 1, not 1.0, if the file says so
-        refused.key = f"{name}.{refused.key}"
-        raise

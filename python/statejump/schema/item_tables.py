@@ -408,9 +408,13 @@ def _whole(values: np.ndarray) -> np.ndarray:
     return found
 
 
-def _where(section: str, table: ItemTable, place: int) -> str:
-    from statejump.schema.items import where
+def where(section: str, table: Any, number: int) -> str:
+    """Return how messages call an item: by its name, by its number while it has none."""
+    name = table.get("name") if isinstance(table, dict) else None
+    return f"{section} {name!r}" if isinstance(name, str) and name else f"{section} {number}"
 
+
+def _where(section: str, table: ItemTable, place: int) -> str:
     return where(section, table.row(place), place + 1)
 
 

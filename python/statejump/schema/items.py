@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from statejump.core.errors import MissingKey, NotAllowed, UnknownKey
 from statejump.schema.fields import Section, default_of, definition, fields_of, is_required, rule_of, text
-from statejump.schema.item_tables import ItemColumns, ItemTable
+from statejump.schema.item_tables import ItemColumns, ItemTable, where
 from statejump.schema.rules import NUMBER, NUMBERS, TEXT, TEXTS, suggestion
 
 ItemType = TypeVar("ItemType", bound=Section)
@@ -23,12 +23,6 @@ class Item(Section):
     def __attrs_post_init__(self) -> None:
         if not self.name:
             raise NotAllowed("name", self.name, "must be a text in quotes that is not empty")
-
-
-def where(section: str, table: Any, number: int) -> str:
-    """Return how messages call an item: by its name, by its number while it has none."""
-    name = table.get("name") if isinstance(table, dict) else None
-    return f"{section} {name!r}" if isinstance(name, str) and name else f"{section} {number}"
 
 
 def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[ItemType]:

@@ -15,7 +15,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from statejump import _paths
+from statejump import _paths, kinds
+from statejump.campaign.campaign_file import FILES
 from statejump.core.errors import Range
 from statejump.core.output import write_atomically
 from statejump.schema.fields import (
@@ -167,19 +168,17 @@ def _kind(kind: Kind) -> Schema:
     return found
 
 
-def _any_case(kinds: list[str], alone: bool) -> Schema:
+def _any_case(known: list[str], alone: bool) -> Schema:
     """Case files of every kind.
 
     :param alone: hold the schemas of the kinds instead of referring to their files
     """
-    from statejump.kinds import kind as kind_of
-
     found: Schema = {
         "title": "statejump case",
         "description": "A case file of any kind; case.kind says which.",
         "type": "object",
         "properties": {"case": {
-            "type": "object", "properties": {"kind": {"type": "string", "enum": kinds}}, "required": ["kind"],
+            "type": "object", "properties": {"kind": {"type": "string", "enum": known}}, "required": ["kind"],
         }},
         "required": ["case"],
         "allOf": [
@@ -188,19 +187,16 @@ def _any_case(kinds: list[str], alone: bool) -> Schema:
                        "required": ["case"]},
                 "then": {"$ref": f"#/definitions/{kind}" if alone else file_name(kind)},
             }
-            for kind in kinds
+            for kind in known
         ],
     }
     if alone:
-        found["definitions"] = {kind: _kind(kind_of(kind)) for kind in kinds}
+        found["definitions"] = {name: _kind(kinds.kind(name)) for name in known}
     return found
 
 
 def names() -> list[str]:
     """Return the names of all schemas: ``case``, the kinds of cases and the kinds of campaigns."""
-    from statejump import kinds
-    from statejump.campaign.campaign_file import FILES
-
     return [ANY, *kinds.names(), *FILES]
 
 
@@ -211,9 +207,6 @@ def schema(name: str = ANY, alone: bool = True) -> Schema:
     :param alone: whether ``case`` holds the schemas of the kinds; else it refers to their files beside its own
     :raises StatejumpError: there is no such schema
     """
-    from statejump import kinds
-    from statejump.campaign.campaign_file import FILES
-
     check_name("KIND", name, names())
     if name == ANY:
         found = _any_case(kinds.names(), alone)

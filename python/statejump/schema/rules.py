@@ -136,9 +136,16 @@ def _texts(rule: Rule, key: str, value: Any) -> None:
                 raise NotAllowed(key, value, refused.cause, allowed=rule.names) from None
 
 
-def _attached(rule: Rule, key: str, value: Any) -> None:
-    from statejump.schema.fields import Attached
+class Attached:
+    """What a key holds that a file cannot say: arrays that were read from another file. Immutable and hashable; a copy
+    of a case has the same."""
 
+    def to_json(self) -> dict[str, Any]:
+        """Return what tells it from others, as JSON takes it: the arrays are no part of a text."""
+        raise NotImplementedError
+
+
+def _attached(rule: Rule, key: str, value: Any) -> None:
     if not isinstance(value, Attached):
         raise NotAllowed(key, value, rule.source)
 

@@ -7,6 +7,8 @@ import numpy as np
 from statejump.core.case import Case
 from statejump.core.errors import StatejumpError
 from statejump.core.run import Run
+from statejump.kinds import require
+from statejump.kinds.protocol import ReflectorSurface
 from statejump.surface.design import DEFINITIONS, Design, check_measure, rms
 from statejump.surface.motion import pointing_rad
 
@@ -16,7 +18,7 @@ def reflector_of(case: Case) -> tuple[Design, np.ndarray]:
 
     :raises StatejumpError: cases of its kind have no surface, or it has no [reflector]
     """
-    found: tuple[Design, np.ndarray] = case.behaviour.ability("surface", case)(case)
+    found: tuple[Design, np.ndarray] = require(case, ReflectorSurface).surface(case)
     return found
 
 

@@ -13,7 +13,7 @@
 
 namespace statejump::stepper::scenes {
 
-// Table 2 of Chen et al. (2021), and one load for all joints, as bench/pairs.py has it.
+// Table 2 of Chen et al. (2021), and one load for all joints, as studies/bench/pairs.py has it.
 constexpr double young = 70e9, poisson = 0.3, friction = 0.3;                // Pa, -, -
 constexpr double expansion_journal = 23.75e-6, expansion_bearing = 22e-6;    // 1/K
 constexpr double radius = 5e-3, clearance = 1e-4, mass = 0.01;               // m, m, kg

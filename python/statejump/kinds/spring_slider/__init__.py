@@ -2,24 +2,14 @@
 """Kind ``spring_slider``: a heated bar that pushes a block with friction between stops, the paper's section 3."""
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import ClassVar
 
-from statejump.core.comparison import Comparison, Quantity
-from statejump.core.progress import Tell
-from statejump.core.run import Columns, Event, Run
-from statejump.core.tables import Shown
+from statejump.core.later import Later
 from statejump.kinds.protocol import Kind
 from statejump.kinds.spring_slider.case import SpringSliderCase
 from statejump.kinds.spring_slider.words import WORDS
 
-if TYPE_CHECKING:
-    from statejump.control.study import Study
-    from statejump.core.charts import Chart
-    from statejump.core.figures import Sheet
-    from statejump.fe.ccx import Answer
-    from statejump.kinds.spring_slider.convergence import Convergence
-    from statejump.kinds.spring_slider.statics import RestSets
+_SAMPLES = Later("statejump.kinds.spring_slider.reduced:number_of_samples")
 
 
 class SpringSlider(Kind[SpringSliderCase]):
@@ -60,106 +50,28 @@ class SpringSlider(Kind[SpringSliderCase]):
     )
     AT_PROGRAM_END = ("displacement_at_program_end_m",)
 
-    def reduced(self, case: SpringSliderCase, tell: Tell) -> Run:
-        from statejump.kinds.spring_slider import reduced
-
-        return reduced.run(case, tell)
-
     def samples(self, case: SpringSliderCase, model: str) -> int:
-        from statejump.kinds.spring_slider import reduced
+        number: int = _SAMPLES(case) if model == "reduced" else super().samples(case, model)
+        return number
 
-        return len(reduced.sample_times(case)) if model == "reduced" else super().samples(case, model)
-
-    def dem_input(self, case: SpringSliderCase) -> dict[str, Any]:
-        from statejump.kinds.spring_slider import dem
-
-        return dem.dem_input(case)
-
-    def dem_run(self, case: SpringSliderCase, columns: Columns, about: Mapping[str, Any]) -> Run:
-        from statejump.kinds.spring_slider import result
-
-        return result.dem_run(case, columns, about)
-
-    def compare(self, case: SpringSliderCase, reduced: Run, dem: Run) -> Comparison:
-        from statejump.kinds.spring_slider import compare
-
-        return compare.compare(case, reduced, dem)
-
-    def difference(self, case: SpringSliderCase, first: Run, second: Run) -> list[Quantity]:
-        from statejump.kinds.spring_slider import compare
-
-        return compare.difference(case, first, second)
-
-    def names(self, case: SpringSliderCase) -> dict[str, list[str]]:
-        from statejump.kinds.spring_slider import result
-
-        return result.names(case)
-
-    def scene(self, case: SpringSliderCase) -> dict[str, Any]:
-        from statejump.kinds.spring_slider import result
-
-        return result.scene(case)
-
-    def sheet(self, case: SpringSliderCase, runs: Sequence[Run]) -> Sheet:
-        from statejump.kinds.spring_slider import figure
-
-        return figure.sheet(case, runs)
-
-    def told(self, case: SpringSliderCase, runs: Mapping[str, Run]) -> list[Shown | str]:
-        from statejump.kinds.spring_slider import words
-
-        return words.told(case, runs)
-
-    def describe(self, case: SpringSliderCase) -> list[str]:
-        from statejump.kinds.spring_slider import words
-
-        return words.describe(case)
-
-    def fe(self, case: SpringSliderCase) -> Answer:
-        """Return the case in CalculiX, with frictional contact, beside the reduced model."""
-        from statejump.kinds.spring_slider import fe
-
-        return fe.answer(case)
-
-    def statics(self, case: SpringSliderCase, friction_coefficient: float | None = None) -> RestSets:
-        from statejump.kinds.spring_slider import statics
-
-        return statics.statics(case, friction_coefficient)
-
-    def charts(self, case: SpringSliderCase) -> list[Chart]:
-        from statejump.kinds.spring_slider import charts
-
-        return charts.charts(case)
-
-    def event_reason(self, case: SpringSliderCase, event: Event, model: str, runs: Mapping[str, Run]) -> str:
-        from statejump.kinds.spring_slider import words
-
-        return words.event_reason(event, model, runs)
-
-    def quick(self, case: SpringSliderCase) -> Run:
-        from statejump.kinds.spring_slider import reduced
-
-        return reduced.quick(case)
-
-    def outcomes(self, case: SpringSliderCase, run: Run) -> dict[str, float]:
-        from statejump.kinds.spring_slider import outcomes
-
-        return outcomes.outcomes(case, run)
-
-    def control(self, case: SpringSliderCase, **settings: Any) -> Study:
-        """Return what makes the state jump smaller; see :func:`.control.control`."""
-        from statejump.kinds.spring_slider import control
-
-        case.need_jump("'statejump control'")
-        found = control.control(case, **settings)
-        found.remarks += case.thermal_notes
-        return found
-
-    def convergence(self, case: SpringSliderCase, tell: Tell, decades: int = 0) -> Convergence:
-        """Return how the DEM approaches the reduced model; see :func:`.convergence.convergence`."""
-        from statejump.kinds.spring_slider import convergence
-
-        return convergence.convergence(case, tell, decades)
+    reduced = Later("statejump.kinds.spring_slider.reduced:run")
+    quick = Later("statejump.kinds.spring_slider.reduced:quick")
+    dem_input = Later("statejump.kinds.spring_slider.dem:dem_input")
+    dem_run = Later("statejump.kinds.spring_slider.result:dem_run")
+    compare = Later("statejump.kinds.spring_slider.compare:compare")
+    difference = Later("statejump.kinds.spring_slider.compare:difference")
+    names = Later("statejump.kinds.spring_slider.result:names")
+    scene = Later("statejump.kinds.spring_slider.result:scene")
+    outcomes = Later("statejump.kinds.spring_slider.outcomes:outcomes")
+    fe = Later("statejump.kinds.spring_slider.fe:answer")
+    statics = Later("statejump.kinds.spring_slider.statics:statics")
+    control = Later("statejump.kinds.spring_slider.control:answer")
+    convergence = Later("statejump.kinds.spring_slider.convergence:convergence")
+    sheet = Later("statejump.kinds.spring_slider.figure:sheet")
+    told = Later("statejump.kinds.spring_slider.words:told")
+    describe = Later("statejump.kinds.spring_slider.words:describe")
+    charts = Later("statejump.kinds.spring_slider.charts:charts")
+    event_reason = Later("statejump.kinds.spring_slider.words:event_reason")
 
 
 KIND = SpringSlider()

@@ -13,8 +13,7 @@ from statejump.core.case import Case, no_length_left
 from statejump.core.errors import MissingKey, NotAllowed
 from statejump.core.expansion import Expansion, followed
 from statejump.core.start import Start
-from statejump.core.temperature_files import MemberProgram
-from statejump.core.thermal import Thermal
+from statejump.core.thermal import MemberProgram, Thermal
 from statejump.kinds.spring_slider import stable_step
 from statejump.schema.fields import CHOICE, Section, definition, optional_section, parameter, section, whole
 
@@ -97,13 +96,13 @@ class SpringSliderCase(Case):
     joint: Joint = section(Joint, required=True)
     start: Start = section(Start)
     expansion: Expansion | None = optional_section(Expansion)
-    dem: Dem = section(Dem)
+    dem_settings: Dem = section(Dem, name="dem")
     tolerance: Tolerance = section(Tolerance)
 
     @property
     def samples_per_cycle(self) -> int:
         """Samples per cycle of both models."""
-        return self.dem.samples_per_cycle
+        return self.dem_settings.samples_per_cycle
 
     @property
     def thermal_expansion_per_K(self) -> float:
@@ -213,8 +212,8 @@ class SpringSliderCase(Case):
                 if getattr(joint, key):
                     raise NotAllowed(f"joint.{key}", getattr(joint, key),
                                      "must be 0 with joint.stop_stiffness_N_per_m: soft stops do not expand")
-        if self.dem.time_step_s is not None:
+        if self.dem_settings.time_step_s is not None:
             stable = stable_step.stable_time_step(self)
-            if self.dem.time_step_s > stable:
-                raise NotAllowed("dem.time_step_s", self.dem.time_step_s,
+            if self.dem_settings.time_step_s > stable:
+                raise NotAllowed("dem.time_step_s", self.dem_settings.time_step_s,
                                  f"must be above 0 and at most the stable time step {stable:.4g} [s]")

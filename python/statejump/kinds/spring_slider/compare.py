@@ -92,7 +92,7 @@ def _displacement_row(case: SpringSliderCase, exact: Run, other: Run) -> Quantit
 def compare(case: SpringSliderCase, reduced: Run, dem: Run) -> Comparison:
     """Compare a DEM run with the exact path of the same case."""
     tolerance = case.tolerance
-    samples = case.dem.samples_per_cycle
+    samples = case.dem_settings.samples_per_cycle
     exact = reduced.at(dem["time_s"])
     rows = [_jump_row(case, reduced, dem)]
 

@@ -10,11 +10,13 @@ import numpy as np
 from statejump import _engine
 from statejump.control.study import (
     Line, Places, Row, Study, Sweep, bisect, check_wanted, grid, highest, number, ranges_that_pass, refuse_places,
-    refuse_runs,
+    refuse_runs, with_notes,
 )
 from statejump.core.engine_failures import engine
 from statejump.core.errors import StatejumpError
 from statejump.core.progress import Tell, one_of
+from statejump.kinds import require
+from statejump.kinds.protocol import DemModel
 from statejump.kinds.spring_slider import reduced
 from statejump.kinds.spring_slider.case import SpringSliderCase
 from statejump.kinds.spring_slider.stable_step import link_stiffness
@@ -192,6 +194,11 @@ def control(
     return result
 
 
+def answer(case: SpringSliderCase, **settings: Any) -> Study:
+    """Return what makes the state jump smaller, with notes on the temperature program."""
+    return with_notes(control, case, **settings)
+
+
 def _find_ranges(case: SpringSliderCase, sweep: Sweep, wanted: float) -> None:
     def passes(value: float) -> bool:
         size = _row(case, sweep.parameter, value).results.get("jump_m")
@@ -240,7 +247,7 @@ def _check_by_dem(case: SpringSliderCase, result: Study, tell: Tell) -> None:
     wanted = {preload.own, preload.own if preload.recommended is None else preload.recommended}
     for done, stiffness in enumerate(sorted(wanted)):
         design = with_values(case, {PRELOAD: stiffness})
-        run = case.behaviour.dem(design, one_of(tell, done, len(wanted)))
+        run = require(case, DemModel).dem(design, one_of(tell, done, len(wanted)))
         jump, exact = abs(run.summary["state_jump_m"]), jump_of(design).size_m
         result.dem.append({PRELOAD: stiffness, "reduced_jump_m": exact, "dem_jump_m": jump})
         preload.row(stiffness).dem_jump = jump

@@ -12,11 +12,13 @@ import numpy as np
 
 from statejump.core import physics
 from statejump.core.errors import Interrupted
-from statejump.core.output import made_by
+from statejump.core.case_files import made_by
 from statejump.core.progress import Tell, one_of
 from statejump.core.run import Run
 from statejump.core.tables import markdown, write_rows, write_markdown
 from statejump.core.units import plain
+from statejump.kinds import require
+from statejump.kinds.protocol import DemModel
 from statejump.kinds.spring_slider import compare, dem, reduced, stable_step
 from statejump.kinds.spring_slider.case import SpringSliderCase
 
@@ -114,7 +116,7 @@ def convergence(case: SpringSliderCase, tell: Tell = lambda share: None, decades
     runs: list[Run] = []
     for place, variant in enumerate(every):
         try:
-            runs.append(case.behaviour.dem(variant, one_of(tell, place, len(every))))
+            runs.append(require(case, DemModel).dem(variant, one_of(tell, place, len(every))))
         except Interrupted:
             raise Interrupted("interrupted; no table was written") from None
     found = compared(case, (slower, finer), (runs[: len(slower)], runs[len(slower) :]))

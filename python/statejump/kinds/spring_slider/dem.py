@@ -16,10 +16,10 @@ from statejump.kinds.spring_slider.case import SpringSliderCase
 
 def number_of_steps(case: SpringSliderCase) -> int:
     """Return the steps of the whole run: a multiple of the samples, so that the last sample is the end."""
-    wanted = case.dem.time_step_s
+    wanted = case.dem_settings.time_step_s
     if wanted is None:
-        wanted = case.dem.time_step_fraction * stable_step.stable_time_step(case)
-    samples = case.dem.samples_per_cycle
+        wanted = case.dem_settings.time_step_fraction * stable_step.stable_time_step(case)
+    samples = case.dem_settings.samples_per_cycle
     return math.ceil(case.period_s / wanted / samples) * samples * case.thermal.cycles
 
 

@@ -8,7 +8,7 @@ from math import inf
 import numpy as np
 
 from statejump import _engine
-from statejump.core.limits import WHOLE_HISTORY
+from statejump.kinds.limits import WHOLE_HISTORY
 from statejump.core.progress import Tell
 from statejump.core.run import Events, Run
 from statejump.core.thermal import program
@@ -71,13 +71,13 @@ def solve(case: SpringSliderCase, times_s: np.ndarray | None = None) -> _engine.
 
 def is_whole(case: SpringSliderCase) -> bool:
     """Return whether a history has all cycles."""
-    return case.dem.samples_per_cycle * case.thermal.cycles <= WHOLE_HISTORY
+    return case.dem_settings.samples_per_cycle * case.thermal.cycles <= WHOLE_HISTORY
 
 
 def sample_times(case: SpringSliderCase) -> np.ndarray:
     """Return as many evenly spaced times as the DEM run has samples [s]; of a history that nobody reads as a whole
     those of the first and the last cycles."""
-    samples, cycles = case.dem.samples_per_cycle, case.thermal.cycles
+    samples, cycles = case.dem_settings.samples_per_cycle, case.thermal.cycles
     if is_whole(case):
         return np.linspace(0, case.duration_s, samples * cycles + 1)
     shown = cycles_shown(case)
@@ -88,7 +88,7 @@ def sample_times(case: SpringSliderCase) -> np.ndarray:
 
 def cycles_shown(case: SpringSliderCase) -> int:
     """Return how many of the first and of the last cycles a history has that leaves others out."""
-    return min(max(WHOLE_HISTORY // (10 * case.dem.samples_per_cycle), 1), case.thermal.cycles // 2)
+    return min(max(WHOLE_HISTORY // (10 * case.dem_settings.samples_per_cycle), 1), case.thermal.cycles // 2)
 
 
 def run(case: SpringSliderCase, tell: Tell) -> Run:
@@ -121,3 +121,8 @@ def _run_at(case: SpringSliderCase, times_s: np.ndarray) -> Run:
     columns = path.sample(np.asarray(times_s, dtype=float))
     return result.reduced_run(case, path, columns, (*path.warnings, *warnings(case)),
                               lambda times: _run_at(case, times))
+
+
+def number_of_samples(case: SpringSliderCase) -> int:
+    """Return how many samples a run has."""
+    return len(sample_times(case))

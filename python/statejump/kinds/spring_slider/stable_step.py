@@ -28,7 +28,7 @@ def tip_mass(case: SpringSliderCase) -> float:
     """Mass at the tip [kg]: a third of the bar's (exact for a uniform rod) and the slider's."""
     link = case.link
     bar = link.density_kg_per_m3 * link.cross_section_area_m2 * link.stress_free_length_m
-    return bar / 3 + case.dem.slider_mass_kg
+    return bar / 3 + case.dem_settings.slider_mass_kg
 
 
 def largest_stop_force(case: SpringSliderCase) -> float:
@@ -76,8 +76,8 @@ def stable_time_step(case: SpringSliderCase) -> float:
     for spring, contacts in axes:
         # Each dashpot is 2 zeta sqrt(k m).
         damping = 2 * sqrt(mass) * (
-            case.dem.link_damping_ratio * sqrt(spring)
-            + case.dem.contact_damping_ratio * sum(sqrt(k) for k in contacts)
+            case.dem_settings.link_damping_ratio * sqrt(spring)
+            + case.dem_settings.contact_damping_ratio * sum(sqrt(k) for k in contacts)
         )
         steps.append(_engine.critical_time_step_s(mass, spring + sum(contacts), damping))
     return min(steps)

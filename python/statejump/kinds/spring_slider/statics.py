@@ -13,6 +13,8 @@ from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from statejump.core import libraries
+from statejump.core.later import Later
 from statejump.core.physics import axial_stiffness_N_per_m
 from statejump.core.tables import Shown, write_json
 from statejump.core.units import plain
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
     import pandas
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+_DRAWN, _SAVED = Later("statejump.kinds.spring_slider.statics_figure:drawn"), Later("statejump.core.figures:save")
 
 
 @dataclass(frozen=True)
@@ -54,31 +58,14 @@ class RestSets:
 
     def frame(self) -> pandas.DataFrame:
         """Return a row per temperature, units in the names of the columns."""
-        import pandas
+        pandas = libraries.pandas()
 
         rows = [(*astuple(part), part.length_m) for part in self.segments]
         return pandas.DataFrame(rows, columns=[*(field.name for field in fields(Segment)), "length_m"])
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the places of rest over the temperature; into given axes, or into a new figure."""
-        from statejump.core.figures import panels, style
-
-        with style():
-            if axes is None:
-                figure, axes = panels(1, 1, (5.5, 4.2))
-            dense = rest_sets(self.case, self.friction_force_N, DENSE).segments
-            change = [part.temperature_change_K for part in dense]
-            axes.fill_between(change, [part.from_m * 1e3 for part in dense], [part.to_m * 1e3 for part in dense],
-                              color="#E69F00", alpha=0.6, linewidth=0, label="held by friction or a stop")
-            for ends in ("from_m", "to_m"):  # at a stop the band is a line
-                axes.plot(change, [getattr(part, ends) * 1e3 for part in dense], color="#E69F00", linewidth=2)
-            axes.plot(change, [part.zero_force_m * 1e3 for part in dense], color="#000000", linewidth=1,
-                      linestyle=(0, (5, 2)), label="no force")
-            axes.set_xlabel("Temperature change [K]")
-            axes.set_ylabel("Place of the slider [mm]")
-            axes.legend(loc="best", framealpha=1)
-        found: Figure = axes.figure
-        return found
+        return _DRAWN(self, axes)
 
     def told(self) -> list[Shown | str]:
         """Return what a command prints."""
@@ -93,15 +80,13 @@ class RestSets:
 
     def write(self, folder: Path) -> list[Path]:
         """Write ``statics.json`` and the picture; return their paths."""
-        from statejump.core.figures import save
-
         document = {
             "case": self.case.name, "title": self.case.title, "friction_force_N": self.friction_force_N,
             "largest_jump_m": self.largest_jump_m,
             "segments": [{"length_m": part.length_m, **vars(part)} for part in self.segments],
         }
         return [write_json(folder / "statics.json", document, indent=1),
-                *save(self.plot(), folder, f"{self.case.name}_statics")]
+                *_SAVED(self.plot(), folder, f"{self.case.name}_statics")]
 
     def __repr__(self) -> str:
         return f"RestSets({self.case.name}, largest jump {self.largest_jump_m:.6g} m)"

@@ -86,7 +86,7 @@ def told(case: SpringSliderCase, runs: Mapping[str, Run]) -> list[Shown | str]:
     return found
 
 
-def event_reason(event: Event, model: str, runs: Mapping[str, Run]) -> str:
+def event_reason(case: SpringSliderCase, event: Event, model: str, runs: Mapping[str, Run]) -> str:
     """Return why only one of both models has an event; "" where it is not known."""
     if event.kind in ("stop_unloaded", "force_sign_change", "cycle_end", "play_opened", "play_closed") and (
             model == "reduced"):

@@ -2,13 +2,11 @@
 """Kind ``statics``: where a loaded clearance joint can rest, the paper's section 2."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
+from statejump.core.later import Later
 from statejump.kinds.protocol import Kind
 from statejump.kinds.statics.case import StaticsCase
-
-if TYPE_CHECKING:
-    from statejump.kinds.statics.solve import Statics as RestSets
 
 
 class Statics(Kind):
@@ -17,15 +15,8 @@ class Statics(Kind):
     name: ClassVar[str] = "statics"
     Case = StaticsCase
 
-    def statics(self, case: StaticsCase, friction_coefficient: float | None = None) -> RestSets:
-        from statejump.kinds.statics import solve
-
-        return solve.solve(case, friction_coefficient)
-
-    def describe(self, case: StaticsCase) -> list[str]:
-        from statejump.kinds.statics import words
-
-        return words.describe(case)
+    statics = Later("statejump.kinds.statics.solve:solve")
+    describe = Later("statejump.kinds.statics.words:describe")
 
 
 KIND = Statics()

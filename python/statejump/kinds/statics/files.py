@@ -62,9 +62,9 @@ def write_vtp(statics: Statics, folder: Path) -> Path:
     """
     target = folder / f"{statics.case.name}.vtp"
     try:
-        from vtkmodules.vtkCommonDataModel import vtkPolyData
+        from vtkmodules.vtkCommonDataModel import vtkPolyData  # VTK, 0.2 s, which may be missing
 
-        from statejump.results.vtk_data import add_array, cells, points, write
+        from statejump.results.vtk_data import add_array, cells, points, write  # VTK as well
     except ImportError as failure:
         raise StatejumpError("VTK for Python is needed (python3-vtk9)", file=target, cause=str(failure)) from None
     polygons, count = statics.pieces["polygons_m"], np.array(statics.pieces["polygon_forces"], dtype=np.int32)

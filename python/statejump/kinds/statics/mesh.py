@@ -70,34 +70,18 @@ def read_mesh(case: StaticsCase) -> _engine.RestMesh:
     except OSError as failure:
         raise MeshUnusable(f"{path} cannot be read", cause=failure.strerror, **about) from None
     try:
-        from vtkmodules.util.numpy_support import vtk_to_numpy
-        from vtkmodules.vtkCommonCore import vtkObject
-        from vtkmodules.vtkFiltersCore import vtkTriangleFilter
-        from vtkmodules.vtkIOGeometry import vtkOBJReader, vtkSTLReader
-        from vtkmodules.vtkIOPLY import vtkPLYReader
-        from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+        from statejump.kinds.statics import mesh_files  # VTK, 0.2 s, which may be missing
     except ImportError as failure:
         raise MeshUnusable("VTK for Python is needed (python3-vtk9)", cause=str(failure), **about) from None
-    readers = {".stl": vtkSTLReader, ".obj": vtkOBJReader, ".ply": vtkPLYReader, ".vtp": vtkXMLPolyDataReader}
-    if path.suffix.lower() not in readers:
-        raise NotAllowed(about.pop("key"), about.pop("value"), f"must end with {', '.join(readers)}", **about)
-    reader = readers[path.suffix.lower()]()
-    reader.SetFileName(str(path))
-    triangulate = vtkTriangleFilter()
-    triangulate.PassLinesOff()
-    triangulate.PassVertsOff()
-    triangulate.SetInputConnection(reader.GetOutputPort())
-    vtkObject.GlobalWarningDisplayOff()
-    try:
-        triangulate.Update()
-    finally:
-        vtkObject.GlobalWarningDisplayOn()
-    surface = triangulate.GetOutput()
+    if path.suffix.lower() not in mesh_files.READERS:
+        wanted = f"must end with {', '.join(mesh_files.READERS)}"
+        raise NotAllowed(about.pop("key"), about.pop("value"), wanted, **about)
+    surface = mesh_files.triangles_of(path)
     if surface.GetNumberOfPolys() == 0:
         raise MeshUnusable(f"{path} holds no triangles", **about)
-    stored = vtk_to_numpy(surface.GetPoints().GetData())
+    stored = mesh_files.vtk_to_numpy(surface.GetPoints().GetData())
     points = stored.astype(float) * joint.mesh_unit_m
-    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    triangles = mesh_files.vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     if joint.mesh_free_side == "left_hand":
         triangles = triangles[:, ::-1]
     extent = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))

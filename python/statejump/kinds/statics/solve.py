@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from statejump import _engine
+from statejump.core import libraries
 from statejump.core.engine_failures import engine
+from statejump.core.later import Later
 from statejump.core.tables import Shown
 from statejump.kinds.statics.case import LoadCase, StaticsCase
 from statejump.kinds.statics.mesh import can_mesh, read_mesh, vertex_normals
@@ -23,6 +25,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+_DRAWN, _WRITTEN = Later("statejump.kinds.statics.figure:drawn"), Later("statejump.kinds.statics.files:write")
+_TOLD, _HTML = Later("statejump.kinds.statics.words:told"), Later("statejump.kinds.statics.words:html")
 SPHERE_LEVEL = 4  # 5120 triangles
 FRICTION = "joint.friction_coefficient"
 
@@ -59,7 +63,7 @@ class Statics:
     def frame(self) -> pandas.DataFrame:
         """Return a row per part of every set, units in the names of the columns; of an empty set a row without
         numbers. ``set_diameter_m`` is that of the whole set: the largest jump."""
-        import pandas
+        pandas = libraries.pandas()
 
         rows = []
         for name, found in self.named():
@@ -83,33 +87,25 @@ class Statics:
         :param axes: axes to draw into, of positions in space three-dimensional ones; None: a new figure
         :return: the figure; matplotlib's backend is left alone
         """
-        from statejump.kinds.statics import figure
-
-        return figure.drawn(self, axes)
+        return _DRAWN(self, axes)
 
     def told(self) -> list[Shown | str]:
         """Return what a command prints of it, tables and lines."""
-        from statejump.kinds.statics import words
-
-        return words.told(self)
+        return _TOLD(self)
 
     def write(self, folder: Path) -> list[Path]:
         """Write ``statics.json``, the picture and, of positions in space, a ParaView file; return their paths.
 
         On a curve the picture has a panel for each friction coefficient that the case names besides its own.
         """
-        from statejump.kinds.statics import files
-
-        return files.write(self, folder)
+        return _WRITTEN(self, folder)
 
     def __repr__(self) -> str:
         return (f"Statics({self.case.name}, friction coefficient {self.friction_coefficient:g}, "
                 f"{len(self.loads)} forces, largest jump {self.any['diameter_m']:.6g} m)")
 
     def _repr_html_(self) -> str:
-        from statejump.kinds.statics import words
-
-        return words.html(self)
+        return _HTML(self)
 
 
 def solve(case: StaticsCase, friction_coefficient: float | None = None) -> Statics:

@@ -2,7 +2,7 @@
 """What is wrong with the shape of a truss: lengths, clearances over the temperatures, axes, supports."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -14,13 +14,9 @@ from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.references import MOST_LISTED, listed, turned_links
 from statejump.kinds.truss.resolved import Links, ResolvedTruss, Springs
 
-if TYPE_CHECKING:
-    from statejump.kinds.truss.case import TrussCase
 
-
-def check_geometry(case: TrussCase) -> None:
+def check_geometry(truss: ResolvedTruss) -> None:
     """Raise StatejumpError for the first thing that is wrong with the shape of a truss whose names are right."""
-    truss = case.resolve()
     ranges_K = truss.temperature_ranges_K
     _lengths(truss)
     _stretches(truss.springs)

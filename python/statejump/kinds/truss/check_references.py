@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from statejump.core.errors import ABSENT, MissingKey, NotAllowed
-from statejump.kinds.truss import mechanism
+from statejump.kinds.truss import check_mechanism
 from statejump.kinds.truss.arrays import having, said
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
@@ -18,12 +18,12 @@ from statejump.kinds.truss.references import Around, known_links, known_name, kn
 from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns, Places, by_name, each, where_wrong
 
 if TYPE_CHECKING:
-    from statejump.kinds.truss.case import Link, TrussCase
+    from statejump.kinds.truss.sections import Link, TrussSections
 
 _WITH_TEMPERATURE = [joint for joint in JOINTS if joint.has_temperature]
 
 
-def check_references(case: TrussCase) -> None:
+def check_references(case: TrussSections) -> None:
     """Raise StatejumpError for the first name that is not there or does not fit."""
     nodes, links = by_name(case.node), by_name(case.link)
     node_places, link_places = Places(case.node), Places(case.link)
@@ -41,7 +41,7 @@ def check_references(case: TrussCase) -> None:
             joint.check_references(item, nodes, links)
     for spring in where_wrong(case.torsion_spring, lambda items: wrong_ends(link_places.of(items, "links"), 1)):
         known_links(spring.links, links, {"item": f"torsion_spring {spring.name!r}"})
-    mechanism.check(case, links)
+    check_mechanism.check(case, links)
     if case.reflector is not None:
         if not case.reflector.nodes:
             raise NotAllowed("reflector.nodes", [], "must be one or more nodes")
@@ -49,7 +49,7 @@ def check_references(case: TrussCase) -> None:
             known_name("reflector.nodes", ABSENT, case.reflector.nodes[place], nodes, "node", beside="as it is")
 
 
-def _held(case: TrussCase) -> np.ndarray:
+def _held(case: TrussSections) -> np.ndarray:
     """Return which nodes have a support."""
     found = said(case.node, "guide_normal")
     for axis in "xyz":
@@ -57,7 +57,7 @@ def _held(case: TrussCase) -> np.ndarray:
     return found
 
 
-def _followers(case: TrussCase) -> Iterator[tuple[Any, dict[str, Any], bool]]:
+def _followers(case: TrussSections) -> Iterator[tuple[Any, dict[str, Any], bool]]:
     """Return what follows a temperature: the item, how failures name it, whether it expands."""
     yield from ((link, {"item": f"link {link.name!r}"}, True)
                 for link in each(case.link, "name", "program", "temperature_fraction"))
@@ -65,7 +65,7 @@ def _followers(case: TrussCase) -> Iterator[tuple[Any, dict[str, Any], bool]]:
                 for item in listed_joints(case, joint))
 
 
-def _programs(case: TrussCase) -> None:
+def _programs(case: TrussSections) -> None:
     programs, places = by_name(case.program), Places(case.program)
     followers: Iterator[tuple[Any, Any]] = (
         (items, where) for items, where in (
@@ -77,7 +77,7 @@ def _programs(case: TrussCase) -> None:
                 known_name("program", item.program, item.program, programs, "program", **where(item.name))
 
 
-def _expansions(case: TrussCase) -> None:
+def _expansions(case: TrussSections) -> None:
     """Every link has a coefficient or names one that follows the temperature."""
     expansions, places = by_name(case.expansion), Places(case.expansion)
 
@@ -95,7 +95,7 @@ def _expansions(case: TrussCase) -> None:
             raise MissingKey("thermal_expansion_per_K", "a number [1/K], or an expansion, is needed", **where)
 
 
-def _members(case: TrussCase) -> None:
+def _members(case: TrussSections) -> None:
     """Every link has a column of the histories of members or names a program; every column is of a member."""
     members = case.thermal.members
     if members is None:
@@ -121,7 +121,7 @@ def _members(case: TrussCase) -> None:
             raise NotAllowed("thermal.members_file", file, f"its column {name!r} is of {kinds}")
 
 
-def _alternatives(case: TrussCase) -> None:
+def _alternatives(case: TrussSections) -> None:
     for link in where_wrong(case.link, lambda links: said(links, "density_kg_per_m3") & said(links, "mass_kg")):
         if link.density_kg_per_m3 is not None and link.mass_kg is not None:
             raise NotAllowed("mass_kg", link.mass_kg, "only without density_kg_per_m3", item=f"link {link.name!r}")

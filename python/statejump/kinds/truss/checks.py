@@ -6,6 +6,7 @@ is the solver's to find: it depends on which joints are in contact.
 """
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -21,14 +22,18 @@ from statejump.schema.item_tables import ItemColumns, each, repeated_names, wher
 if TYPE_CHECKING:
     import numpy as np
 
-    from statejump.kinds.truss.case import Node, TrussCase
+    from statejump.kinds.truss.resolved import ResolvedTruss
+    from statejump.kinds.truss.sections import Node, TrussSections
 
 SECTIONS = ("node", "link", "program", "expansion", *(joint.section for joint in JOINTS), "spring", "torsion_spring",
             "drive")
 
 
-def check(case: TrussCase) -> None:
-    """Raise StatejumpError for the first thing that is wrong with a truss as a whole, without the file's name."""
+def check(case: TrussSections, resolve: Callable[[], ResolvedTruss]) -> None:
+    """Raise StatejumpError for the first thing that is wrong with a truss as a whole, without the file's name.
+
+    :param resolve: returns its arrays; called where its references are right
+    """
     if case.tables is not None:
         raise NotAllowed("section [tables]", cause="only where a case file names files")
     _programs(case)
@@ -36,7 +41,7 @@ def check(case: TrussCase) -> None:
     _names(case)
     _vectors(case)
     check_references(case)
-    check_geometry(case)
+    check_geometry(resolve())
     if case.motion.displacement_tolerance_m is not None and case.motion.theta != 0.5:
         raise NotAllowed("motion.theta", case.motion.theta, "it is of equal steps, which "
                          "motion.displacement_tolerance_m has not")
@@ -44,19 +49,19 @@ def check(case: TrussCase) -> None:
         _regularised(case)
 
 
-def _regularised(case: TrussCase) -> None:
+def _regularised(case: TrussSections) -> None:
     scheme = "with motion.scheme = 'regularised'"
     for key, usual in (("displacement_tolerance_m", None), ("theta", 0.5), ("restitution", 0.0)):
         if getattr(case.motion, key) != usual:
             raise NotAllowed(f"motion.{key}", getattr(case.motion, key), f"it is not read {scheme}")
     if case.motion.masses != "lumped":
         raise NotAllowed("motion.masses", case.motion.masses, f"must be 'lumped' {scheme}, as in the DEM")
-    if case.reduced.sticking == "rigid":
-        raise NotAllowed("reduced.sticking", case.reduced.sticking,
+    if case.reduced_settings.sticking == "rigid":
+        raise NotAllowed("reduced.sticking", case.reduced_settings.sticking,
                          f"must be 'elastic' or 'partial_slip' {scheme}: its contacts bend, as in the DEM")
 
 
-def _programs(case: TrussCase) -> None:
+def _programs(case: TrussSections) -> None:
     for item in case.program:
         try:
             program = item.completed(case.thermal)
@@ -73,7 +78,7 @@ def _programs(case: TrussCase) -> None:
             )
 
 
-def _expansions(case: TrussCase) -> None:
+def _expansions(case: TrussSections) -> None:
     for item in case.expansion:
         try:
             expansion.check(item, section="")
@@ -82,7 +87,7 @@ def _expansions(case: TrussCase) -> None:
             raise
 
 
-def _names(case: TrussCase) -> None:
+def _names(case: TrussSections) -> None:
     for section in SECTIONS:
         if not repeated_names(getattr(case, section)):
             continue
@@ -93,7 +98,7 @@ def _names(case: TrussCase) -> None:
             seen.add(item.name)
 
 
-def _vectors(case: TrussCase) -> None:
+def _vectors(case: TrussSections) -> None:
     dimension = case.truss.dimension
     keys = (("position_m", "m", False), ("guide_normal", "-", True), ("force_N", "N", False))
 

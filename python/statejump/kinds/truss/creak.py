@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy import signal
 
-from statejump.core import figures
+from statejump.core import figures, libraries
 from statejump.core.errors import NotAllowed
 from statejump.core.progress import Tell
 from statejump.core.run import Run
@@ -60,7 +60,7 @@ class Creak:
 
     def frame(self, table: str) -> pandas.DataFrame:
         """Return ``slips`` or ``bands`` as a table, units in the names of the columns."""
-        import pandas
+        pandas = libraries.pandas()
 
         return pandas.DataFrame(getattr(self, table))
 

@@ -22,13 +22,13 @@ from statejump.core.progress import Tell
 from statejump.core.run import Run
 from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION
 from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.check_mechanism import refused_at_rest
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import Torsion
 from statejump.kinds.truss.masses import lumped_mass_kg
-from statejump.kinds.truss.mechanism import refused_at_rest
 from statejump.kinds.truss.motion import simulate
-from statejump.kinds.truss.resolved import ResolvedTruss
-from statejump.kinds.truss.solve import Course, TrussPath, solve
+from statejump.kinds.truss.resolved import Course, ResolvedTruss
+from statejump.kinds.truss.solve import TrussPath, solve
 from statejump.schema.paths import with_values
 
 CONTACT_GROUPS = 30  # bits of a body's mask in YADE that are free to use
@@ -62,11 +62,11 @@ def stable_time_step(case: TrussCase, path: Course) -> float:
             np.add.at(damping, nodes[:, side], moving * dashpot * inverse[nodes[:, side]])
 
     links, springs, torsion = truss.links, truss.springs, _torsion(truss)
-    ratio, contact = case.dem.link_damping_ratio, case.dem.contact_damping_ratio
+    ratio, contact = case.dem_settings.link_damping_ratio, case.dem_settings.contact_damping_ratio
     ranges = path.truss.temperature_ranges_K[links.program] * links.temperature_fraction[:, None]
     shortest = links.stress_free_length_m * (1 + links.thermal_expansion_per_K[:, None] * ranges).T.min(axis=0)
     axial = physics.axial_stiffness_N_per_m(links.young_modulus_Pa, links.cross_section_area_m2, shortest)
-    touch(links.nodes, axial, ratio, case.dem.pin_damping_N_m_s_per_rad / shortest**2)
+    touch(links.nodes, axial, ratio, case.dem_settings.pin_damping_N_m_s_per_rad / shortest**2)
     touch(springs.nodes, springs.stiffness_N_per_m, ratio)
     for ends, moment in zip(torsion.links, torsion.stiffness_N_m_per_rad):
         # The angle is a sum over all ends of both links.
@@ -83,7 +83,7 @@ def stable_time_step(case: TrussCase, path: Course) -> float:
 
 def number_of_steps(case: TrussCase, path: Course) -> int:
     """Steps of the whole run: a multiple of the samples, so that the last sample is the end."""
-    wanted = case.dem.time_step_fraction * stable_time_step(case, path)
+    wanted = case.dem_settings.time_step_fraction * stable_time_step(case, path)
     return ceil(case.period_s / wanted / case.samples_per_cycle) * case.samples_per_cycle * case.thermal.cycles
 
 
@@ -145,10 +145,10 @@ def check(case: TrussCase) -> None:
         unable = joint.dem_refuses(joints)
         if joint.not_in_dem and joints.names:
             unable = joints.names[0], joint.not_in_dem
-        if joint.has_contacts and case.dem.friction_law != "mindlin":
+        if joint.has_contacts and case.dem_settings.friction_law != "mindlin":
             for index in np.flatnonzero(~joint.bodies_touch(joints))[:1]:
                 unable = joints.names[index], ("touches no body in the DEM, its friction is a spring that slips, not "
-                                               f"dem.friction_law = {case.dem.friction_law!r}")
+                                               f"dem.friction_law = {case.dem_settings.friction_law!r}")
         if unable is not None:
             name, why = unable
             raise refuse(case, f"{joint.section} {name!r} {why}", joint=name)

@@ -13,8 +13,8 @@ from statejump.kinds.truss.arrays import column, values
 from statejump.schema.item_tables import ItemColumns
 
 if TYPE_CHECKING:
-    from statejump.core.temperature_files import MemberProgram
-    from statejump.kinds.truss.case import TrussCase, TrussThermal
+    from statejump.core.thermal import MemberProgram
+    from statejump.kinds.truss.sections import TrussSections, TrussThermal
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class LinkTemperatures:
     shown_fraction: np.ndarray
 
 
-def link_temperatures(case: TrussCase, shown: np.ndarray, names: tuple[str, ...]) -> LinkTemperatures:
+def link_temperatures(case: TrussSections, shown: np.ndarray, names: tuple[str, ...]) -> LinkTemperatures:
     """Return what warms the links. References must be right: ``checks`` sees to it when a case is read.
 
     :param shown: the program of the temperature of every link

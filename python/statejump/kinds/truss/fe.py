@@ -21,13 +21,14 @@ from statejump.core.start import FRICTIONLESS
 from statejump.fe import ccx
 from statejump.fe.ccx import number
 from statejump.kinds.truss import fe_sliding
-from statejump.kinds.truss.case import TrussCase, TrussThermal
+from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.arrays import GROUND, none_of
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.along_axis import AlongAxis
 from statejump.kinds.truss.joints.round_parts import RoundParts
 from statejump.kinds.truss.joints.slider import SLIDER, with_sliders
 from statejump.kinds.truss.resolved import ResolvedTruss
+from statejump.kinds.truss.sections import TrussThermal
 from statejump.kinds.truss.solve import whole_path
 
 Numbers = NDArray[np.float64]

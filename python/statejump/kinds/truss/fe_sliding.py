@@ -50,7 +50,7 @@ def rows(case: TrussCase, truss: ResolvedTruss) -> tuple[list[str], tuple[Quanti
     if len(found) != len(times) - 1:
         raise FailedRun("CalculiX left out increments")
     other = np.array([[step[node + 1] for node in range(len(truss.nodes.names))] for step in found])
-    path = whole_path(_small(truss), increments_per_branch=case.reduced.increments_per_branch)
+    path = whole_path(_small(truss), increments_per_branch=case.reduced_settings.increments_per_branch)
     at = np.array([int(np.argmin(np.abs(path.states["time_s"] - time))) for time in times])
     states = path.states["displacement_m"][at] / STEP
     own, start = states[1:], states[0]

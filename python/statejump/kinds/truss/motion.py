@@ -110,15 +110,15 @@ def inertia(case: TrussCase) -> dict[str, Any]:
     lumped = lumped_mass_kg(truss)
     axial = physics.axial_stiffness_N_per_m(
         links.young_modulus_Pa, links.cross_section_area_m2, links.stress_free_length_m)
-    ratio, is_lumped = case.dem.link_damping_ratio, case.motion.masses == "lumped"
+    ratio, is_lumped = case.dem_settings.link_damping_ratio, case.motion.masses == "lumped"
     return {
         "link_mass_kg": np.zeros(len(links.names)) if is_lumped else links.mass_kg,
         "node_mass_kg": lumped if is_lumped else truss.nodes.mass_kg,
         "link_centre": truss.bodies.centre,
         "link_moment_kg_m2": np.zeros(len(links.names)) if is_lumped else truss.bodies.moment_kg_m2,
         "link_damping_N_s_per_m": dashpots_N_s_per_m(links.nodes, axial, ratio, lumped),
-        "pin_damping_N_m_s_per_rad": np.full(len(links.names), case.dem.pin_damping_N_m_s_per_rad),
-        "joint_damping_sqrt_kg": joint_dashpots_sqrt_kg(truss, case.dem.contact_damping_ratio, lumped),
+        "pin_damping_N_m_s_per_rad": np.full(len(links.names), case.dem_settings.pin_damping_N_m_s_per_rad),
+        "joint_damping_sqrt_kg": joint_dashpots_sqrt_kg(truss, case.dem_settings.contact_damping_ratio, lumped),
         "spring_damping_N_s_per_m": dashpots_N_s_per_m(springs.nodes, springs.stiffness_N_per_m, ratio, lumped),
     }
 
@@ -145,7 +145,7 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
                          "motion", beside="with motion.start = 'drawn'", case=case.name)
     regularised = case.motion.scheme == "regularised"
     if regularised:
-        from statejump.kinds.truss import stable_steps
+        from statejump.kinds.truss import stable_steps  # explicit steps need the DEM's, which starts from a motion
 
         stable_steps.check(case)
     steps_per_sample = ceil(case.motion.steps_per_cycle / samples)
@@ -156,7 +156,7 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
             displacement_tolerance_m=case.motion.displacement_tolerance_m or 0.0, restitution=case.motion.restitution,
             watched_node=watched_node, drives=_drives(truss), start_drawn=case.motion.start == "drawn",
             start_friction=truss.start_friction,
-            friction_law=case.dem.friction_law if regularised else "", progress=going_on,
+            friction_law=case.dem_settings.friction_law if regularised else "", progress=going_on,
         )
     except _engine.EngineFailure as failure:
         if failure.item and failure.allowed:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from statejump.core.run import Run
+from statejump.kinds import of
 from statejump.kinds.truss.answers import reflector
 from statejump.kinds.truss.answers.jumps import node_jumps, quick_path
 from statejump.kinds.truss.case import TrussCase
@@ -18,7 +19,7 @@ LEAST_HEAT = 1e-9
 
 def quick(case: TrussCase) -> Run:
     """Return the reduced model as a run of its ends; only those events are located on which the state depends."""
-    path = quick_path(case.resolve(), case.reduced.increments_per_branch)
+    path = quick_path(case.resolve(), case.reduced_settings.increments_per_branch)
     return reduced_run(case, path, np.array([0.0, case.duration_s]))
 
 
@@ -28,7 +29,7 @@ def outcomes(case: TrussCase, run: Run) -> dict[str, float]:
     truss, ends = found.truss, found.cycle_ends
     jumps = np.linalg.norm(node_jumps(found)[-1], axis=1)
     heat = heat_of_joints_J(ends)[-1]
-    values = dict.fromkeys(case.behaviour.OUTCOMES, float("nan"))
+    values = dict.fromkeys(of(case).OUTCOMES, float("nan"))
     surface = reflector.surface(truss) if case.has_jump else None
     if surface is not None:
         start, end = (surface.fit(ends["displacement_m"][index]) for index in (0, -1))

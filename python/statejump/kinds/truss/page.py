@@ -18,10 +18,11 @@ from statejump.core.charts import TEMPERATURE, Axis, Chart
 from statejump.core.errors import Unreadable
 from statejump.core.run import Run
 from statejump.core.units import scale_of, text, unit_of
-from statejump.kinds.truss.case import Link, Spring, TrussCase
+from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.result import names as names_of
 from statejump.kinds.truss.scales import scales
+from statejump.kinds.truss.sections import Link, Spring
 from statejump.kinds.truss.words import is_guided, is_held
 from statejump.report import words
 from statejump.report.drawing import round_down

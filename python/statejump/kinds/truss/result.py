@@ -295,7 +295,7 @@ def _taken_together(case: TrussCase, path: TrussPath) -> tuple[str, ...]:
     """What a path without location of events may have missed: of two joints that change within one increment it is not
     known which came first, nor whether a third slid to and fro between them."""
     # Changes that are located all the same are so within 1.5 tolerances of a branch.
-    located = 2 * case.reduced.event_tolerance * float(path.states["time_s"][-1])
+    located = 2 * case.reduced_settings.event_tolerance * float(path.states["time_s"][-1])
     found = path.events
     within = found.interval_s > located
     changed = np.unique(np.stack([part[within] for part in (found.time_s, found.kind, found.joint)]), axis=1)

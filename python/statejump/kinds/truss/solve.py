@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol, overload
+from typing import Any, overload
 
 import numpy as np
 
@@ -14,11 +14,11 @@ from statejump.core.engine_failures import EngineFailed
 from statejump.core.errors import Interrupted, StatejumpError
 from statejump.core.progress import Tell
 from statejump.core.start import FRICTIONLESS
-from statejump.core.temperature_files import MemberProgram
-from statejump.kinds.truss.case import TrussCase, TrussThermal
+from statejump.core.thermal import MemberProgram, Thermal
+from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.check_mechanism import refused_at_rest
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import JointType
-from statejump.kinds.truss.mechanism import refused_at_rest
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.schema.texts import InBlocks
 
@@ -74,18 +74,6 @@ class TrussEvents(Sequence[TrussEvent]):
         )
 
 
-class Course(Protocol):
-    """What a truss went through: a quasi-static path, or a motion."""
-
-    @property
-    def truss(self) -> ResolvedTruss:
-        """Which."""
-
-    @property
-    def states(self) -> dict[str, np.ndarray]:
-        """As of :class:`TrussPath`."""
-
-
 @dataclass(frozen=True)
 class TrussPath:
     """What the solver found. ``states`` and ``cycle_ends`` map a name with unit to an array whose first
@@ -118,7 +106,7 @@ def heat_of_joints_J(states: Mapping[str, np.ndarray]) -> np.ndarray:
     return np.concatenate([states[f"{kind}_dissipation_J"] for kind in kinds], axis=1)
 
 
-def engine_program(program: TrussThermal | MemberProgram) -> _engine.ThermalProgram:
+def engine_program(program: Thermal | MemberProgram) -> _engine.ThermalProgram:
     """Return a temperature program of a truss as the engine's."""
     return thermal.program(program, program.period_s)
 
@@ -242,11 +230,11 @@ def _solved(case: TrussCase, tell: Tell) -> TrussPath:
     truss = case.resolve()
     items = 3 * len(truss.nodes.names) + len(truss.links.names) + 8 * len(truss.revolutes.names)
     branches = max(2, *(len(program.table_time_s or ()) for program in (case.thermal, *case.program)))
-    states = branches * case.thermal.cycles * case.reduced.increments_per_branch
+    states = branches * case.thermal.cycles * case.reduced_settings.increments_per_branch
     return whole_path(truss, tell, cycle_ends_only=8 * items * states > LARGEST_PATH, **settings(case))
 
 
 def settings(case: TrussCase) -> dict[str, Any]:
     """Return how the [reduced] of a case says that :func:`path` follows it."""
     keys = "increments_per_branch", "locate_events", "event_tolerance", "energy_tolerance"
-    return {key: getattr(case.reduced, key) for key in keys}
+    return {key: getattr(case.reduced_settings, key) for key in keys}

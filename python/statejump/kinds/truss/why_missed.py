@@ -39,13 +39,13 @@ def why_missed(case: TrussCase, exact: Run, dem: Run, jump_scale_m: float) -> li
     allowed = min(tolerance.displacement_relative * max(moved, least), tolerance.jump_relative * jump_scale_m)
     found = heated_too_fast(period, case.thermal, engine_program(case.thermal), moved, allowed)
     found += still_moving(dem, float(mass.sum()), period, allowed)
-    if case.reduced.sticking == "rigid" and path.truss.number_of_joints():
+    if case.reduced_settings.sticking == "rigid" and path.truss.number_of_joints():
         found.append("joints of the reduced model stick rigidly, those of the DEM give before they slip: set "
                      "reduced.sticking to 'elastic'")
-    slips = {"elastic": "mindlin", "partial_slip": "mindlin_deresiewicz"}.get(case.reduced.sticking)
-    if slips is not None and slips != case.dem.friction_law and path.truss.number_of_joints():
+    slips = {"elastic": "mindlin", "partial_slip": "mindlin_deresiewicz"}.get(case.reduced_settings.sticking)
+    if slips is not None and slips != case.dem_settings.friction_law and path.truss.number_of_joints():
         found.append(f"contacts of the reduced model and of the DEM slip by different laws: set dem.friction_law to "
-                     f"{slips!r}, as reduced.sticking is {case.reduced.sticking!r}")
+                     f"{slips!r}, as reduced.sticking is {case.reduced_settings.sticking!r}")
     for joint in JOINTS:
         found += joint.gives_in_dem(path, path.truss.joints[joint.section], SHARE_TOLD * allowed)
     return found

@@ -10,12 +10,13 @@ from statejump.core.run import Run
 from statejump.core.start import FRICTIONLESS
 from statejump.core.tables import Shown
 from statejump.kinds.truss import compare
-from statejump.kinds.truss.case import Node, TrussCase
+from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.joints.words import count, spread
 from statejump.kinds.truss.motion import TrussMotion
 from statejump.kinds.truss.result import AT_END
+from statejump.kinds.truss.sections import Node
 
 
 def is_held(case: TrussCase, node: Node) -> bool:
@@ -59,9 +60,9 @@ def _joints(case: TrussCase) -> list[str]:
     sentences = [joint.describe(items) for joint, items in found if items]
     if case.start.friction == FRICTIONLESS:
         sentences.append("Loads and preloads act before friction does: joints start without friction.")
-    if case.reduced.sticking == "elastic":
+    if case.reduced_settings.sticking == "elastic":
         sentences.append("Joints of the reduced model stick elastically, as those of the DEM.")
-    if case.reduced.sticking == "partial_slip":
+    if case.reduced_settings.sticking == "partial_slip":
         sentences.append("Sliders and revolutes of the reduced model slide at the rim of their contacts before they "
                          "slide as a whole.")
     return sentences

@@ -164,8 +164,8 @@ class UmbrellaCase(Case):
     damping: Damping = section(Damping)
     start: Start = section(Start)
     output: Output = section(Output)
-    reduced: Reduced = section(Reduced)
-    dem: UmbrellaDem = section(UmbrellaDem)
+    reduced_settings: Reduced = section(Reduced, name="reduced")
+    dem_settings: UmbrellaDem = section(UmbrellaDem, name="dem")
     ensemble: Ensemble = section(Ensemble)
     tolerance: UmbrellaTolerance = section(UmbrellaTolerance)
 
@@ -359,7 +359,7 @@ class UmbrellaCase(Case):
             )
 
     def _check_run(self) -> None:
-        if self.reduced.method == "adaptive" and laws.law("friction", self.joint.friction_law).has_memory:
+        if self.reduced_settings.method == "adaptive" and laws.law("friction", self.joint.friction_law).has_memory:
             raise NotAllowed("reduced.method", "adaptive", "friction with memory is not smooth, use 'rk4'",
                              beside=f"with joint.friction_law = {self.joint.friction_law!r}")
         samples = self.output.samples_per_cycle
@@ -369,6 +369,6 @@ class UmbrellaCase(Case):
             ("ensemble", "reduced_steps_per_cycle"),
             ("ensemble", "dem_steps_per_cycle"),
         ):
-            steps = getattr(getattr(self, part), key)
+            steps = getattr(self.part(part), key)
             if steps % samples != 0:
                 raise NotAllowed(f"{part}.{key}", steps, f"must be a multiple of output.samples_per_cycle = {samples}")

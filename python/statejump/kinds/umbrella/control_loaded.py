@@ -15,7 +15,7 @@ from statejump.core.errors import StatejumpError
 from statejump.core.progress import Tell
 from statejump.kinds.umbrella import dem, reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.kinds.umbrella.control import AREA, BIAS, CLEARANCE, FRICTION, SPRING, changes
+from statejump.kinds.umbrella.control_parameters import AREA, BIAS, CLEARANCE, FRICTION, SPRING, changes
 from statejump.schema.paths import with_values
 
 

@@ -12,13 +12,14 @@ import numpy as np
 from statejump.core import yade_process
 from statejump.core.run import Columns, Run
 from statejump.core.yade_process import Samples, common_values
+from statejump.kinds import of
 from statejump.kinds.umbrella import reduced, result
 from statejump.kinds.umbrella.case import UmbrellaCase
 
 
 def number_of_steps(case: UmbrellaCase) -> int:
     """Return the steps of the whole run."""
-    return case.dem.steps_per_cycle * case.thermal.cycles
+    return case.dem_settings.steps_per_cycle * case.thermal.cycles
 
 
 def dem_input(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> dict[str, Any]:
@@ -37,7 +38,7 @@ def dem_input(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> dict[st
 
 def execute(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> Samples:
     """Run the case in YADE, from another start; see :func:`dem_input`."""
-    values = {"scene": case.behaviour.scene_module(), **dem_input(case, offset_m)}
+    values = {"scene": of(case).scene_module(), **dem_input(case, offset_m)}
     return yade_process.execute(values, lambda share: None)
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from statejump import _engine, laws
+from statejump.core import libraries
 from statejump.core.engine_failures import engine
 from statejump.core.errors import NotAllowed
 from statejump.core.tables import Shown, write_columns, write_rows
@@ -49,13 +50,13 @@ class QuasiStatic:
 
         :raises NotAllowed: there is no such path
         """
-        import pandas
+        pandas = libraries.pandas()
 
         return pandas.DataFrame(self._path(links).columns())
 
     def events(self, links: str = RIGID) -> pandas.DataFrame:
         """Return where the joint begins to roll or to slip, a row each. :raises NotAllowed: there is no such path"""
-        import pandas
+        pandas = libraries.pandas()
 
         return pandas.DataFrame(self._path(links).events)
 

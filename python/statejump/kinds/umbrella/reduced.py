@@ -63,11 +63,11 @@ def integrate(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> _engine
     with engine("the reduced run failed", case=case.name):
         model, program, start = linkage(case), case.thermal_program(), start_state(case, offset_m)
         cycles, samples = case.thermal.cycles, case.samples_per_cycle
-        if case.reduced.method == "adaptive":
+        if case.reduced_settings.method == "adaptive":
             return _engine.simulate_adaptive(
-                model, program, start, case.reduced.relative_tolerance, samples * cycles
+                model, program, start, case.reduced_settings.relative_tolerance, samples * cycles
             )
-        steps = case.reduced.steps_per_cycle
+        steps = case.reduced_settings.steps_per_cycle
         return _engine.simulate(model, program, start, steps * cycles, steps // samples)
 
 

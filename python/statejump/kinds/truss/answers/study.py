@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from statejump.core import libraries
 from statejump.core.engine_failures import EngineFailed
 from statejump.core.errors import ABSENT, NotAllowed, Range, StatejumpError
+from statejump.core.later import Later
 from statejump.core.progress import Tell
 from statejump.core.run import Run
 from statejump.core.units import plain
@@ -31,6 +33,9 @@ if TYPE_CHECKING:
     import pandas
     from matplotlib.figure import Figure
 
+_JUMPS = Later("statejump.kinds.truss.answers.figure:jumps_figure")
+_RANKING = Later("statejump.kinds.truss.answers.figure:ranking_figure")
+_WRITTEN = Later("statejump.kinds.truss.answers.write:write")
 NO_JUMP = 1e-9  # of the largest jump of a node: what is smaller is rounding
 MOST_SAMPLES = 1000  # of the path in the result file; every cycle has at least its ends
 CYCLES = Rule(WHOLE, allowed=Range(1, 100_000), optional=True)
@@ -94,23 +99,19 @@ class TrussAnswers:
 
     def frame(self, table: str) -> pandas.DataFrame:
         """Return a table, units in the names of its columns. :raises KeyError: there is none"""
-        import pandas
+        pandas = libraries.pandas()
 
         return pandas.DataFrame(self.tables[table])
 
     def plot(self) -> Figure:
         """Draw the truss with its jumps, magnified."""
-        from statejump.kinds.truss.answers.figure import jumps_figure
-
-        return jumps_figure(self.path, self.shares, self.case.title)
+        return _JUMPS(self.path, self.shares, self.case.title)
 
     def plot_ranking(self) -> Figure:
         """Draw the joints that hold the jump. :raises StatejumpError: no joints are ranked"""
-        from statejump.kinds.truss.answers.figure import ranking_figure
-
         if self.shares is None:
             raise StatejumpError("no joints are ranked", cause="; ".join(self.notes), case=self.case.name)
-        return ranking_figure(self.shares, self.output, self.case.title)
+        return _RANKING(self.shares, self.output, self.case.title)
 
     def write(self, folder: Path, frames: int = 0, phase: Phase = silent) -> list[Path]:
         """Write result file, tables, figures and ``answers.md``, and return their paths.
@@ -118,9 +119,7 @@ class TrussAnswers:
         :param folder: exists
         :param frames: how many files for ParaView, evenly spread over the path; 0: none
         """
-        from statejump.kinds.truss.answers import write
-
-        return write.write(self, folder, frames, phase)
+        return _WRITTEN(self, folder, frames, phase)
 
     def __repr__(self) -> str:
         return f"TrussAnswers({self.case.name}, jump {plain(self.jump, self.record.unit)}, {self.verdict})"
@@ -145,7 +144,7 @@ def study(
     """
     STEPS.check("step", step)
     case = _of_cycles(case, cycles)
-    truss, increments = case.resolve(), case.reduced.increments_per_branch
+    truss, increments = case.resolve(), case.reduced_settings.increments_per_branch
     with phase("path") as tell:
         found = quick_path(truss, increments, tell)
     asked = chosen_output(found, output)
@@ -178,6 +177,12 @@ def study(
     record = Answers(asked.name, asked.text, asked.unit, checked.word, checked.text, notes,
                      _numbers(found, checked, asked, jump, shares), tables)
     return TrussAnswers(case, record, run, asked, checked, shares)
+
+
+def answer(case: TrussCase, **settings: Any) -> TrussAnswers:
+    """Return what a designer asks of a truss that has a state jump; see :func:`statejump.truss.answers`."""
+    case.need_jump("'statejump truss answers'")
+    return study(case, **settings)
 
 
 def _of_cycles(case: TrussCase, cycles: int | None) -> TrussCase:

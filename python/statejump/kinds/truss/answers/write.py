@@ -6,12 +6,14 @@ from pathlib import Path
 from typing import Any
 
 from statejump.core.figures import save
+from statejump.core.later import Later
 from statejump.core.tables import markdown, write_json, write_markdown
 from statejump.core.units import plain
 from statejump.kinds.truss.answers.rows import Row
 from statejump.kinds.truss.answers.study import Phase, TrussAnswers
 from statejump.results import record
 
+_SERIES = Later("statejump.kinds.truss.answers.vtk:series")
 MOST_ROWS = 15  # of a table in answers.md
 MOST_NODES = 8
 # Tables that are large, and beside it as CSV.
@@ -29,10 +31,8 @@ def write(found: TrussAnswers, folder: Path, frames: int, phase: Phase) -> list[
     if found.shares is not None:
         written += save(found.plot_ranking(), folder, "ranking")
     if frames:
-        from statejump.kinds.truss.answers import vtk
-
         with phase("files for ParaView") as tell:
-            written.append(vtk.series(found.path, folder, "path", frames, tell))
+            written.append(_SERIES(found.path, folder, "path", frames, tell))
     return written
 
 

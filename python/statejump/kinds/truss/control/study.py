@@ -4,8 +4,9 @@ or below a bound, and which of several candidates is best."""
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
-from statejump.control.study import Line, Places, Study, Sweep, check_wanted, number, refuse_runs
+from statejump.control.study import Line, Places, Study, Sweep, check_wanted, number, refuse_runs, with_notes
 from statejump.core.errors import NotAllowed
 from statejump.core.progress import Tell, one_of
 from statejump.core.units import plain
@@ -40,7 +41,7 @@ def control(
     if with_dem:
         raise NotAllowed("--dem", cause="a truss with what is found goes into a case of its own, which 'statejump "
                          "compare' checks", case=case.name)
-    truss, increments = case.resolve(), case.reduced.increments_per_branch
+    truss, increments = case.resolve(), case.reduced_settings.increments_per_branch
     names = truss.nodes.names
     if places.node is not None:
         known_name("--node", places.node, places.node, dict.fromkeys(names), "node", case=case.name)
@@ -79,6 +80,11 @@ def control(
             result.sentences.append("No key is named best, for not all of them are free to a designer: --free KEY (in "
                                     "Python scale=[KEY]) names those that are.")
     return result
+
+
+def answer(case: TrussCase, **settings: Any) -> Study:
+    """Return what makes the state jump smaller, with notes on the temperature program."""
+    return with_notes(control, case, **settings)
 
 
 def _shown(search: Search, value: float) -> str:

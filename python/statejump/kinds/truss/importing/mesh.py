@@ -18,7 +18,9 @@ from typing import Any
 
 import numpy as np
 
+from statejump.core import libraries
 from statejump.core.errors import StatejumpError, Unreadable
+from statejump.core.hdf5 import objects
 from statejump.core.reading import check_size, is_file
 from statejump.kinds.truss.importing.model import LARGEST_BYTES, Bar, Deck, quoted
 
@@ -116,7 +118,7 @@ def _by_vtk(path: Path) -> Any:
 
 def _by_meshio(path: Path) -> Any:
     try:
-        import meshio
+        import meshio  # 0.3 s, which may be missing
     except ImportError:
         raise StatejumpError("meshes are read by meshio, which is not installed", file=path,
                              remedy="install the Debian package python3-meshio") from None
@@ -138,9 +140,7 @@ def _by_meshio(path: Path) -> Any:
 
 def _check_hdf5(path: Path) -> None:
     """Raise Unreadable for a file of HDF5 whose parts are in other files."""
-    import h5py
-
-    from statejump.core.hdf5 import objects
+    h5py = libraries.h5py()
 
     with h5py.File(path, "r") as file:
         objects(file, path)

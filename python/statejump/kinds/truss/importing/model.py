@@ -12,7 +12,7 @@ from statejump.core.errors import NotAllowed, StatejumpError, Unreadable, printa
 from statejump.core.tables import Shown
 from statejump.kinds.truss.importing.lines import LARGEST_BYTES, text_of
 
-__all__ = ["LARGEST_BYTES", "Bar", "Deck", "Options", "Spring", "quoted", "read", "text_of"]
+__all__ = ["LARGEST_BYTES", "Bar", "Deck", "Options", "Spring", "quoted", "text_of"]
 
 BENDING = "--beams-as-bars"
 MOST_SHOWN = 5  # further items of a refusal
@@ -273,32 +273,3 @@ def quoted(text: str) -> str:
     """Return a word of a deck as a sentence has it."""
     shown = repr(printable(text))
     return shown if len(shown) <= 40 else shown[:36] + "...'"
-
-
-def read(path: Path, form: str | None = None, bars: Path | None = None, options: Options | None = None) -> Deck:
-    """Return what a deck says.
-
-    :param form: ``abaqus`` (CalculiX too), ``nastran``, ``tables`` or ``mesh``; None: by the suffix
-    :param bars: of ``tables`` the second table
-    :param options: what to do with cards of ``abaqus`` and ``nastran``
-    :raises StatejumpError: one sentence with file and line
-    """
-    from statejump.kinds.truss.importing import abaqus, mesh, nastran, tables
-
-    form = form or SUFFIXES.get(path.suffix.lower())
-    if form is None:
-        raise NotAllowed("FILE", path.name, f"must end with {', '.join(SUFFIXES)}", remedy="--format says what it is")
-    if form == "mesh" and path.suffix.lower() not in mesh.FORMATS:
-        raise NotAllowed("FILE", path.name, f"a mesh must end with {', '.join(mesh.FORMATS)}")
-    if form == "tables":
-        if bars is None:
-            raise NotAllowed("FILE", path.name, "a table of nodes needs a table of bars", remedy="--bars names it")
-        deck = tables.read(path, bars)
-        deck.named_units = True
-    else:
-        deck = mesh.read(path) if form == "mesh" else \
-            {"abaqus": abaqus.read, "nastran": nastran.read}[form](path, options or Options())
-    if not deck.bars:
-        raise Unreadable("holds no bars", file=path, remedy=", ".join(
-            f"{card}: {why}" for card, _, _, why in deck.left_rows()[:3]) or None)
-    return deck

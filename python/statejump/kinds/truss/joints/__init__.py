@@ -11,5 +11,5 @@ from statejump.kinds.truss.joints.protocol import JointType
 from statejump.kinds.truss.joints.revolute import REVOLUTE
 from statejump.kinds.truss.joints.slider import SLIDER
 
-# In the order in which results list them. A case has a list of each: statejump.kinds.truss.case.TrussCase.
+# In the order in which results list them. A case has a list of each: statejump.kinds.truss.sections.TrussSections.
 JOINTS: tuple[JointType[Any, Any], ...] = (SLIDER, REVOLUTE, LATCH_HINGE, IWAN_JOINT, BALL_JOINT)

@@ -19,8 +19,7 @@ from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
 
 if TYPE_CHECKING:
-    from statejump.kinds.truss.resolved import ResolvedTruss
-    from statejump.kinds.truss.solve import Course
+    from statejump.kinds.truss.resolved import Course, ResolvedTruss
 
 
 @definition

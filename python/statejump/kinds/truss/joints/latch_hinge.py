@@ -21,8 +21,7 @@ from statejump.schema.items import Item
 
 if TYPE_CHECKING:
     from statejump.kinds.truss.joints.friction_loads import Loads
-    from statejump.kinds.truss.resolved import ResolvedTruss
-    from statejump.kinds.truss.solve import Course
+    from statejump.kinds.truss.resolved import Course, ResolvedTruss
 
 
 @definition

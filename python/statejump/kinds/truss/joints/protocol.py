@@ -13,16 +13,15 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
+from statejump.core.case import Case
 from statejump.kinds.truss.arrays import References
 from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
 
 if TYPE_CHECKING:
-    from statejump.kinds.truss.case import TrussCase
     from statejump.kinds.truss.joints.friction_loads import Loads
     from statejump.kinds.truss.references import Around
-    from statejump.kinds.truss.resolved import ResolvedTruss
-    from statejump.kinds.truss.solve import Course
+    from statejump.kinds.truss.resolved import Course, ResolvedTruss
 
 ItemType = TypeVar("ItemType", bound=Item)
 ArraysType = TypeVar("ArraysType")
@@ -291,7 +290,7 @@ class JointType(Generic[ItemType, ArraysType]):
         return {}
 
 
-def listed_joints(case: TrussCase, joint: JointType[ItemType, Any]) -> list[ItemType]:
+def listed_joints(case: Case, joint: JointType[ItemType, Any]) -> list[ItemType]:
     """Return the joints of a type that a case has."""
     found: list[ItemType] = getattr(case, joint.section)
     return found

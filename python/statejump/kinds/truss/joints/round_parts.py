@@ -13,13 +13,13 @@ from statejump.core.errors import MissingKey, NotAllowed
 from statejump.kinds.truss.arrays import GROUND
 from statejump.kinds.truss.joints.protocol import IMPACT, ContactPart, Contacts, Drawn, JointType, Sampled
 from statejump.kinds.truss.references import Around, known_name
+from statejump.results import scene as drawing
 from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns
 from statejump.schema.items import Item
 
 if TYPE_CHECKING:
     from statejump.kinds.truss.joints.friction_loads import Loads
-    from statejump.kinds.truss.resolved import ResolvedTruss
-    from statejump.kinds.truss.solve import Course
+    from statejump.kinds.truss.resolved import Course, ResolvedTruss
 
 ItemType = TypeVar("ItemType", bound=Item)
 ArraysType = TypeVar("ArraysType")
@@ -172,8 +172,6 @@ class RoundParts(JointType[ItemType, ArraysType]):
         )
 
     def drawn(self, truss: ResolvedTruss, joints: Any, labels: Sequence[str], taken: set[str]) -> Drawn:
-        from statejump.results import scene as drawing
-
         parts: list[dict[str, Any]] = []
         contacts = []
         for place, name in enumerate(labels):

@@ -19,12 +19,12 @@ from statejump.kinds.truss.joints.protocol import (
     IMPACT, ContactPart, Contacts, Drawn, JointColumn, Sampled, Strokes, Symbol,
 )
 from statejump.kinds.truss.joints.words import ALUMINIUM, USER, count, scaled, spread
+from statejump.results import scene as drawing
 from statejump.schema.fields import CHOICE, definition, numbers, parameter, texts
 from statejump.schema.items import Item
 
 if TYPE_CHECKING:
-    from statejump.kinds.truss.resolved import ResolvedTruss
-    from statejump.kinds.truss.solve import Course
+    from statejump.kinds.truss.resolved import Course, ResolvedTruss
 
 BLOCK: Strokes = (
     ((-0.75, -0.45), (0.75, -0.45), (0.75, 0.45), (-0.75, 0.45), (-0.75, -0.45)), ((-1.0, -0.55), (1.0, -0.55)),
@@ -231,8 +231,6 @@ class SliderType(AlongAxis[Slider, Sliders]):
         )
 
     def drawn(self, truss: ResolvedTruss, joints: Sliders, labels: Sequence[str], taken: set[str]) -> Drawn:
-        from statejump.results import scene as drawing
-
         parts: list[dict[str, Any]] = []
         contacts = []
         for label, ends, axis, radius in zip(labels, joints.nodes, joints.axis, joints.pad_radius_m):

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Outputs of a campaign, held against a run of the case before the campaign begins."""
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from statejump.campaign.outputs import parts, values
+from statejump.campaign.work import sampled
+from statejump.core.case import Case
+from statejump.core.errors import NotAllowed
+
+
+def checked(given: Sequence[str], case: Case) -> tuple[str, ...]:
+    """Return outputs after they were taken from one run of the reduced model of the case itself.
+
+    :raises NotAllowed: what is wrong with one of them
+    """
+    names = tuple(given)
+    for place, name in enumerate(names):
+        parts(name)
+        if name in names[:place]:
+            raise NotAllowed("outputs", name, "it is there twice")
+    if names:
+        values(names, sampled(case, "reduced", names))
+    return names

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Capabilities of kinds that answer design questions; see :mod:`statejump.kinds.protocol`."""
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from statejump.control.study import Study
+from statejump.core.progress import Tell
+from statejump.core.tables import Shown
+from statejump.kinds.protocol import capability
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+@capability("control")
+class ControlStudy(Protocol):
+    """What makes the state jump smaller; the settings are those of the kind."""
+
+    def control(self, case: Any, **settings: Any) -> Study: ...
+
+
+class RestSets(Protocol):
+    """Where a joint can rest; each kind of case has its own."""
+
+    def frame(self) -> pandas.DataFrame:
+        """Return the sets as a table, units in the names of the columns."""
+
+    def plot(self, axes: Axes | None = None) -> Figure:
+        """Draw the sets; into given axes, or into a new figure."""
+
+    def told(self) -> list[Shown | str]:
+        """Return what a command prints, tables and lines."""
+
+    def write(self, folder: Path) -> list[Path]:
+        """Write the sets and their picture into a folder; return the paths."""
+
+
+@capability("statics")
+class JointStatics(Protocol):
+    """Where friction holds the joint."""
+
+    def statics(self, case: Any, friction_coefficient: float | None = None) -> RestSets: ...
+
+
+@capability("truss answers")
+class DesignAnswers(Protocol):
+    """What a designer asks of a truss; see :func:`statejump.truss.answers`."""
+
+    def answers(self, case: Any, **settings: Any) -> Any: ...
+
+
+@capability("truss creak")
+class Creaking(Protocol):
+    """What a node feels while the truss moves; see :func:`statejump.truss.creak`."""
+
+    def creak(self, case: Any, node: str, tell: Tell) -> Any: ...
+
+
+@capability("convergence")
+class ConvergenceStudy(Protocol):
+    """How the DEM approaches the reduced model."""
+
+    def convergence(self, case: Any, tell: Tell, decades: int = 0) -> Any: ...

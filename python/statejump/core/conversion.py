@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How numbers of one unit become those of another."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """Numbers of one unit become those of another: x · factor/divisor + offset. The divisor keeps 12.5 mm at 0.0125 m
+    exactly as if it were written so."""
+
+    factor: float = 1.0
+    divisor: float = 1.0
+    offset: float = 0.0
+
+    def __call__(self, values: np.ndarray) -> np.ndarray:
+        if self.factor != 1:
+            values = values * self.factor
+        if self.divisor != 1:
+            values = values / self.divisor
+        return values + self.offset if self.offset else values
+
+
+SAME = Conversion()

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Decks by their format: which reader reads a file."""
+from __future__ import annotations
+
+from pathlib import Path
+
+from statejump.core.errors import NotAllowed, Unreadable
+from statejump.kinds.truss.importing import abaqus, mesh, nastran, tables
+from statejump.kinds.truss.importing.model import SUFFIXES, Deck, Options
+
+
+def read(path: Path, form: str | None = None, bars: Path | None = None, options: Options | None = None) -> Deck:
+    """Return what a deck says.
+
+    :param form: ``abaqus`` (CalculiX too), ``nastran``, ``tables`` or ``mesh``; None: by the suffix
+    :param bars: of ``tables`` the second table
+    :param options: what to do with cards of ``abaqus`` and ``nastran``
+    :raises StatejumpError: one sentence with file and line
+    """
+    form = form or SUFFIXES.get(path.suffix.lower())
+    if form is None:
+        raise NotAllowed("FILE", path.name, f"must end with {', '.join(SUFFIXES)}", remedy="--format says what it is")
+    if form == "mesh" and path.suffix.lower() not in mesh.FORMATS:
+        raise NotAllowed("FILE", path.name, f"a mesh must end with {', '.join(mesh.FORMATS)}")
+    if form == "tables":
+        if bars is None:
+            raise NotAllowed("FILE", path.name, "a table of nodes needs a table of bars", remedy="--bars names it")
+        deck = tables.read(path, bars)
+        deck.named_units = True
+    else:
+        deck = mesh.read(path) if form == "mesh" else \
+            {"abaqus": abaqus.read, "nastran": nastran.read}[form](path, options or Options())
+    if not deck.bars:
+        raise Unreadable("holds no bars", file=path, remedy=", ".join(
+            f"{card}: {why}" for card, _, _, why in deck.left_rows()[:3]) or None)
+    return deck

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The arrays of a case of kind ``truss``: names become indices, keys become arrays."""
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf
+
+import numpy as np
+
+from statejump.kinds.truss.arrays import (
+    References, column, columns, distances, given_or, having, in_space, names, pairs, texts, unit, values, vectors,
+)
+from statejump.kinds.truss.expansions import link_temperatures
+from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.joints.protocol import listed_joints
+from statejump.kinds.truss.mechanism import resolve_bodies, resolve_drives, weights_N
+from statejump.kinds.truss.resolved import Links, Nodes, ReflectorSurface, ResolvedTruss, Springs, TorsionSprings
+from statejump.kinds.truss.sections import TrussSections
+from statejump.schema.item_tables import Places, once
+
+
+def resolve(case: TrussSections) -> ResolvedTruss:
+    """Return the arrays of a case. References must be right: ``checks`` sees to it when a case is read."""
+    dimension = case.truss.dimension
+    node_places, link_places = Places(case.node), Places(case.link)
+    positions = vectors(case.node, "position_m", dimension)
+
+    members = case.thermal.members
+    member_number = {} if members is None else {
+        name: index for index, name in enumerate(members.names, start=1 + len(case.program))
+    }
+
+    known = References(dimension, node_places, link_places, Places(case.program), member_number)
+
+    fixed = np.stack([having(case.node, "fixed", axis) for axis in "xyz"], axis=1)
+    fixed[:, dimension:] = True
+    nodes = Nodes(
+        names=names(case.node),
+        position_m=positions,
+        fixed=fixed,
+        guide_normal=unit(vectors(case.node, "guide_normal", dimension)),
+        force_N=vectors(case.node, "force_N", dimension),
+        mass_kg=column(case.node, "mass_kg"),
+    )
+
+    link_nodes = pairs(case.link, "nodes", node_places)
+    length = column(case.link, "stress_free_length_m")
+    length = given_or(length, distances(positions, link_nodes))
+    link = columns(
+        case.link, "young_modulus_Pa", "cross_section_area_m2", "thermal_expansion_per_K", "poisson_ratio",
+    )
+    program_names = ("thermal", *names(case.program), *(() if members is None else members.names))
+    warmed = link_temperatures(case, known.programs_of(case.link), program_names)
+    if warmed.expanding.any():
+        link["thermal_expansion_per_K"] = np.where(
+            warmed.expanding, warmed.largest_per_K, link["thermal_expansion_per_K"])
+    moment, strength = column(case.link, "second_moment_of_area_m4"), column(case.link, "yield_strength_Pa")
+    mass = column(case.link, "mass_kg")
+    mass = given_or(mass, column(case.link, "density_kg_per_m3") * link["cross_section_area_m2"] * length)
+    bodies = resolve_bodies(case.link, length, mass)
+    gravity = in_space(case.truss.gravity_m_per_s2, dimension)
+    if gravity.any():
+        nodes = replace(nodes, force_N=nodes.force_N + weights_N(gravity, link_nodes, mass, bodies, nodes.mass_kg))
+    links = Links(
+        names=names(case.link), nodes=link_nodes, stress_free_length_m=length, mass_kg=mass, program=warmed.program,
+        temperature_fraction=warmed.temperature_fraction, shown_program=warmed.shown_program,
+        shown_fraction=warmed.shown_fraction, **link,
+        second_moment_of_area_m4=once(given_or(moment, link["cross_section_area_m2"] ** 2 / 12)),
+        ends=texts(case.link, "ends"), yield_strength_Pa=given_or(strength, inf),
+    )
+
+    spring_nodes = pairs(case.spring, "nodes", node_places)
+    drawn = distances(positions, spring_nodes)
+    stiffness = column(case.spring, "stiffness_N_per_m")
+    free, preload = column(case.spring, "free_length_m"), column(case.spring, "preload_N")
+    preload = once(np.where(np.isnan(free), np.nan_to_num(preload), stiffness * (drawn - free)))
+    with np.errstate(over="ignore"):  # refused by the checks
+        stretch = preload / stiffness
+    springs = Springs(
+        names=names(case.spring), nodes=spring_nodes, stiffness_N_per_m=stiffness,
+        free_length_m=given_or(free, drawn - stretch), preload_N=preload,
+        cable=np.array(list(values(case.spring, "cable")), dtype=bool),
+    )
+    torsion_springs = TorsionSprings(
+        names=names(case.torsion_spring), links=pairs(case.torsion_spring, "links", link_places),
+        axis=known.axes(case.torsion_spring),
+        **columns(case.torsion_spring, "stiffness_N_m_per_rad", "bias_rad"),
+    )
+    reflector = None
+    if case.reflector is not None:
+        reflector = ReflectorSurface(
+            nodes=node_places.called(case.reflector.nodes),
+            axis=unit(in_space(case.reflector.axis, dimension)),
+            focal_length_m=case.reflector.focal_length_m,
+        )
+    return ResolvedTruss(
+        name=case.name, dimension=dimension, nodes=nodes, links=links, bodies=bodies,
+        joints={joint.section: joint.resolve(listed_joints(case, joint), known) for joint in JOINTS},
+        springs=springs, torsion_springs=torsion_springs, drives=resolve_drives(case.drive, known),
+        programs=warmed.programs,
+        program_names=warmed.program_names,
+        reflector=reflector,
+        sticking=case.reduced_settings.sticking,
+        start_friction=case.start.friction,
+        types=JOINTS,
+    )

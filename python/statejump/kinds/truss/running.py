@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs of a truss in its models."""
+from __future__ import annotations
+
+from dataclasses import replace
+
+from statejump.core.errors import Interrupted
+from statejump.core.progress import Tell
+from statejump.core.run import Run
+from statejump.core.yade_process import find_yade
+from statejump.kinds import of
+from statejump.kinds.truss import dem as scene
+from statejump.kinds.truss import motion, result, solve
+from statejump.kinds.truss.case import TrussCase
+
+
+def reduced(case: TrussCase, tell: Tell) -> Run:
+    """Run the quasi-static solver."""
+    return result.reduced_run(case, solve.solve(case, tell), result.sample_times(case))
+
+
+def dynamic(case: TrussCase, tell: Tell) -> Run:
+    """Run the truss in motion."""
+    try:
+        return result.motion_run(case, motion.simulate(case, tell))
+    except Interrupted as stopped:
+        if stopped.run is not None:
+            stopped.run = replace(result.motion_run(case, stopped.run), complete=False)
+        raise stopped from None
+
+
+def check_dem(case: TrussCase) -> None:
+    """Raise StatejumpError where the DEM cannot run a case, before anything is solved."""
+    scene.check(case)
+    find_yade()
+
+
+def dem(case: TrussCase, tell: Tell) -> Run:
+    """Run the truss in YADE."""
+    return scene.run(case, of(case).scene_module(), result.dem_run, tell)

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cost of a contact step in a bore of triangles beside the analytic bearing, and by the JointStepper.
+
+    yade -n -x -j1 studies/bench/yade_bore.py                   # prints a table, writes results/bench/bore.md
+    FACETS=1000,10000 REPORT=bore.md yade -n -x -j1 studies/bench/yade_bore.py
+
+100 journals, each in its bearing, one wall for all. Three loads: at rest under a slowly rising
+temperature; and sliding, slowly or fast, where the force on the journals turns by 30 degrees per
+second or once in 20 ms, so that every contact runs around its bore. CPU time per contact and step,
+medians of five; bearing and bore by YADE's loop and bore by the JointStepper in turn in one process.
+"""
+import os
+import sys
+import time
+from math import atan, cos, pi, sin, sqrt
+from pathlib import Path
+from statistics import median
+
+here = Path(sys.argv[0]).resolve().parent
+sys.path += [str(here.parents[1] / "build" / "python")]
+from statejump_yade import *
+
+R1, R2, load, dt, joints = 5e-3, 5.1e-3, 10.0, 1e-6, 100
+steps, warm_up, repetitions = 2000, 500, 5
+# Turns of the force per second, and a friction coefficient that holds at rest and lets slide.
+loads = {"at rest": (0.0, 0.3), "sliding slowly": (30 / 360, 1e-3), "sliding fast": (50.0, 0.1)}
+
+
+def scene(outer, friction):
+    O.reset()
+    metals = [ThermalFrictMat(young=70e9, poisson=0.3, frictionAngle=atan(friction),
+                              thermalExpansion=a) for a in (23.75e-6, 22e-6)]
+    for metal in metals:
+        O.materials.append(metal)
+    K = 4 / 3 * 70e9 / (2 * (1 - 0.3**2)) * sqrt(R1 * R2 / (R2 - R1))
+    offset = R2 - R1 + (load / K) ** (2 / 3)
+    ids = []
+    for i in range(joints):
+        origin = Vector3(0.03 * (i % 10), 0.03 * (i // 10), 0)
+        for shape, metal, place, blocked in (
+            (outer, metals[1], origin, "xyzXYZ"),
+            (Journal(radius=R1), metals[0], origin + Vector3(offset, 0, 0), "zXYZ"),
+        ):
+            body = Body()
+            body.shape, body.material, body.bound = shape, metal, Aabb()
+            body.state.pos, body.state.mass, body.state.blockedDOFs = place, 0.01, blocked
+            number = O.bodies.append(body)
+        ids.append(number)
+        O.forces.setPermF(number, Vector3(load, 0.15 * load, 0))
+    program = ThermalProgram(shape="triangle", temperatureChangeMax=10, period=1.0)
+    O.engines = [
+        ForceResetter(),
+        ThermalExpansionEngine(program=program),
+        InsertionSortCollider([Bo1_Journal_Aabb(), Bo1_Bearing_Aabb(), Bo1_MeshBore_Aabb()], verletDist=5e-4),
+        InteractionLoop(
+            [Ig2_Journal_Bearing_JointGeom(), Ig2_Journal_MeshBore_BoreGeom()],
+            [Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys(normalDampingRatio=0.1)],
+            [Law2_JointGeom_JointPhys_JointLaw(), Law2_BoreGeom_BorePhys_JointLaw()],
+        ),
+        NewtonIntegrator(damping=0.2),
+    ]
+    O.dt = dt
+    return ids
+
+
+def cost(outer, turns, friction, stepper=False):
+    """CPU time per contact and step [ns]."""
+    ids = scene(outer, friction)
+    if stepper:
+        O.engines = [O.engines[0], JointStepper(substeps=1000), *O.engines[1:]]
+
+    def push():
+        a = 2 * pi * O.time * turns
+        for number in ids:
+            O.forces.setPermF(number, Vector3(load * cos(a), load * sin(a), 0))
+
+    def run(count):
+        spent = 0.0
+        for _ in range(count // 100):
+            if turns:
+                push()
+            start = time.process_time()
+            O.run(100, True)
+            spent += time.process_time() - start
+        return spent
+
+    run(warm_up)
+    spent = run(steps)
+    touching = O.interactions.countReal()
+    if touching < (0.9 if turns else 1) * joints:
+        raise SystemExit(f"{touching} of {joints} journals touch")
+    return 1e9 * spent / steps / joints
+
+
+sizes = [int(n) for n in os.environ.get("FACETS", "1000,10000,100000,1000000").split(",")]
+lines = [
+    "# Cost of a contact in a bore of triangles beside the analytic bearing",
+    "",
+    "`yade -n -x -j1 studies/bench/yade_bore.py`: 100 journals (R1 = 5 mm, c = 0.1 mm), CPU time per contact and",
+    "step of the whole YADE step, medians of five. At rest: under a slowly rising temperature. Sliding:",
+    "the force turns and the contacts run around their bores, slowly at 30 degrees per second, fast once in",
+    "20 ms: the point of contact then moves at 1.6 m/s, 1.6 um in a step, and the smooth wall is asked in",
+    "every step; the whole wall is searched once in about a hundred. Required: at most 5 times at 100 000",
+    "facets. The ratios are the point; the times are those of one machine.",
+    "",
+    "The last two columns are of the bore by the JointStepper, which fills its arrays and gives them back for",
+    "every 100 steps here, and of that over the bore by YADE's loop. Both make the same steps, bit for bit.",
+    "",
+    "| facets | load | bearing | bore | **ratio** | `JointStepper` | **over YADE's loop** |",
+    "|--:|---|--:|--:|--:|--:|--:|",
+]
+for size in sizes:
+    around = round(sqrt(size * 2.5))
+    wall = MeshBore(**bore_triangles(R2, 10e-3, around, max(1, round(size / 2 / around))))
+    for load_name, choice in loads.items():
+        found = [(cost(Bearing(radius=R2), *choice), cost(wall, *choice), cost(wall, *choice, stepper=True))
+                 for _ in range(repetitions)]
+        bearing, bore, stepper = (median(one[i] for one in found) for i in (0, 1, 2))
+        ratio, gain = median(b / a for a, b, _ in found), median(c / b for _, b, c in found)
+        lines.append(
+            f"| {len(wall.triangles)} | {load_name} | {bearing:.0f} ns | {bore:.0f} ns | **{ratio:.2f}** "
+            f"| {stepper:.0f} ns | **{gain:.2f}** |"
+        )
+        print(lines[-1], flush=True)
+report = Path(os.environ.get("REPORT", here.parents[1] / "results" / "bench" / "bore.md"))
+report.write_text("\n".join(lines) + "\n")

@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The paper's studies without the launcher: ``python3 -m studies.paper figures``, beside the package."""
+import sys
+
+from statejump.cli.main import run
+
+sys.exit(run(sys.argv[1:]))

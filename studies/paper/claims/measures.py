@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Conclusion c of the paper, measure by measure: what each does to the state jump."""
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from studies.paper.claims.findings import Findings
+from studies.paper.claims.statistics import (
+    FAILS, HOLDS, IN_PART, MRAD, SIGNIFICANCE, UNTESTED, Groups, one_sided_welch, trend,
+)
+from studies.paper.claims.verdicts import (
+    Claim, friction_is_the_reason, large_clearance_never_touches, more_friction_larger_range, smaller_clearance_earlier,
+    spring_ends_at_static, spring_reduces_deflection, state_jump_occurs,
+)
+
+
+def _taken(jump: Groups, without: float, larger: bool) -> list[np.ndarray]:
+    """Return the runs with the measure."""
+    return [runs for value, runs in zip(jump.values, jump.runs) if (value > without) == larger and value != without]
+
+
+def measure(jump: Groups, without: float, larger: bool) -> str:
+    """Return the verdict on "the measure reduces the jump"; the rule is ``MEASURE_RULE``.
+
+    :param without: value of the parameter without the measure
+    :param larger: the measure makes the parameter larger, not smaller
+    """
+    taken = _taken(jump, without, larger)
+    before = jump.at(without)
+    less = [one_sided_welch(before, runs, rising=False) < SIGNIFICANCE for runs in taken]
+    more = [one_sided_welch(before, runs, rising=True) < SIGNIFICANCE for runs in taken]
+    if not taken:
+        return UNTESTED
+    return HOLDS if all(less) else IN_PART if any(less) and not any(more) else FAILS
+
+
+MEASURE_RULE = (
+    f"*{HOLDS}*: at every value on the side of the measure the mean |jump| is smaller than without it, at "
+    f"{SIGNIFICANCE:g} (Welch, one-sided); *{IN_PART}*: at some of them, at none larger; *{FAILS}*: else"
+)
+
+
+@dataclass(frozen=True)
+class Measure:
+    """One measure against the jump.
+
+    :param without: value of the parameter without it
+    :param larger: it makes the parameter larger, not smaller
+    :param label: of the parameter
+    :param reduces: why it reduces the jump, where it does
+    :param fails: why it does not, where it does not; of the means with it and without it [rad]
+    """
+
+    name: str
+    jump: Groups
+    without: float
+    larger: bool
+    label: str
+    reduces: str
+    fails: Callable[[list[float], float], str]
+
+
+def _change(means: list[float], before: float) -> str:
+    spread = " to ".join(f"{mean * MRAD:.3f}" for mean in sorted({min(means), max(means)}))
+    return f"mean |jump| {before * MRAD:.3f} mrad without it, {spread} with it"
+
+
+def measures(f: Findings) -> tuple[Measure, ...]:
+    """Return the measures that the runs speak to."""
+    turn = f"both links together can still turn by c/|AC| = {f.free_turn_rad * MRAD:.2f} mrad within the play"
+
+    def friction_fails(means: list[float], before: float) -> str:
+        if max(means) > before and not f.damped:
+            return "friction takes energy out; without it the speed of the impacts stays and carries the joint farther"
+        return "less friction does not leave less of the jump throughout"
+
+    def stiffness_fails(means: list[float], before: float) -> str:
+        share = before / f.free_turn_rad
+        return f"the jump is {share:.2g} times c/|AC|, what the play alone allows, and that is not the links' to change"
+
+    return (
+        Measure("reducing friction", f.jump_by_friction, f.friction_coefficient, False, "μ",
+                "less friction leaves less for the joint to be held by where it slid", friction_fails),
+        Measure("stiffer components", f.jump_by_stiffness, 1.0, True, "section over that of the case",
+                "stiffer links give less to the forces of contact", stiffness_fails),
+        Measure("pre-stressed torsion springs" if f.spring_bias_rad else "torsion springs", f.jump_by_spring,
+                f.jump_by_spring.values[0], True, "K_M in N m/rad",
+                f"a spring between the links holds the flare angle; {turn}, which it does not feel",
+                lambda means, before: f"a spring between the links holds the flare angle, but {turn}, which it does "
+                                      "not feel"),
+    )
+
+
+def _why(m: Measure, verdict: str, size: Groups) -> str:
+    if verdict == UNTESTED:
+        return "no value of the study lies on the side of the measure"
+    means = [float(np.mean(runs)) for runs in _taken(size, m.without, m.larger)]
+    before = float(np.mean(size.at(m.without)))
+    reason = m.reduces if verdict == HOLDS else m.fails(means, before)
+    if verdict == IN_PART:
+        reason = f"it tells at some of its values only; {reason}"
+    return f"{_change(means, before)}: {reason}"
+
+
+def control(f: Findings) -> list[Claim]:
+    """Return what each measure does to the jump."""
+    claims = []
+    for m in measures(f):
+        size = m.jump.absolute()
+        verdict = measure(size, m.without, m.larger)
+        again = trend(size, rising=not m.larger).against
+        text = "; ".join(f"{a:g} to {b:g}, p = {p:.1e}" for a, b, p in again)
+        claims.append(Claim(
+            f"The state jump is controlled by {m.name} (conclusion c)",
+            f"|jump| of θ2: {size.text()}; {m.label}, {m.without:g} without the measure"
+            + (f"; steps against it: {text}" if again else ""),
+            verdict, _why(m, verdict, size), MEASURE_RULE,
+        ))
+    if f.spring_bias_rad == 0:
+        claims.append(Claim(
+            "The state jump is controlled by pre-stressed springs (conclusion c)",
+            "the spring of this case is free at the ideal position, as the paper's: it is not pre-stressed",
+            UNTESTED,
+            "needs torsion_spring.bias_rad, which makes the path unique",
+            f"*{UNTESTED}* unless the case has a bias",
+        ))
+    return claims
+
+
+def all_claims(f: Findings) -> list[Claim]:
+    """Return every statement of the paper's section 4.3, and of its conclusions as far as runs speak to it."""
+    return [
+        state_jump_occurs(f),
+        smaller_clearance_earlier(f),
+        large_clearance_never_touches(f),
+        more_friction_larger_range(f),
+        friction_is_the_reason(f),
+        spring_reduces_deflection(f),
+        spring_ends_at_static(f),
+        *control(f),
+    ]

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""``statejump figures``, ``slow``, ``hold`` and ``energy``: the studies of the paper's umbrella rib. The command finds
+them where the repository is; ``python3 -m studies.paper figures`` needs the package alone."""
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+from rich.console import Console
+
+from statejump.cli.terminal import (
+    CASE, QUIET, RESULTS, CaseFile, counted, loaded, make_console, print_shown, progress, undivided,
+)
+from statejump.core.errors import NotAllowed
+from statejump.core.results_folder import Results
+from statejump.kinds.umbrella.case import UmbrellaCase
+from studies.paper import energy, hold, slow
+from studies.paper.figures import study
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+def _case_or(shipped: str) -> Callable[[Command], Command]:
+    """Return the argument CASE with a case that comes with the program as default."""
+    return click.argument("case_file", metavar="[CASE]", default=f"cases/{shipped}.toml", type=CaseFile())
+
+
+def _rib(command: str, case_file: Path) -> UmbrellaCase:
+    """Load a case of the paper's rib. :raises NotAllowed: it is of another kind"""
+    case = loaded(case_file)
+    if not isinstance(case, UmbrellaCase):
+        raise NotAllowed("case.kind", case.kind, f"'statejump {command}' is for {UmbrellaCase.KIND!r}",
+                         file=case.origin.file)
+    return case
+
+
+def _study(command: str, make: Callable[..., Any], case_file: Path, results: Results, quiet: bool) -> None:
+    console = make_console(quiet)
+    case = _rib(command, case_file)
+    with undivided(console, "runs") as tell:
+        done = make(case, results, tell)
+    _print(done, console)
+
+
+def _print(done: Any, console: Console) -> None:
+    print_shown(done.told(), console)
+    console.print(f"results: {', '.join(str(path) for path in done.written)}")
+
+
+@contextmanager
+def _part(console: Console, text: str, runs: int) -> Iterator[Callable[[], None]]:
+    """Yield what to call after each run: moves a bar on a terminal; elsewhere one line per part."""
+    if not console.is_terminal:
+        console.print(f"{text}: {runs} runs")
+        yield lambda: None
+        return
+    with progress(console, f"{text}, {runs} runs") as tell:
+        yield counted(tell, runs)
+
+
+@click.command("figures")
+@_case_or("umbrella")
+@RESULTS
+@QUIET
+def figures_command(case_file: Path, results: Results, quiet: bool) -> None:
+    """Figures 13 to 16 of the paper for CASE, both models, and a test of each of its claims.
+
+    \b
+    Example:
+      statejump figures cases/umbrella.toml
+    """
+    console = make_console(quiet)
+    case = _rib("figures", case_file)
+    _print(study.make(case, results, partial(_part, console)), console)
+
+
+@click.command("slow")
+@_case_or("umbrella_bias")
+@RESULTS
+@QUIET
+def slow_command(case_file: Path, results: Results, quiet: bool) -> None:
+    """Jump of both models of CASE against the quasi-static path, for slower and slower cycles.
+
+    \b
+    Example:
+      statejump slow cases/umbrella_bias.toml
+    """
+    _study("slow", slow.make, case_file, results, quiet)
+
+
+@click.command("hold")
+@_case_or("umbrella_hold")
+@RESULTS
+@QUIET
+def hold_command(case_file: Path, results: Results, quiet: bool) -> None:
+    """Loaded joint of CASE left alone for 10 s, both models: Mindlin's friction holds, Ambrosio's creeps.
+
+    \b
+    Example:
+      statejump hold cases/umbrella_hold.toml
+    """
+    _study("hold", hold.make, case_file, results, quiet)
+
+
+@click.command("energy")
+@CASE
+@RESULTS
+@QUIET
+def energy_command(case_file: Path, results: Results, quiet: bool) -> None:
+    """Energy account of CASE against the steps of both models, also without friction and damping.
+
+    \b
+    Example:
+      statejump energy cases/umbrella_damped.toml
+    """
+    _study("energy", energy.make, case_file, results, quiet)
