@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Processor time of the quasi-static solver of two versions of the project, case by case.
 
-    PYTHONPATH=build/python /usr/bin/python3 studies/bench/versions.py OLD NEW [--structures 60] [--repeat 5] [--limit 20]
+    PYTHONPATH=build/python /usr/bin/python3 studies/bench/versions.py OLD NEW [--structures 60] [--repeat 5]
+        [--limit 20]
 
 OLD and NEW are folders that hold a built package `statejump` each. The cases are the shipped trusses and ordinary
 structures of tests/ordinary; a case counts if it finishes with both. Each version runs in a process of its own, both in
