@@ -70,7 +70,7 @@ namespace {
 
 /// Steps in a row that ended before a foreseen change and came no nearer to it.
 constexpr int most_unconfirmed = 16;
-/// Steps from one place that end before a foreseen change.
+/// Steps from one place that end before a foreseen change which does not come nearer.
 constexpr int most_foreseen = 4;
 /// Changes of one joint in an increment that are located: of more the energies tell how long steps
 /// may be.
@@ -178,9 +178,10 @@ Path solve(const Model& model, const Options& options) {
       };
       double stride = std::min(balanced(), convergent);
       bool locating = false;
-      // Steps in a row from one place that end before a foreseen change.
+      // Steps in a row from one place that end before a foreseen change which does not come nearer.
       int foreseen_from_here = 0;
-      int steps = 0;  // since the last change
+      double short_by_before = 1.0;  // share of the last step beyond the foreseen change
+      int steps = 0;                 // since the last change
       // How far ahead the next change is foreseen, and was at least since the last one [s].
       double ahead = length, least_ahead = length;
       bool foresaw = false;
@@ -199,6 +200,7 @@ Path solve(const Model& model, const Options& options) {
         if (end == StepEnd::done) {
           convergent = std::max(2.0 * convergent, tolerance);
           foreseen_from_here = 0;
+          short_by_before = 1.0;
           // While a change is being located, the next one may be near, and to pass it costs a pivot
           // for every joint that it moves. Where the one that was foreseen did not come, the
           // tangent of a long step does not tell what is near: steps grow little by little.
@@ -231,7 +233,11 @@ Path solve(const Model& model, const Options& options) {
           // is, or a change comes before the end of whatever step is tried, to an eighth.
           const bool foreseen = end == StepEnd::event_inside && walker.event_share < 1.0;
           const double tried = goal - from;
-          const bool moves = foreseen && ++foreseen_from_here > most_foreseen;
+          // Where one stands that is real, foresight comes nearer by more than half each time.
+          const double short_by = 1.0 - walker.event_share;
+          foreseen_from_here = short_by > 0.5 * short_by_before ? foreseen_from_here + 1 : 0;
+          short_by_before = short_by;
+          const bool moves = foreseen && foreseen_from_here > most_foreseen;
           stride = std::max(
               foreseen && !moves ? walker.event_share * tried - 0.5 * tolerance : 0.125 * tried,
               tolerance);
