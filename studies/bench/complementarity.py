@@ -30,7 +30,8 @@ LARGEST, TOLERANCE = 200, 1e-10
 HEAD = f"""# Frictional contact problems: share solved, iterations, time
 
 `PYTHONPATH=build/python /usr/bin/python3 studies/bench/complementarity.py --problems N --siconos M`:
-random problems with one contact to {LARGEST}, as many small as large ones (logarithmic), friction 0 to 1, W of any rank.
+random problems with one contact to {LARGEST}, as many small as large ones (logarithmic), friction 0 to 1, W of any
+rank.
 Solved: both merits of
 [complementarity.md](../../docs/theory/complementarity.md) are at most {TOLERANCE:g}. CPU time of one core.
 """

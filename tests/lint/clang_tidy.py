@@ -82,7 +82,7 @@ def run(tidy: str, batch: Batch, folder: Path) -> tuple[int, str]:
     (folder / "compile_commands.json").write_text(json.dumps([entry]), encoding="utf-8")
     done = subprocess.run([tidy, "-quiet", "-p", str(folder), f"--config-file={CONFIGURATION}", str(source)],
                           capture_output=True, text=True, check=False)
-    if "[clang-diagnostic-error]" in done.stdout and len(batch.files) > 1:
+    if done.returncode != 0 and len(batch.files) > 1:  # names of one source may shadow those of another
         print(f"clang_tidy.py: one by one: {', '.join(file.name for file in batch.files)}", file=sys.stderr)
         alone = [run(tidy, Batch(batch.words, batch.directory, [file]), folder / file.stem)
                  for file in batch.files]

@@ -51,7 +51,7 @@ def test_a_case_is_one_object(cases: Path) -> None:
     case = sj.load(cases / "table1.toml")
     assert isinstance(case, sj.Case) and case.definition is case and case.changed({}) == case
     assert {"joint", "thermal", "reduced", "dem", "dem_settings"} <= set(dir(case))
-    assert case["dem.samples_per_cycle"] == case.dem_settings.samples_per_cycle == case.part("dem").samples_per_cycle
+    assert case["dem.samples_per_cycle"] == case.dem_settings.samples_per_cycle == case.value_named("dem").samples_per_cycle
     assert "dem" in case.to_dict() and "dem_settings" not in case.to_dict()
     copied = pickle.loads(pickle.dumps(case))
     assert copied == case and hash(copied) == hash(case)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import statejump as sj
-from statejump.core.output import made_by
+from statejump.core.case_files import made_by
 from statejump.core.run import Column, Run
 from statejump.kinds.spring_slider import convergence, result
 from statejump.kinds.spring_slider.case import SpringSliderCase
@@ -19,7 +19,7 @@ from statejump.kinds.spring_slider.case import SpringSliderCase
 
 def dem_like(case: SpringSliderCase, error_m: float) -> Run:
     """The exact run as a DEM would give it, off by a known error that grows over the run."""
-    exact = sj.Case(case).reduced()
+    exact = case.reduced()
     columns = exact.flat()
     stage = columns.pop("stage")
     columns["slipping"] = np.isin(stage, ("S2", "S5")).astype(float)

@@ -66,7 +66,7 @@ def test_case_survives_json(change: tuple[str, dict[str, Any]]) -> None:
     except StatejumpError as refused:
         assert "\n" not in str(refused) and refused.key
         return
-    again = load(json.loads(json.dumps(case.to_dict())) if case.kind != "truss" else case.definition.as_file())
+    again = load(json.loads(json.dumps(case.to_dict())) if case.kind != "truss" else case.origin.document)
     assert again == case and hash(again) == hash(case) and same(again.to_dict(), case.to_dict())
 
 

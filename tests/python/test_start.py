@@ -46,7 +46,7 @@ def as_truss(start: str, preload_N: float = PRELOAD_N, **changes: Any) -> sj.Cas
         "start": {"friction": start},
         "thermal": {"shape": "half_sine", "temperature_change_max_K": 60.0, "cycles": 1, "period_s": 0.25},
     }
-    case = sj.Case(parse_case(document))
+    case = parse_case(document)
     return case.changed(changes) if changes else case
 
 
@@ -146,4 +146,4 @@ def test_structure_that_friction_alone_holds_has_no_start_without_it() -> None:
     document["node"].append({"name": "C", "position_m": [1.0, 0.0], "fixed": ["y"], "force_N": [10.0, 0.0]})
     document["slider"].append({**document["slider"][0], "name": "T", "nodes": ["C"]})
     with pytest.raises(StatejumpError, match="set start.friction to 'stuck'"):
-        sj.Case(parse_case(document)).reduced()
+        parse_case(document).reduced()

@@ -210,7 +210,7 @@ def test_rigid_ball_moves_within_its_cone_and_from_the_drawn_shape_only() -> Non
     assert (normal > 0).sum() > 10
     # On the cone to what may be across its direction, 5e-9, and the contact problem's 1e-8.
     assert np.all(size <= 0.1 * normal * (1 + 2e-8))
-    assert not run.warnings
+    assert all("taken in parts" in warning for warning in run.warnings)
     for name in ("reduced", "dem"):
         with pytest.raises(StatejumpError, match="has contact = 'rigid', of which a path does not say"):
             getattr(case, name)()

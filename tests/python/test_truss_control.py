@@ -27,10 +27,10 @@ STIFFNESS = 1.26e6  # of the bar of Table 1, EA/l [N/m]
 def bar_on_a_slider(cases: Path) -> sj.Case:
     """Table 1 as a truss: its bar, and its joint as a slider without stops."""
     table1 = load_case(cases / "table1.toml")
-    made = sj.truss.chain(1).definition
-    return sj.Case(parse_case({**made.as_file(), "slider": [
+    made = sj.truss.chain(1)
+    return parse_case({**made.origin.document, "slider": [
         {"name": "S1", "nodes": ["N1"], "axis": [1.0, 0.0], "normal_force_N": table1.joint.normal_force_N,
-         "friction_coefficient": table1.joint.friction_coefficient}]}))
+         "friction_coefficient": table1.joint.friction_coefficient}]})
 
 
 @pytest.mark.parametrize("wanted_m", [1.19e-5, 1e-6, 5e-8])

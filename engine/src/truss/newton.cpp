@@ -471,8 +471,8 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
         next_length = most;
       }
     }
-    // Steps may grow along directions that hardly anything holds, if equations are met the better.
-    const bool improves = merit <= 0.5 * merit_before;
+    // Steps may grow along directions that only dashpots hold, if equations are met the better.
+    const bool improves = start.slack_stiffness > 0.0 && merit <= 0.5 * merit_before;
     const bool too_long = !improves && !lengths.empty() &&
                           next_length > closure_tolerance * reach &&
                           next_length > *std::max_element(lengths.begin(), lengths.end());

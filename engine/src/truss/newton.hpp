@@ -131,8 +131,6 @@ class Newton {
   int stability_index(const Assembly& at, const Statuses& statuses);
 
   long factorizations() const { return factorizations_; }
-  /// At the last equations [N].
-  double largest_force() const { return at_.largest_force; }
   const std::function<bool()>& progress() const { return going_on_; }
   const linear::SparseFactor& factor() const { return factor_; }
 

@@ -161,7 +161,7 @@ Path solve(const Model& model, const Options& options) {
     walker.shortest_balanced =
         length / (Walker::most_parts * static_cast<double>(options.increments_per_branch));
     walker.slack_level = 0;
-    walker.snap_stride = 0.0;
+    walker.snap_travel = 0.0;
     double convergent = length;  // longest step that Newton is trusted with
     for (int k = 0; k <= options.increments_per_branch; ++k) {
       // k = 0: the short first step, within which slips turn into sticks after the corner.
@@ -254,7 +254,7 @@ Path solve(const Model& model, const Options& options) {
           }
           locating = end == StepEnd::event_inside;
           ahead = walker.event_share * tried;
-          foresaw = foresaw || locating;
+          foresaw = foresaw || (locating && !walker.slip_is_unstable);
         }
         if (++steps > options.most_steps) {
           FailureFields fields = failure_at(FailureKind::too_many_steps, model, walker.time);

@@ -25,8 +25,6 @@ constexpr double at_rest = 1e-6;
 /// Steps with the softest dashpots, each shorter than the last, after which a motion counts as
 /// slow.
 constexpr int most_slower = 16;
-/// What dashpots may carry of the largest force where slip stays unstable.
-constexpr double most_damping = 1e-3;
 /// Joints that a note of a snap names.
 constexpr std::size_t most_named = 3;
 
@@ -47,6 +45,20 @@ std::vector<double> motions_in_play(const System& system, const VectorXd& z, dou
   return moved;
 }
 
+/// Diameters of all plays one behind the other [m]: a structure moves no farther within them.
+double all_plays(const Model& model) {
+  double sum = 0.0;
+  for (const Joint& joint : model.joints) {
+    sum += std::visit(
+        [](const auto& one) {
+          if constexpr (requires { one.radial_clearance; }) return 2.0 * one.radial_clearance;
+          return 0.0;
+        },
+        joint);
+  }
+  return sum;
+}
+
 }  // namespace
 
 /// Lets journals move within their play, held by dashpots while they slip, until they are at rest.
@@ -58,38 +70,37 @@ std::vector<double> motions_in_play(const System& system, const VectorXd& z, dou
 /// @param step takes one with dashpots of a level; it returns how far that moved [m], or nothing if
 /// there is no step, and then has changed nothing
 /// @param drift what a step moves by without any unstable motion [m]
-Damped Walker::come_to_rest(const std::function<std::optional<double>(double level)>& step,
-                            double drift) {
+bool Walker::come_to_rest(const std::function<std::optional<double>(double level)>& step,
+                          double drift) {
   double level = System::snap_level;
   double whole = 0.0, last = 0.0;
   int slower = 0;
   for (int k = 0; k < most_snap_steps; ++k) {
     const std::optional<double> moved = step(level);
-    if (!path.complete) return Damped::rests;
+    if (!path.complete) return true;
     if (!moved) {
-      if (level >= stiffest) return Damped::fails;
+      if (level >= stiffest) return false;
       level = std::min(stiffest, level + stiffer);
       continue;
     }
     whole += *moved;
     // What rounding of the forces moves by against dashpots that hardly hold.
     const double rounding = 8.0 * system.force_rounding(z) / system.slack_stiffness(0.0);
-    if (level == 0.0 && *moved <= at_rest * whole + rounding + drift) return Damped::rests;
+    if (level == 0.0 && *moved <= at_rest * whole + rounding + drift) return true;
     // Elements that are slack swing on against dashpots that hardly hold, ever slower.
     slower = level == 0.0 && *moved <= last ? slower + 1 : 0;
-    if (slower >= most_slower) return Damped::rests;
+    if (slower >= most_slower) return true;
     last = *moved;
     level = std::max(0.0, level - softer);
   }
-  return Damped::moves;
+  return false;
 }
 
 /// Follows slip that runs away within the play of the joints, to where it comes to rest.
 ///
 /// A journal that slips out of an unstable position snaps to a stable one within its play. Statics
 /// does not describe how; dashpots in the joints with play do, as for slack elements, at a
-/// temperature that hardly changes. What is unstable beyond the play remains a failure. Where slip
-/// stays unstable, the path goes on with dashpots that carry little, over steps as long as that.
+/// temperature that hardly changes. What is unstable beyond the play remains a failure.
 /// @param until time that is not passed [s]
 /// @returns false: dashpots do not hold it, or no joint has play; nothing has happened then
 bool Walker::follow_snap(double until, double tolerance) {
@@ -101,12 +112,10 @@ bool Walker::follow_snap(double until, double tolerance) {
   const auto events = static_cast<std::ptrdiff_t>(path.events.size());
   const std::size_t states = path.states.size();
   const double level_before = slack_level;
-  const double stride =
-      std::min(std::max(tolerance, snap_stride), (until - time) / (most_snap_steps + 1));
+  const double stride = std::min(tolerance, (until - time) / (most_snap_steps + 1));
   const int moving = before.rate.size() == 0 ? 0 : system.displacements();
   const double drift = 2.0 * length_of(before.rate, moving) * stride;
-  double force = 0.0;  // of the dashpots at last [N]
-  const Damped found = come_to_rest(
+  const bool rests = come_to_rest(
       [&](double level) -> std::optional<double> {
         const VectorXd from = z;
         const Statuses statuses = origin.statuses;
@@ -114,10 +123,9 @@ bool Walker::follow_snap(double until, double tolerance) {
         origin.damps_slip = true;
         changed_at_start.clear();
         try {
-          const StepEnd end = step_to(time + stride, std::max(tolerance, stride));
+          const StepEnd end = step_to(time + stride, tolerance);
           if (end == StepEnd::stopped) path.complete = false;
           const double moved = length_of(z - from, system.displacements());
-          force = moved * system.slack_stiffness(level);
           if (end == StepEnd::done) return moved;
         } catch (const Failure&) {
           origin.statuses = statuses;
@@ -128,17 +136,14 @@ bool Walker::follow_snap(double until, double tolerance) {
   slack_level = level_before;
   origin.damps_slip = false;
   if (!path.complete) return true;
-  if (found == Damped::fails) {
+  const double whole = length_of(z - before.z, system.displacements());
+  snap_travel += whole;
+  if (!rests || snap_travel > all_plays(model)) {
     return_to(before);
     path.events.erase(path.events.begin() + events, path.events.end());
     path.states.resize(states, State{});
     return false;
   }
-  if (found == Damped::moves) {
-    const bool is_light = force <= most_damping * newton.largest_force();
-    snap_stride = is_light ? 2.0 * stride : 0.5 * stride;
-  }
-  const double whole = length_of(z - before.z, system.displacements());
   const double ordinary = drift * (time - before.time) / stride +
                           8.0 * system.force_rounding(z) / system.slack_stiffness(0.0);
   if (whole <= ordinary) return true;

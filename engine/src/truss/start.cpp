@@ -268,7 +268,7 @@ bool Walker::come_to_rest_at(double opening, JointModel contact, const std::vect
   VectorXd seated = z;
   seat_at(opened, opening, with_play, seated);
   z = std::move(seated);
-  const Damped found = come_to_rest(
+  const bool rests = come_to_rest(
       [&](double level) -> std::optional<double> {
         StepStart begin = system.begin(z, 0.0, origin.statuses, opening);
         begin.slack_stiffness = system.slack_stiffness(level);
@@ -286,7 +286,7 @@ bool Walker::come_to_rest_at(double opening, JointModel contact, const std::vect
         return moved;
       },
       0.0);
-  if (found == Damped::rests) return true;
+  if (rests) return true;
   z = before;
   origin.statuses = statuses_before;
   return false;

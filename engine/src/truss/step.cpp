@@ -100,6 +100,7 @@ bool Walker::balances(const State& next, const VectorXd& to, double step, double
 
 /// One step, if it is converged and exact or no longer than `tolerance`; else nothing happens.
 StepEnd Walker::step_to(double target, double tolerance) {
+  slip_is_unstable = false;
   // The sum time + tolerance is rounded.
   const bool is_short = target - time <= 1.5 * tolerance;
   // A joint that opens may leave a mechanism, which only a short step finds.
@@ -254,8 +255,8 @@ StepEnd Walker::step_to(double target, double tolerance) {
   // The cubics through both ends know of a joint's own change at most, and without location there
   // may be many.
   const bool told = options.locate_events || events.size() <= 1;
-  if (!is_short && locates && told && rate.size() > 0 && rate_after.size() > 0) {
-    event_share = first_turn(ends);
+  if (!is_short && told && rate.size() > 0 && rate_after.size() > 0) {
+    event_share = locates ? first_turn(ends) : 1.0;
     if (event_share < 1.0 || !follows_its_rates(ends)) {
       ++path.solves;
       return StepEnd::event_inside;

@@ -53,9 +53,6 @@ struct Stall {
   VectorXd z;
 };
 
-/// What journals do that dashpots hold.
-enum class Damped : unsigned char { rests, moves, fails };
-
 /// Equilibrium being followed.
 struct Walker {
   const Model& model;
@@ -75,8 +72,7 @@ struct Walker {
   /// Whether long steps hold open joints by dashpots: nothing else determines their positions.
   bool is_slack = false;
   double slack_level = 0.0;  ///< Of these dashpots, see System::slack_stiffness().
-  /// Steps of a path whose slip stays unstable; 0: as short as they get [s].
-  double snap_stride = 0.0;
+  double snap_travel = 0.0;  ///< Of all snaps since the last corner [m].
   /// Statuses that a longer step found from the present state on; empty: none.
   Statuses changed_at_start = {};
   /// Whether such are looked for; not again where a short step did not confirm them, until the next
@@ -139,7 +135,7 @@ struct Walker {
   bool stiffen_slack(const Statuses& statuses);
   StepEnd step_to(double target, double tolerance);
   StepEnd step_with_slack(double target, double until, double tolerance);
-  Damped come_to_rest(const std::function<std::optional<double>(double level)>& step, double drift);
+  bool come_to_rest(const std::function<std::optional<double>(double level)>& step, double drift);
   bool follow_snap(double until, double tolerance);
   SolveReport continue_from_event(double target, VectorXd& to, Statuses& statuses,
                                   SolveReport first);

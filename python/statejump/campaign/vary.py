@@ -134,17 +134,17 @@ def _overlap(one: str, other: str, case: Case) -> bool:
 
 def _items(case: Case, path: str) -> list[str]:
     """Names of the items of the list that a path begins with."""
-    return [item.name for item in case.part(split_path(path)[0])]
+    return [item.name for item in case.value_named(split_path(path)[0])]
 
 
 def _own_value(case: Case, path: str) -> float | None:
     """What the case itself says, of a pattern if its items agree; None: nothing."""
     section, item, key = split_path(path)
     if not item:
-        found: float | None = getattr(case.part(section), key)
+        found: float | None = getattr(case.value_named(section), key)
         return found
     wanted = set(meant(item, _items(case, path)))
-    values = {getattr(one, key) for one in case.part(section) if one.name in wanted}
+    values = {getattr(one, key) for one in case.value_named(section) if one.name in wanted}
     return values.pop() if len(values) == 1 else None
 
 

@@ -183,9 +183,9 @@ class Section:
 
     def to_dict(self) -> dict[str, Any]:
         """Return keys and values in the order of their declaration, sections as dicts."""
-        return {name: _plain(self.part(name)) for name in fields_of(type(self))}
+        return {name: _plain(self.value_named(name)) for name in fields_of(type(self))}
 
-    def part(self, name: str) -> Any:
+    def value_named(self, name: str) -> Any:
         """Return the value of a key, or of a case a section or list of tables, by its name in files."""
         return getattr(self, fields_of(type(self))[name].name)
 

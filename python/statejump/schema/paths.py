@@ -173,8 +173,8 @@ def value_of(case: Section, path: str) -> Any:
     attribute_of(type(case), path)
     section, item, key = split_path(path)
     if not item:
-        return getattr(case.part(section), key)
-    items = case.part(section)
+        return getattr(case.value_named(section), key)
+    items = case.value_named(section)
     names = [one.name for one in items]
     wanted = set(meant(item, names))
     found = [getattr(one, key) for one in items if one.name in wanted]
@@ -199,7 +199,7 @@ def with_values(case: SectionType, changes: Mapping[str, Any]) -> SectionType:
     made = {}
     for section, values in sections.items():
         try:
-            made[section] = evolved(case.part(section), **values)
+            made[section] = evolved(case.value_named(section), **values)
         except NotAllowed as refused:
             refused.key = f"{section}.{refused.key}"
             raise

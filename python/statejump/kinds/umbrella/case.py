@@ -369,6 +369,6 @@ class UmbrellaCase(Case):
             ("ensemble", "reduced_steps_per_cycle"),
             ("ensemble", "dem_steps_per_cycle"),
         ):
-            steps = getattr(self.part(part), key)
+            steps = getattr(self.value_named(part), key)
             if steps % samples != 0:
                 raise NotAllowed(f"{part}.{key}", steps, f"must be a multiple of output.samples_per_cycle = {samples}")

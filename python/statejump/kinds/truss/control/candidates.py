@@ -116,7 +116,7 @@ def _scaled(case: TrussCase, path: str) -> Candidate:
     if (section, key) not in known:
         paths = [f"{of}.{EVERY}.{name}" for of, name in known]
         raise UnknownKey("--free", value=path, **suggestion(path, paths))
-    names = [one.name for one in case.part(section)]
+    names = [one.name for one in case.value_named(section)]
     wanted = set(meant(item, names))
     if not wanted:
         known_names = suggestion(item, names, f"{section}.", f".{key}")
