@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as xml
+from importlib import import_module
 from pathlib import Path
 from typing import Any, Iterator
 
@@ -174,10 +175,10 @@ def columns_page() -> str:
 
 
 def history_columns() -> set[str]:
-    """Return the columns of histories and the arguments that the engine's module documents."""
+    """Return the columns of histories and the arguments that the engine's modules document."""
     found = {column for name in kinds.names() for column in kinds.kind(name).COLUMNS}
     found.update(column.name for joint in JOINTS for column in joint.columns)
-    for value in vars(_engine).values():
+    for value in (*vars(_engine).values(), *vars(import_module("statejump._engine_more")).values()):
         inner = vars(value) if isinstance(value, type) else {}
         found.update(inner)
         for documented in (value, *inner.values()):

@@ -72,8 +72,8 @@ namespace {
 constexpr int most_unconfirmed = 16;
 /// Steps from one place that end before a foreseen change which does not come nearer.
 constexpr int most_foreseen = 4;
-/// Changes of one joint in an increment that are located: of more the energies tell how long steps
-/// may be.
+/// Changes of one joint in an increment that the solver locates. After more the energy balance
+/// alone limits the steps.
 constexpr int most_located = 32;
 /// Steps of an eighth of one that passes a change come nearer to it by an eighth or more.
 constexpr double nearer = 0.95;
@@ -210,9 +210,10 @@ Path solve(const Model& model, const Options& options) {
           if (foresaw) unconfirmed = ahead >= nearer * least_ahead ? unconfirmed + 1 : 0;
           if (foresaw) least_ahead = std::min(least_ahead, ahead);
           foresaw = false;
-          if (!unchanged) steps = unconfirmed = 0;
-          if (!unchanged) least_ahead = length;
-          if (!unchanged) unstable = swinging = 0;
+          if (!unchanged) {
+            steps = unconfirmed = unstable = swinging = 0;
+            least_ahead = length;
+          }
           for (; counted < walker.path.events.size(); ++counted) {
             const Event& event = walker.path.events[counted];
             flickers = flickers || changes[index(event.joint)] >= most_located;

@@ -18,7 +18,8 @@ constexpr int most_snap_steps = 200;
 /// become as long as those of a path along which the stiffness is negative can be.
 constexpr double softer = 0.25;
 constexpr double stiffer = 0.5;
-/// Level at which hardly anything moves any more.
+/// Level of dashpots as stiff as the stiffest element, and one at which hardly anything moves.
+constexpr double first_level = 4.0;
 constexpr double stiffest = 6.0;
 /// A snap is at rest where a step moves by this share of it.
 constexpr double at_rest = 1e-6;
@@ -27,23 +28,6 @@ constexpr double at_rest = 1e-6;
 constexpr int most_slower = 16;
 /// Joints that a note of a snap names.
 constexpr std::size_t most_named = 3;
-
-/// How far every joint with play has moved within its play since the start of a step [m]; 0: one
-/// without.
-std::vector<double> motions_in_play(const System& system, const VectorXd& z, double time,
-                                    const StepStart& since) {
-  std::vector<double> moved;
-  for (int i = 0; i < static_cast<int>(since.statuses.size()); ++i) {
-    const Trial at = system.trial(i, z, time, since, JointModel::friction, 1.0);
-    moved.push_back(std::visit(
-        [&](const auto& one) {
-          if constexpr (requires { one.slack_motion(at); }) return one.slack_motion(at).norm();
-          return 0.0;
-        },
-        system.model().joints[index(i)]));
-  }
-  return moved;
-}
 
 /// Diameters of all plays one behind the other [m]: a structure moves no farther within them.
 double all_plays(const Model& model) {
@@ -59,6 +43,11 @@ double all_plays(const Model& model) {
   return sum;
 }
 
+/// What rounding of the forces moves by against dashpots that hardly hold [m].
+double moved_by_rounding(const System& system, const VectorXd& z) {
+  return 8.0 * system.force_rounding(z) / system.slack_stiffness(0.0);
+}
+
 }  // namespace
 
 /// Lets journals move within their play, held by dashpots while they slip, until they are at rest.
@@ -72,7 +61,7 @@ double all_plays(const Model& model) {
 /// @param drift what a step moves by without any unstable motion [m]
 bool Walker::come_to_rest(const std::function<std::optional<double>(double level)>& step,
                           double drift) {
-  double level = System::snap_level;
+  double level = first_level;
   double whole = 0.0, last = 0.0;
   int slower = 0;
   for (int k = 0; k < most_snap_steps; ++k) {
@@ -84,9 +73,9 @@ bool Walker::come_to_rest(const std::function<std::optional<double>(double level
       continue;
     }
     whole += *moved;
-    // What rounding of the forces moves by against dashpots that hardly hold.
-    const double rounding = 8.0 * system.force_rounding(z) / system.slack_stiffness(0.0);
-    if (level == 0.0 && *moved <= at_rest * whole + rounding + drift) return true;
+    if (level == 0.0 && *moved <= at_rest * whole + moved_by_rounding(system, z) + drift) {
+      return true;
+    }
     // Elements that are slack swing on against dashpots that hardly hold, ever slower.
     slower = level == 0.0 && *moved <= last ? slower + 1 : 0;
     if (slower >= most_slower) return true;
@@ -104,10 +93,8 @@ bool Walker::come_to_rest(const std::function<std::optional<double>(double level
 /// @param until time that is not passed [s]
 /// @returns false: dashpots do not hold it, or no joint has play; nothing has happened then
 bool Walker::follow_snap(double until, double tolerance) {
-  const bool has_play = std::any_of(model.joints.begin(), model.joints.end(), [](const Joint& of) {
-    return std::visit([](const auto& one) { return one.has_play(); }, of);
-  });
-  if (!has_play || !options.locate_events) return false;
+  const double plays = all_plays(model);
+  if (plays == 0.0 || !options.locate_events) return false;
   const Position before = position();
   const auto events = static_cast<std::ptrdiff_t>(path.events.size());
   const std::size_t states = path.states.size();
@@ -138,16 +125,18 @@ bool Walker::follow_snap(double until, double tolerance) {
   if (!path.complete) return true;
   const double whole = length_of(z - before.z, system.displacements());
   snap_travel += whole;
-  if (!rests || snap_travel > all_plays(model)) {
+  if (!rests || snap_travel > plays) {
     return_to(before);
     path.events.erase(path.events.begin() + events, path.events.end());
     path.states.resize(states, State{});
     return false;
   }
-  const double ordinary = drift * (time - before.time) / stride +
-                          8.0 * system.force_rounding(z) / system.slack_stiffness(0.0);
+  const double ordinary = drift * (time - before.time) / stride + moved_by_rounding(system, z);
   if (whole <= ordinary) return true;
-  const std::vector<double> by = motions_in_play(system, z, time, before.origin);
+  std::vector<double> by;
+  for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
+    by.push_back(system.slack_motion(i, z, time, before.origin).norm());
+  }
   std::vector<int> joints(by.size());
   std::iota(joints.begin(), joints.end(), 0);
   std::stable_sort(joints.begin(), joints.end(),

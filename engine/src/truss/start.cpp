@@ -3,6 +3,7 @@
 #include "walker.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace statejump::truss::detail {
@@ -11,6 +12,8 @@ namespace {
 
 /// Smallest part of a clearance that opens at once.
 constexpr double least_opening = 1e-4;
+/// Part that is opened first, and again after a part that was hard to open.
+constexpr double first_opening = 0.125;
 
 }  // namespace
 
@@ -218,7 +221,7 @@ void Walker::seat(const std::vector<int>& with_play, JointModel contact) {
 SolveReport Walker::open_seated(const std::vector<int>& with_play, JointModel contact) {
   SolveReport report;
   double opened = 0.0;
-  double share = 0.125;
+  double share = first_opening;
   while (opened < 1.0) {
     const double next = std::min(1.0, opened + share);
     VectorXd trial = z;
@@ -242,9 +245,10 @@ SolveReport Walker::open_seated(const std::vector<int>& with_play, JointModel co
     }
     share *= 0.5;
     if (share >= least_opening) continue;
-    if (come_to_rest_at(std::min(1.0, opened + 0.125), contact, with_play, opened)) {
-      opened = std::min(1.0, opened + 0.125);
-      share = 0.125;
+    share = first_opening;
+    const double farther = std::min(1.0, opened + share);
+    if (come_to_rest_at(farther, contact, with_play, opened)) {
+      opened = farther;
       report.end = SolveEnd::converged;
       continue;
     }
@@ -253,7 +257,6 @@ SolveReport Walker::open_seated(const std::vector<int>& with_play, JointModel co
       origin.statuses = std::move(statuses);
       return report;
     }
-    share = 0.125;
   }
   return report;
 }
@@ -263,11 +266,10 @@ SolveReport Walker::open_seated(const std::vector<int>& with_play, JointModel co
 /// @returns false: they do not come to rest; nothing has happened then
 bool Walker::come_to_rest_at(double opening, JointModel contact, const std::vector<int>& with_play,
                              double opened) {
-  const VectorXd before = z;
   const Statuses statuses_before = origin.statuses;
   VectorXd seated = z;
   seat_at(opened, opening, with_play, seated);
-  z = std::move(seated);
+  const VectorXd before = std::exchange(z, std::move(seated));
   const bool rests = come_to_rest(
       [&](double level) -> std::optional<double> {
         StepStart begin = system.begin(z, 0.0, origin.statuses, opening);

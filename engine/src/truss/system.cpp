@@ -287,20 +287,24 @@ Vector3d System::lag(int joint, const VectorXd& z, double time, const StepStart&
       model_->joints[index(joint)]);
 }
 
+Vector3d System::slack_motion(int joint, const VectorXd& z, double time,
+                              const StepStart& start) const {
+  const Trial at = trial(joint, z, time, start, JointModel::friction, 1.0);
+  return std::visit(
+      [&](const auto& one) -> Vector3d {
+        if constexpr (requires { one.slack_motion(at); }) return one.slack_motion(at);
+        return Vector3d::Zero();
+      },
+      model_->joints[index(joint)]);
+}
+
 double System::slack_work(const VectorXd& z, double time, const StepStart& start,
                           const Statuses& statuses) const {
   double work = 0.0;
   for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
     const JointStatus status = statuses[index(i)];
     if (status != JointStatus::open && !(start.damps_slip && is_slip(status))) continue;
-    const Trial at = trial(i, z, time, start, JointModel::friction, 1.0);
-    std::visit(
-        [&](const auto& one) {
-          if constexpr (requires { one.slack_motion(at); }) {
-            work += start.slack_stiffness * one.slack_motion(at).squaredNorm();
-          }
-        },
-        model_->joints[index(i)]);
+    work += start.slack_stiffness * slack_motion(i, z, time, start).squaredNorm();
   }
   return work;
 }

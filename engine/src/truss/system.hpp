@@ -222,6 +222,9 @@ class System {
   /// @param now the state at z as the start of the next step
   void describe(const VectorXd& z, double time, const StepStart& now, State& state) const;
 
+  /// How far a joint with play has moved within it since the start of a step [m]; zero: it has
+  /// none.
+  Vector3d slack_motion(int joint, const VectorXd& z, double time, const StepStart& start) const;
   /// Work that the dashpots of slack joints take in a step [J].
   double slack_work(const VectorXd& z, double time, const StepStart& start,
                     const Statuses& statuses) const;
@@ -280,7 +283,6 @@ class System {
     return 1e-8 * std::pow(100.0, level) * stiffness_scale_;
   }
   static constexpr int most_slack_level = 3;
-  static constexpr int snap_level = 4;  ///< As stiff as the stiffest element.
   /// What rounding at z leaves of the forces at a node [N]: some 64 terms are added up there, each
   /// of a stiffness times a displacement.
   double force_rounding(const VectorXd& z) const;

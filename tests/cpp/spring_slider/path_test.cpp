@@ -5,8 +5,10 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <tuple>
+#include <utility>
 
 #include "statejump/spring_slider/history.hpp"
 #include "table1.hpp"
@@ -380,11 +382,31 @@ double return_mapping(const SpringSlider& model, double change, double x) {
   return std::min(std::max(x, -model.clearance_minus), model.clearance_plus);
 }
 
+/// Random numbers, the same in every run.
+class Uniform {
+ public:
+  explicit Uniform(std::uint64_t seed) : random_(seed) {}
+  double operator()(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+/// Times and temperature changes of a table: five random changes and two plateaus.
+std::pair<std::vector<double>, std::vector<double>> seven_changes(Uniform& uniform) {
+  std::vector<double> times{0.0};
+  std::vector<double> changes{0.0};
+  for (int i = 1; i < 8; ++i) {
+    times.push_back(i);
+    changes.push_back(i % 4 == 3 ? changes.back() : uniform(-150.0, 150.0));
+  }
+  return {times, changes};
+}
+
 TEST(SpringSliderPath, EqualsSmallStepsForRandomModels) {
-  std::mt19937_64 random(20210211);
-  const auto uniform = [&random](double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random);
-  };
+  Uniform uniform(20210211);
   for (int run = 0; run < 200; ++run) {
     SpringSlider model = table1();
     model.thermal_expansion = uniform(-3e-5, 3e-5);
@@ -395,12 +417,7 @@ TEST(SpringSliderPath, EqualsSmallStepsForRandomModels) {
     // Up to what presses the block on a stop all the way: 2 mm times 1.26e6 N/m.
     model.preload_force = run % 3 == 0 ? 0.0 : uniform(-3e3, 3e3);
     if (run % 4 < 2) model.start_friction = StartFriction::frictionless;
-    std::vector<double> times{0.0};
-    std::vector<double> changes{0.0};
-    for (int i = 1; i < 8; ++i) {
-      times.push_back(i);
-      changes.push_back(i % 4 == 3 ? changes.back() : uniform(-150.0, 150.0));
-    }
+    const auto [times, changes] = seven_changes(uniform);
     const Path path = solve(model, table(times, changes));
     // Every turn of the program is a step, so the stepped path lags nowhere: between turns the map
     // is a clamp onto monotone bounds and its result does not depend on the steps. What is left is
@@ -491,10 +508,7 @@ Played moved_in_play(const SpringSlider& model, double change, double middle) {
 }  // namespace
 
 TEST(SpringSliderPath, PlayEqualsSmallStepsForRandomModels) {
-  std::mt19937_64 random(20261127);
-  const auto uniform = [&random](double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random);
-  };
+  Uniform uniform(20261127);
   for (int run = 0; run < 200; ++run) {
     SpringSlider model = table1();
     model.thermal_expansion = uniform(-3e-5, 3e-5);
@@ -506,12 +520,7 @@ TEST(SpringSliderPath, PlayEqualsSmallStepsForRandomModels) {
     model.preload_force = run % 3 == 0 ? 0.0 : uniform(-3e3, 3e3);
     if (run % 5 < 2) model.stop_stiffness = uniform(1e4, 1e7);
     if (run % 4 < 2) model.start_friction = StartFriction::frictionless;
-    std::vector<double> times{0.0};
-    std::vector<double> changes{0.0};
-    for (int i = 1; i < 8; ++i) {
-      times.push_back(i);
-      changes.push_back(i % 4 == 3 ? changes.back() : uniform(-150.0, 150.0));
-    }
+    const auto [times, changes] = seven_changes(uniform);
     const Path path = solve(model, table(times, changes));
     // As without play; a place within the play is that of p, which adds up as x does.
     const int steps = 400;

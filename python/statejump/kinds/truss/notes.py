@@ -9,7 +9,7 @@ import numpy as np
 
 from statejump.kinds.truss.resolved import ResolvedTruss
 
-MOST_NAMED = 8  # joints that a sentence names; of more it gives the number
+MOST_NAMED = 8  # joints or nodes that a sentence names; of more it gives the number
 
 
 def sentences(truss: ResolvedTruss, notes: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:
@@ -34,5 +34,10 @@ def _sentence(truss: ResolvedTruss, note: Mapping[str, Any]) -> str:
 
 
 def _named(joints: Sequence[tuple[str, str]]) -> str:
-    named = ", ".join(f"{kind} {name!r}" for kind, name in joints[:MOST_NAMED])
-    return named if len(joints) <= MOST_NAMED else f"{named} and {len(joints) - MOST_NAMED} more"
+    return listed([f"{kind} {name!r}" for kind, name in joints])
+
+
+def listed(names: Sequence[str]) -> str:
+    """Return the first names, and how many more there are."""
+    first = ", ".join(names[:MOST_NAMED])
+    return first if len(names) <= MOST_NAMED else f"{first} and {len(names) - MOST_NAMED} more"

@@ -9,7 +9,7 @@ from statejump.kinds.truss.arrays import GROUND
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.round_parts import RoundParts
-from statejump.kinds.truss.notes import MOST_NAMED
+from statejump.kinds.truss.notes import listed
 from statejump.kinds.truss.resolved import ResolvedTruss
 
 # Of the largest force. The solver leaves 1e-9 of it in an element without contact: the rounding of coordinates times
@@ -22,9 +22,8 @@ def sentence(case: TrussCase, hung: np.ndarray) -> tuple[str, ...]:
     names = [repr(case.node[node].name) for node in np.flatnonzero(hung.any(axis=0))]
     if not names:
         return ()
-    more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
-    return (f"node{'s' if len(names) > 1 else ''} {', '.join(names[:MOST_NAMED])}{more}: hanging slack in the play of "
-            "joints, where no model determines a position; compared only where forces act on them",)
+    return (f"node{'s' if len(names) > 1 else ''} {listed(names)}: hanging slack in the play of joints, where no "
+            "model determines a position; compared only where forces act on them",)
 
 
 def hanging(case: TrussCase, run: Run, least_force_N: float) -> np.ndarray:
@@ -79,7 +78,7 @@ def _others_hold(truss: ResolvedTruss) -> np.ndarray:
     count as all directions."""
     d = truss.dimension
     found = truss.nodes.fixed[:, :d].sum(axis=1) + truss.nodes.guide_normal.any(axis=1)
-    turned = [truss.torsion_springs.links, truss.joints["latch_hinge"].links]
+    turned = [truss.torsion_springs.links, *(joint.torsion(truss.joints[joint.section]).links for joint in JOINTS)]
     links = np.concatenate([one.ravel() for one in turned]).astype(int)
     np.add.at(found, truss.links.nodes[links[links != GROUND]].ravel(), d)
     np.add.at(found, truss.springs.nodes.ravel(), d)
