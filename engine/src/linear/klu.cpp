@@ -21,6 +21,8 @@ namespace {
 using numerics::raise;
 using Matrix = Eigen::Ref<const Eigen::SparseMatrix<double>>;
 
+/// Entries of L over those that AMD foresaw, from which on COLAMD is tried as well.
+constexpr double exceeded_fill = 2.0;
 /// Columns that a thread takes at once.
 constexpr std::size_t columns_at_once = 20000;
 
@@ -42,9 +44,6 @@ bool odd(const int* permutation, int size) {
 struct SparseFactor::Factors {
   Factors() {
     klu_defaults(&common);
-    // Columns ordered by COLAMD, whose fill stays bounded when rows are exchanged: lines of joints
-    // have zeros on the diagonal. AMD, the default, filled a ring of 100 joints ten times as much.
-    common.ordering = 1;
     // Where factors begin, over entries of the matrix: KLU reserves ten times as much by default,
     // gigabytes of a large truss, and lets factors grow where they need more.
     common.initmem = 1.0;
@@ -57,11 +56,27 @@ struct SparseFactor::Factors {
   bool choose_pivots(int* columns, int* rows, double* values) {
     halves.end();
     klu_free_numeric(&numeric, &common);
+    odd_permutation.reset();
     numeric = klu_factor(columns, rows, values, order->symbolic, &common);
     if (numeric == nullptr || common.status != KLU_OK) return false;
-    odd_permutation.reset();
     halves.begin(*numeric, *order->symbolic, order->halves);
     return true;
+  }
+
+  /// New factors of a small matrix in the order of COLAMD, if they have fewer entries than those at
+  /// hand: where rows exchanged for pivots fill these far more than AMD foresaw.
+  bool choose_order(double* values) {
+    const std::shared_ptr<const Order> first = order;
+    const double foreseen = first->symbolic->lnz;  // negative: by COLAMD, which foresees none
+    if (foreseen < 0.0 || numeric->lnz <= exceeded_fill * foreseen || settled == first) return true;
+    const int filled = numeric->lnz + numeric->unz;
+    order = std::make_shared<const Order>(size, *first->pattern, Ordering::colamd, common);
+    const bool is_better = order->symbolic != nullptr &&
+                           choose_pivots(order->columns(), order->rows(), values) &&
+                           numeric->lnz + numeric->unz < filled;
+    if (is_better) return true;
+    order = settled = first;
+    return choose_pivots(order->columns(), order->rows(), values);
   }
 
   /// Whether every pivot is more than rounding of its column, within its diagonal block.
@@ -133,14 +148,54 @@ struct SparseFactor::Factors {
     return largest;
   }
 
+  /// Where a matrix has entries that are not zero, by columns.
+  struct Pattern {
+    std::vector<int> columns, rows;
+
+    explicit Pattern(const Matrix& matrix) : columns{0} {
+      for (Eigen::Index column = 0; column < matrix.outerSize(); ++column) {
+        for (Matrix::InnerIterator it(matrix, column); it; ++it) {
+          if (it.value() != 0.0) rows.push_back(static_cast<int>(it.row()));
+        }
+        columns.push_back(static_cast<int>(rows.size()));
+      }
+    }
+
+    /// Puts the entries of a matrix in their places. False: one has none, or there are more than
+    /// twice as many places as entries: a new order pays.
+    bool take(const Matrix& matrix, std::vector<double>& values) const {
+      values.assign(rows.size(), 0.0);
+      std::size_t used = 0;
+      for (Eigen::Index column = 0; column < matrix.outerSize(); ++column) {
+        auto at = static_cast<std::size_t>(columns[static_cast<std::size_t>(column)]);
+        const auto end = static_cast<std::size_t>(columns[static_cast<std::size_t>(column) + 1]);
+        for (Matrix::InnerIterator it(matrix, column); it; ++it) {
+          if (it.value() == 0.0) continue;
+          while (at < end && rows[at] < it.row()) ++at;
+          if (at == end || rows[at] != it.row()) return false;
+          values[at] = it.value();
+          ++used;
+        }
+      }
+      return 2 * used >= rows.size();
+    }
+  };
+
+  /// AMD orders the pattern of the matrix and its transpose and fills least if pivots stay on the
+  /// diagonal; COLAMD bounds the fill whatever rows are exchanged.
+  enum class Ordering : unsigned char { amd, colamd };
+
   /// Of a pattern. KLU's C interface allocates and frees what it makes itself.
   struct Order {
+    Order(int size, Pattern of, Ordering ordering, klu_common common) : pattern(std::move(of)) {
+      common.ordering = ordering == Ordering::amd ? 0 : 1;
+      symbolic = klu_analyze(size, columns(), rows(), &common);
+    }
+    /// Of a large matrix, whose entries are all ordered and stay where they are.
     Order(int size, int* columns, int* rows, klu_common common) {
-      if (size >= HalvedOrder::least_columns) {
-        common.ordering = 3;
-        common.user_order = order_in_halves;
-        common.user_data = &halves;
-      }
+      common.ordering = 3;
+      common.user_order = order_in_halves;
+      common.user_data = &halves;
       symbolic = klu_analyze(size, columns, rows, &common);
     }
     ~Order() {
@@ -151,12 +206,19 @@ struct SparseFactor::Factors {
     Order(const Order&) = delete;
     Order& operator=(const Order&) = delete;
 
+    // KLU takes its arrays without const but writes to none of them.
+    int* columns() const { return const_cast<int*>(pattern->columns.data()); }
+    int* rows() const { return const_cast<int*>(pattern->rows.data()); }
+
+    std::optional<Pattern> pattern;  ///< Nothing: that of the matrix.
     HalvedOrder halves;
     klu_symbolic* symbolic = nullptr;
   };
 
   klu_common common{};
-  std::shared_ptr<const Order> order;  ///< Shared and only read.
+  std::shared_ptr<const Order> order;    ///< Shared and only read.
+  std::shared_ptr<const Order> settled;  ///< Which COLAMD did not better.
+  std::vector<double> entries;           ///< Of a small matrix, in the places of its pattern.
   klu_numeric* numeric = nullptr;
   HalvedFactors halves;
   int size = 0;
@@ -168,18 +230,35 @@ SparseFactor::~SparseFactor() = default;
 
 bool SparseFactor::factorize(const Matrix& matrix, double most_growth) {
   Factors& f = *factors_;
-  // KLU takes its arrays without const but writes to none of them.
-  int* columns = const_cast<int*>(matrix.outerIndexPtr());
-  int* rows = const_cast<int*>(matrix.innerIndexPtr());
-  double* values = const_cast<double*>(matrix.valuePtr());
   f.size = static_cast<int>(matrix.rows());
-  if (f.order == nullptr) {
-    auto made = std::make_shared<const Factors::Order>(f.size, columns, rows, f.common);
-    if (made->symbolic == nullptr) return false;
-    f.order = std::move(made);
+  if (f.size >= HalvedOrder::least_columns) {
+    int* columns = const_cast<int*>(matrix.outerIndexPtr());
+    int* rows = const_cast<int*>(matrix.innerIndexPtr());
+    double* values = const_cast<double*>(matrix.valuePtr());
+    if (f.order == nullptr) {
+      auto made = std::make_shared<const Factors::Order>(f.size, columns, rows, f.common);
+      if (made->symbolic == nullptr) return false;
+      f.order = std::move(made);
+    }
+    if (f.keeps_pivots(columns, rows, values, matrix, most_growth)) return true;
+    return f.choose_pivots(columns, rows, values) && f.has_pivots(matrix, 1.0);
   }
-  if (f.keeps_pivots(columns, rows, values, matrix, most_growth)) return true;
-  return f.choose_pivots(columns, rows, values) && f.has_pivots(matrix, 1.0);
+  if (f.order == nullptr || !f.order->pattern->take(matrix, f.entries)) {
+    klu_free_numeric(&f.numeric, &f.common);
+    Factors::Pattern pattern(matrix);
+    pattern.take(matrix, f.entries);
+    f.order = std::make_shared<const Factors::Order>(f.size, std::move(pattern),
+                                                     Factors::Ordering::amd, f.common);
+    if (f.order->symbolic == nullptr) {
+      f.order = nullptr;
+      return false;
+    }
+  }
+  int* columns = f.order->columns();
+  int* rows = f.order->rows();
+  if (f.keeps_pivots(columns, rows, f.entries.data(), matrix, most_growth)) return true;
+  return f.choose_pivots(columns, rows, f.entries.data()) && f.choose_order(f.entries.data()) &&
+         f.has_pivots(matrix, 1.0);
 }
 
 void SparseFactor::order_like(const SparseFactor& other) {

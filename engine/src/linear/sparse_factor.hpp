@@ -10,10 +10,10 @@ namespace statejump::linear {
 /// Compressed sparse matrix that is kept elsewhere.
 using SparseView = Eigen::Map<const Eigen::SparseMatrix<double>>;
 
-/// LU factors of a sparse square matrix whose pattern never changes. One source file per library:
-/// KLU where SuiteSparse is installed, else Eigen's SparseLU. (CHOLMOD factorises symmetric
-/// matrices only; Coulomb slip is not symmetric.) The result does not depend on the number of
-/// threads: large matrices are cut in two halves whatever there are, see HalvedOrder.
+/// LU factors of a sparse square matrix whose stored entries never change. One source file per
+/// library: KLU where SuiteSparse is installed, else Eigen's SparseLU. (CHOLMOD factorises
+/// symmetric matrices only; Coulomb slip is not symmetric.) The result does not depend on the
+/// number of threads: large matrices are cut in two halves whatever there are, see HalvedOrder.
 class SparseFactor {
  public:
   SparseFactor();

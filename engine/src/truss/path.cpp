@@ -2,6 +2,8 @@
 #include "statejump/truss/path.hpp"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <cmath>
 #include <set>
 #include <stdexcept>
@@ -197,6 +199,8 @@ Path solve(const Model& model, const Options& options) {
         const double shortest = std::nextafter(from, target) - from;
         const StepEnd end =
             walker.step_with_slack(goal, times[b + 1], std::max(tolerance, shortest));
+        static const bool tr = getenv("TR") != nullptr;
+        if (tr) fprintf(stderr, "%.9g step %.3g end %d share %.4g unst %d slack %d level %.3g ev %zu fact %ld solves %ld locates %d conv %.3g\n", from, goal-from, int(end), walker.event_share, int(walker.slip_is_unstable), int(walker.is_slack), walker.slack_level, walker.path.events.size(), walker.newton.factorizations(), long(walker.path.solves), int(walker.locates), convergent);
         if (end == StepEnd::done) {
           convergent = std::max(2.0 * convergent, tolerance);
           foreseen_from_here = 0;
