@@ -329,13 +329,20 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   const auto leaves_ahead = [&](const Violations& found) {
     if (!looking) return false;
     std::vector<int> leaving;
+    const double dashpots =
+        std::max(start.dashpot_force, system_->dashpot_force(z, time, start, statuses));
+    const auto is_idle = [&](int i) {
+      return system_->is_idle(i, first_z, dashpots) && system_->is_idle(i, z, dashpots);
+    };
     for (const int i : found.joints) {
-      if (system_->is_event(i, statuses[index(i)], found.corrected[index(i)])) leaving.push_back(i);
+      const bool is_event = system_->is_event(i, statuses[index(i)], found.corrected[index(i)]);
+      if (is_event && !is_idle(i)) leaving.push_back(i);
     }
     if (leaving.empty()) return false;
     const Violation first =
         first_violation(leaving, first_z, z, ahead->from_time, time, start, joints, statuses);
-    if (!(first.share > ahead->now)) return false;
+    report.leaves_at_start = !(first.share > ahead->now);
+    if (report.leaves_at_start) return false;
     looking = false;
     report.first_change = first.share;
     report.leaving.emplace(first.joint, found.corrected[index(first.joint)]);

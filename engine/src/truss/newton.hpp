@@ -26,6 +26,7 @@ struct SolveReport {
   /// That joint, and the branch for which it leaves its own. Which of those behind it follow is not
   /// known: it may spare them that.
   std::optional<std::pair<int, JointStatus>> leaving;
+  bool leaves_at_start = false;  ///< Whether that joint does so as soon as the step begins.
 };
 
 /// What was singular in equations that a solve regularised.

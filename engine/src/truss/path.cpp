@@ -2,8 +2,6 @@
 #include "statejump/truss/path.hpp"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <cmath>
 #include <set>
 #include <stdexcept>
@@ -199,8 +197,6 @@ Path solve(const Model& model, const Options& options) {
         const double shortest = std::nextafter(from, target) - from;
         const StepEnd end =
             walker.step_with_slack(goal, times[b + 1], std::max(tolerance, shortest));
-        static const bool tr = getenv("TR") != nullptr;
-        if (tr) fprintf(stderr, "%.9g step %.3g end %d share %.4g unst %d slack %d level %.3g ev %zu fact %ld solves %ld locates %d conv %.3g\n", from, goal-from, int(end), walker.event_share, int(walker.slip_is_unstable), int(walker.is_slack), walker.slack_level, walker.path.events.size(), walker.newton.factorizations(), long(walker.path.solves), int(walker.locates), convergent);
         if (end == StepEnd::done) {
           convergent = std::max(2.0 * convergent, tolerance);
           foreseen_from_here = 0;
@@ -208,7 +204,7 @@ Path solve(const Model& model, const Options& options) {
           // While a change is being located, the next one may be near, and to pass it costs a pivot
           // for every joint that it moves. Where the one that was foreseen did not come, the
           // tangent of a long step does not tell what is near: steps grow little by little.
-          const bool unchanged = counted == walker.path.events.size();
+          const bool unchanged = walker.path.events.size() - counted == walker.idle_changes.size();
           const bool creeps = locating && (!options.locate_events || unchanged);
           stride = std::min(balanced(), creeps ? 8.0 * stride : convergent);
           if (foresaw) unconfirmed = ahead >= nearer * least_ahead ? unconfirmed + 1 : 0;
@@ -220,6 +216,7 @@ Path solve(const Model& model, const Options& options) {
           }
           for (; counted < walker.path.events.size(); ++counted) {
             const Event& event = walker.path.events[counted];
+            if (walker.idle_changes.count(event.joint) > 0) continue;
             flickers = flickers || changes[index(event.joint)] >= most_located;
             if (++changes[index(event.joint)] <= most_changes) continue;
             FailureFields fields = failure_at(FailureKind::unsettled_joint, model, walker.time);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -179,11 +180,16 @@ StepEnd Walker::step_to(double target, double tolerance) {
     ++path.solves;
     return StepEnd::event_inside;
   }
+  const double dashpots =
+      std::max(begin.dashpot_force, system.dashpot_force(trial, target, begin, trial_statuses));
+  const auto is_idle = [&](int i) {
+    return system.is_idle(i, z, dashpots) && system.is_idle(i, trial, dashpots);
+  };
   // Whether it matters when in the step a joint changed its status.
   const auto matters = [&](int i) {
     const JointStatus before = origin.statuses[index(i)];
     const JointStatus after = trial_statuses[index(i)];
-    if (before == after || !system.is_event(i, before, after)) return false;
+    if (before == after || !system.is_event(i, before, after) || is_idle(i)) return false;
     return system.remembers_when(i, before, after) ? slide_at_stake(i, before, target, rounding)
                                                    : options.locate_events;
   };
@@ -198,10 +204,12 @@ StepEnd Walker::step_to(double target, double tolerance) {
       changed_at_start = trial_statuses;
       event_share = 0.0;
     }
+    if (report.leaves_at_start) event_share = 0.0;
     ++path.solves;
     return StepEnd::event_inside;
   }
   std::vector<Event> events;
+  std::set<int> idle;
   bool opened = false;
   const int joints = static_cast<int>(model.joints.size());
   for (int i = 0; i < joints; ++i) {
@@ -212,11 +220,12 @@ StepEnd Walker::step_to(double target, double tolerance) {
     events.push_back(
         {target, target - time, model.temperature_change(0, 1.0, target), i, before, after});
     opened = opened || after == JointStatus::open;
+    if (is_idle(i)) idle.insert(i);
   }
   const int jumps = system.first_joint([&, moved = system.displacements(trial)](int i) {
     const Trial at = system.trial(i, trial, moved, target, begin, JointModel::friction, 1.0);
     const JointStatus status = trial_statuses[index(i)];
-    return joint(i, [&](const auto& one) { return one.jumps(at, status); });
+    return !is_idle(i) && joint(i, [&](const auto& one) { return one.jumps(at, status); });
   });
   if (jumps >= 0) {
     if (is_short) {
@@ -292,7 +301,8 @@ StepEnd Walker::step_to(double target, double tolerance) {
     path.problems.push_back(local_problem(system, trial, target, begin, trial_statuses));
   }
   changed_at_start.clear();
-  looks_at_start = looks_at_start || !events.empty();
+  idle_changes = std::move(idle);
+  looks_at_start = looks_at_start || events.size() > idle_changes.size();
   state = std::move(next);
   rate = rate_after;
   slide_rate = slide_rate_after;

@@ -166,6 +166,11 @@ Trial asked(const std::vector<Vector3d>& drawn, const JointFrame& frame, const d
   return trial;
 }
 
+/// Whether dashpots hold a joint with play.
+bool is_damped(JointStatus status, const StepStart& start) {
+  return status == JointStatus::open || (start.damps_slip && is_slip(status));
+}
+
 }  // namespace
 
 Trial System::trial(int joint, const VectorXd& z, double time, const StepStart& start,
@@ -224,6 +229,7 @@ StepStart System::commit(const VectorXd& z, double time, const Statuses& statuse
                          const StepStart& last) const {
   StepStart made{statuses, VectorXd(history_),   time,           {}, {},
                  0.0,      last.slack_stiffness, last.damps_slip};
+  made.dashpot_force = dashpot_force(z, time, last, statuses);
   const Eigen::Matrix3Xd moved = displacements(z);
   each_joint([&](int i) {
     const Trial at = trial(i, z, moved, time, last, JointModel::friction, 1.0);
@@ -298,12 +304,29 @@ Vector3d System::slack_motion(int joint, const VectorXd& z, double time,
       model_->joints[index(joint)]);
 }
 
+double System::dashpot_force(const VectorXd& z, double time, const StepStart& start,
+                             const Statuses& statuses) const {
+  if (start.slack_stiffness == 0.0) return 0.0;
+  double sum = 0.0;
+  for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
+    if (!is_damped(statuses[index(i)], start)) continue;
+    sum += start.slack_stiffness * slack_motion(i, z, time, start).norm();
+  }
+  return sum;
+}
+
+bool System::is_idle(int joint, const VectorXd& z, double force) const {
+  const bool has_play =
+      std::visit([](const auto& one) { return one.has_play(); }, model_->joints[index(joint)]);
+  return has_play &&
+         z.segment(force_row(joint), force_count(joint)).lpNorm<Eigen::Infinity>() <= force;
+}
+
 double System::slack_work(const VectorXd& z, double time, const StepStart& start,
                           const Statuses& statuses) const {
   double work = 0.0;
   for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
-    const JointStatus status = statuses[index(i)];
-    if (status != JointStatus::open && !(start.damps_slip && is_slip(status))) continue;
+    if (!is_damped(statuses[index(i)], start)) continue;
     work += start.slack_stiffness * slack_motion(i, z, time, start).squaredNorm();
   }
   return work;

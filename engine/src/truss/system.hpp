@@ -54,6 +54,7 @@ struct StepStart {
   double slack_stiffness = 0.0;
   /// Whether joints with play are held so as well while they slip, see Walker::follow_snap().
   bool damps_slip = false;
+  double dashpot_force = 0.0;  ///< Of all dashpots of joints in the last step, added up [N].
 
   /// What the rule is going to leave in a step to a time [m]: it grows with the third power of the
   /// step, but of no longer step than the last one is it known.
@@ -309,6 +310,12 @@ class System {
   bool is_event(int joint, JointStatus before, JointStatus after) const {
     return !(is_slip(before) && is_slip(after)) || remembers_when(joint, before, after);
   }
+  /// Forces of the dashpots of slack joints in a step, all taken as positive and added up [N].
+  double dashpot_force(const VectorXd& z, double time, const StepStart& start,
+                       const Statuses& statuses) const;
+  /// Whether a joint with play carries no more than `force`. If that is what dashpots carry,
+  /// nothing depends on when the joint changes its status: without dashpots it would carry nothing.
+  bool is_idle(int joint, const VectorXd& z, double force) const;
   /// Whether a joint slips at its rim while it sticks.
   bool slips_smoothly() const { return slips_smoothly_; }
   /// Slide of a step less what friction bends, of a joint that rolls; nothing is owed to it [m].

@@ -72,6 +72,9 @@ struct Walker {
   /// Whether long steps hold open joints by dashpots: nothing else determines their positions.
   bool is_slack = false;
   double slack_level = 0.0;  ///< Of these dashpots, see System::slack_stiffness().
+  /// Joints that changed in the last step and carry no more than dashpots do, see
+  /// System::is_idle().
+  std::set<int> idle_changes = {};
   double snap_travel = 0.0;  ///< Of all snaps since the last corner [m].
   /// Statuses that a longer step found from the present state on; empty: none.
   Statuses changed_at_start = {};
