@@ -52,7 +52,8 @@ SolveReport Walker::continue_from_event(double target, VectorXd& to, Statuses& s
                                         SolveReport first) {
   if (first.end == SolveEnd::stopped) return first;
   const bool converged = first.end == SolveEnd::converged;
-  if (converged && statuses == origin.statuses) {
+  // Dashpots in all contacts decide where a step leads.
+  if (converged && (statuses == origin.statuses || origin.damps_contact)) {
     if (any_slips(statuses) && newton.stability_index() < 0) {
       fail_continuation(FailureKind::no_continuation, target, {});
     }
@@ -190,8 +191,14 @@ bool Walker::follows_its_rates(const Ends& ends) const {
   const auto after = half * ends.to_rate.head(n);
   const double apart =
       (ends.to.head(n) - ends.from.head(n) - before - after).lpNorm<Eigen::Infinity>();
+  // What dashpots hold comes to rest at its own pace.
+  const double slack =
+      ends.start.slack_stiffness > 0.0
+          ? system.dashpot_force(ends.to, ends.to_time, ends.start, ends.statuses) /
+                ends.start.slack_stiffness
+          : 0.0;
   return apart <= std::max(before.lpNorm<Eigen::Infinity>(), after.lpNorm<Eigen::Infinity>()) +
-                      jump_share * system.size();
+                      slack + jump_share * system.size();
 }
 
 }  // namespace statejump::truss::detail

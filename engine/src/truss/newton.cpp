@@ -26,6 +26,8 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double force_tolerance = 1e-12;
 /// Steps that a step is compared with: M of Grippo, Lampariello and Lucidi.
 constexpr std::size_t remembered_steps = 10;
+/// Steps after which Newton's method goes to and fro if they have not even halved.
+constexpr std::size_t swing_steps = 4;
 /// Halvings of a step after which it is below a thousandth: Newton's direction leads nowhere.
 constexpr int most_halvings = 10;
 /// Halvings of the share of a step at which a joint changes: to rounding of the step.
@@ -220,6 +222,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   // Pivots of all joints since there were ever fewer violations, and the joints that had any since.
   int idle = 0;
   std::set<int> wandering;
+  VectorXd closing_z;  // where the last contact that was open closed
   // Pivots that wander lead far away, where the equations are others: they begin anew from here.
   const VectorXd first_z = z;
   const Statuses first_statuses = statuses;
@@ -294,7 +297,8 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
       one[index(found.joints.front())] = found.corrected[index(found.joints.front())];
       return one;
     };
-    // A contact that pulls while it sticks and closes while it is open may slide.
+    if (statuses[index(found.joints.front())] == JointStatus::open) closing_z = z;
+    // A contact that pulls while it sticks and closes while it is open may slide, where it closes.
     const auto slides = [&](const Violations& of) {
       const std::size_t first = index(of.joints.front());
       if (statuses[first] != JointStatus::open && of.corrected[first] != JointStatus::open) {
@@ -305,6 +309,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
         sliding[first] = slip;
         if (!seen.insert(fingerprint(sliding)).second) continue;
         statuses = std::move(sliding);
+        if (closing_z.size() > 0) z = closing_z;
         return true;
       }
       return false;
@@ -313,7 +318,8 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     while (!seen.insert(fingerprint(next)).second) {
       if (pivoting == Pivoting::single) {
         // Over a step that is the question of the rate problem.
-        if (time != start.time || !slides(found)) return false;
+        const bool is_path = time != start.time && !start.damps_contact;
+        if (is_path || !slides(found)) return false;
         return begin_anew();
       }
       pivoting = Pivoting::single;
@@ -493,6 +499,9 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     halvings = 0;
     from = z;
     merit_before = merit;
+    // Steps to and fro between the same two places meet in the middle.
+    const std::size_t taken = lengths.size();
+    if (taken >= swing_steps && next_length > 0.5 * lengths[taken - swing_steps]) next *= 0.5;
     step = next;
     z += next;
     settled = false;

@@ -29,8 +29,9 @@ constexpr int most_slower = 16;
 /// Joints that a note of a snap names.
 constexpr std::size_t most_named = 3;
 
-/// Diameters of all plays one behind the other [m]: a structure moves no farther within them.
-double all_plays(const Model& model) {
+/// How far a structure moves within its plays [m]: the diameters of all, one behind the other, on
+/// the longest lever that an element makes of the structure's size.
+double all_plays(const Model& model, double size) {
   double sum = 0.0;
   for (const Joint& joint : model.joints) {
     sum += std::visit(
@@ -40,7 +41,13 @@ double all_plays(const Model& model) {
         },
         joint);
   }
-  return sum;
+  double shortest = size;
+  for (const Link& link : model.links) {
+    const double length =
+        (model.nodes[index(link.second)].position - model.nodes[index(link.first)].position).norm();
+    if (length > 0.0) shortest = std::min(shortest, length);
+  }
+  return shortest > 0.0 ? sum * size / shortest : sum;
 }
 
 /// What rounding of the forces moves by against dashpots that hardly hold [m].
@@ -93,7 +100,7 @@ bool Walker::come_to_rest(const std::function<std::optional<double>(double level
 /// @param until time that is not passed [s]
 /// @returns false: dashpots do not hold it, or no joint has play; nothing has happened then
 bool Walker::follow_snap(double until, double tolerance) {
-  const double plays = all_plays(model);
+  const double plays = all_plays(model, system.size());
   if (plays == 0.0 || !options.locate_events) return false;
   const Position before = position();
   const auto events = static_cast<std::ptrdiff_t>(path.events.size());
@@ -107,7 +114,7 @@ bool Walker::follow_snap(double until, double tolerance) {
         const VectorXd from = z;
         const Statuses statuses = origin.statuses;
         slack_level = level;
-        origin.damps_slip = true;
+        origin.damps_contact = true;
         changed_at_start.clear();
         try {
           const StepEnd end = step_to(time + stride, tolerance);
@@ -121,7 +128,7 @@ bool Walker::follow_snap(double until, double tolerance) {
       },
       drift);
   slack_level = level_before;
-  origin.damps_slip = false;
+  origin.damps_contact = false;
   if (!path.complete) return true;
   const double whole = length_of(z - before.z, system.displacements());
   snap_travel += whole;

@@ -94,10 +94,11 @@ void Walker::start() {
   note(NoteKind::large_start, 0.0, {}, length_of(z, system.displacements()));
 }
 
-/// Throws if the truss has free modes with its joints as the statuses say.
+/// Throws if the truss has free modes with its joints as the statuses say, other than those of
+/// slack elements, which no load moves.
 void Walker::refuse_mechanism(double when, const Statuses& statuses, JointModel joints) const {
   FoundModes modes = mechanism(system, z, when, statuses, joints);
-  if (!modes) return;
+  if (!modes || (any_open(statuses) && !are_loaded(modes.shapes))) return;
   FailureFields fields = failure_at(FailureKind::mechanism, model, when);
   // With its joints held it is none: their friction is at its bound everywhere.
   if (!mechanism(system, z, when, held_but_open(statuses), JointModel::pins)) {
@@ -153,7 +154,7 @@ bool Walker::note_slack(double when, const VectorXd& at, const Statuses& statuse
 /// Makes the dashpots of slack joints stiffer; false: there are none, or none stiffer.
 bool Walker::stiffen_slack(const Statuses& statuses) {
   if (!any_open(statuses) || slack_level == System::most_slack_level) return false;
-  ++slack_level;
+  slack_level = std::min(slack_level + 1.0, static_cast<double>(System::most_slack_level));
   is_slack = true;
   return true;
 }
@@ -274,7 +275,7 @@ bool Walker::come_to_rest_at(double opening, JointModel contact, const std::vect
       [&](double level) -> std::optional<double> {
         StepStart begin = system.begin(z, 0.0, origin.statuses, opening);
         begin.slack_stiffness = system.slack_stiffness(level);
-        begin.damps_slip = true;
+        begin.damps_contact = true;
         VectorXd trial = z;
         Statuses statuses = origin.statuses;
         const SolveReport report =

@@ -18,6 +18,8 @@ namespace {
 
 /// Of what is left of the energy that a path may lose the share that a step may.
 constexpr double share_of_an_event = 0.02;
+/// Levels by which dashpots of slack joints become softer after a step.
+constexpr double softer = 0.25;
 /// Steps before one is tried that is longer than those that balance: a tenth of the work at most.
 constexpr int most_held_steps = 10;
 
@@ -294,7 +296,8 @@ StepEnd Walker::step_to(double target, double tolerance) {
     is_slack =
         (!opened && trial_statuses == origin.statuses) || note_slack(target, trial, trial_statuses);
   }
-  if (!is_slack && !origin.damps_slip) slack_level = 0;
+  // Dashpots are no stiffer for long than steps need.
+  if (!origin.damps_contact) slack_level = is_slack ? std::max(0.0, slack_level - softer) : 0.0;
   note_not_unique(target);
   const std::vector<double>& asked = options.problem_times;
   if (path.problems.size() < asked.size() && target >= asked[path.problems.size()]) {

@@ -151,7 +151,7 @@ Trial asked(const std::vector<Vector3d>& drawn, const JointFrame& frame, const d
     trial.owed_rate = start.foreseen_rate(joint, time);
   }
   trial.slack_stiffness = start.slack_stiffness;
-  trial.damps_slip = start.damps_slip;
+  trial.damps_contact = start.damps_contact;
   for (std::size_t k = 0; k < most_joint_nodes; ++k) {
     const int node = frame.nodes[k];
     if (node < 0) {
@@ -168,7 +168,7 @@ Trial asked(const std::vector<Vector3d>& drawn, const JointFrame& frame, const d
 
 /// Whether dashpots hold a joint with play.
 bool is_damped(JointStatus status, const StepStart& start) {
-  return status == JointStatus::open || (start.damps_slip && is_slip(status));
+  return start.damps_contact || status == JointStatus::open;
 }
 
 }  // namespace
@@ -227,8 +227,8 @@ StepStart System::begin(const VectorXd& z, double time, const Statuses& statuses
 
 StepStart System::commit(const VectorXd& z, double time, const Statuses& statuses,
                          const StepStart& last) const {
-  StepStart made{statuses, VectorXd(history_),   time,           {}, {},
-                 0.0,      last.slack_stiffness, last.damps_slip};
+  StepStart made{statuses,          VectorXd(history_), time, {}, {}, 0.0, last.slack_stiffness,
+                 last.damps_contact};
   made.dashpot_force = dashpot_force(z, time, last, statuses);
   const Eigen::Matrix3Xd moved = displacements(z);
   each_joint([&](int i) {

@@ -52,8 +52,8 @@ struct StepStart {
   double last_step = 0.0;  ///< Its duration [s].
   /// Of joints that are open [N/m], see System::slack_stiffness(); kept from step to step.
   double slack_stiffness = 0.0;
-  /// Whether joints with play are held so as well while they slip, see Walker::follow_snap().
-  bool damps_slip = false;
+  /// Whether joints with play are held so as well while they touch, see Walker::follow_snap().
+  bool damps_contact = false;
   double dashpot_force = 0.0;  ///< Of all dashpots of joints in the last step, added up [N].
 
   /// What the rule is going to leave in a step to a time [m]: it grows with the third power of the

@@ -125,7 +125,9 @@ Vector<Dual> tangential_row(const BallJoint& joint, const Trial& trial, const Ba
   if (trial.model != JointModel::friction || joint.friction_coefficient == 0.0) return -carries;
   if (!is_slip(status) || bend.pull.squaredNorm().value() == 0.0) return bend.pull - carries;
   const Dual bound = joint.friction_coefficient * now.normal_force * bend.compliance;
-  return detail::slip_direction(joint, now, start, bend, is_slip(trial.before)) * bound - carries;
+  // What dashpots hold turns little in a step, and the direction has to be a smooth function of it.
+  const bool turns = is_slip(trial.before) && !trial.damps_contact;
+  return detail::slip_direction(joint, now, start, bend, turns) * bound - carries;
 }
 
 Response respond(const BallJoint& joint, const Trial& trial, JointStatus status) {
@@ -204,11 +206,10 @@ void BallJoint::evaluate(const Trial& trial, JointStatus status, JointWriter& wr
   if (partial_slip) writer.piece(made.piece);
   for (int k = 0; k < 3; ++k) writer.carries(trial.force[index(k)]);
   // A contact that carries nothing holds nothing across its normal.
-  const bool sticks = status == JointStatus::stick && trial.model == JointModel::friction;
   const bool is_open = status == JointStatus::open;
   double slack = 0.0;
   Vector3d slack_by_normal = Vector3d::Zero(), normal = Vector3d::Zero();
-  if (trial.slack_stiffness > 0.0 && (is_open || (trial.model != JointModel::pins && !sticks))) {
+  if (trial.slack_stiffness > 0.0 && (is_open || trial.model != JointModel::pins)) {
     const BallState<double> now = state_of(*this, trial);
     slack = is_open ? trial.slack_stiffness : trial.slack_held(now.normal_force, radial_clearance);
     const Vector3d moved = trial.between(socket, ball) - BallMemory::of(trial.history).offset;

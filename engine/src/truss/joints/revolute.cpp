@@ -453,12 +453,12 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
       writer.balance(1, friction - sense * mu * normal);
       corner[1][0] = -sense * mu;
       corner[1][1] = 1.0;
-      // A contact that carries nothing holds nothing across its normal.
-      const double holds = trial.slack_held(normal, g.clearance);
-      slack = hold_slack(trial, holds, g.eccentricity, of);
-      if (holds > 0.0 && holds < trial.slack_stiffness) {
-        slack_by_normal = -(g.eccentricity - Memory::of(trial.history).eccentricity) / g.clearance;
-      }
+    }
+    // A contact that carries nothing holds nothing across its normal.
+    const double holds = trial.slack_held(normal, g.clearance);
+    slack = hold_slack(trial, holds, g.eccentricity, of);
+    if (holds > 0.0 && holds < trial.slack_stiffness) {
+      slack_by_normal = -(g.eccentricity - start.eccentricity) / g.clearance;
     }
   }
   PlanarWriter planar(writer, plane_of(trial));

@@ -123,16 +123,16 @@ struct Trial {
   /// Stiffness of a joint that carries nothing against its motion since the start of the step
   /// [N/m], see System::slack_stiffness(); 0: none.
   double slack_stiffness = 0.0;
-  /// Whether it holds joints that slip as well.
-  bool damps_slip = false;
+  /// Whether it holds joints that touch as well.
+  bool damps_contact = false;
   /// What rounding may make of a length [m] and of a force [N]; 0 where inequalities are strict.
   double length_rounding = 0.0;
   double force_rounding = 0.0;
 
-  /// Stiffness that holds a contact that slips against its motion in the step [N/m]: all of it
+  /// Stiffness that holds a contact against its motion in the step [N/m]: all of it
   /// where the contact carries nothing, less the more it carries, so that the force is continuous.
   double slack_held(double normal_force, double clearance) const {
-    if (damps_slip || normal_force <= 0.0) return slack_stiffness;
+    if (damps_contact || normal_force <= 0.0) return slack_stiffness;
     return std::max(0.0, slack_stiffness - normal_force / clearance);
   }
 
