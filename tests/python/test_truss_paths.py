@@ -78,11 +78,11 @@ def test_free_truss_expands_freely(count: int, diagonals: int, dimension: int, t
     states, position = found.states, found.truss.nodes.position_m
     strain = 2e-5 * states["temperature_change_K"]
     # Nodes balance to rounding of the displacements, 64 eps u, times the stiffness. A row of bays adds it up to moments,
-    # which chords carry by the square of their number, and bends under them by the cube.
+    # which chords carry by the square of their number, and bends under them by the cube: of both chords.
     rounding_m = 64 * EPSILON * max(np.abs(strain).max() * count, EPSILON)
     assert np.abs(states["axial_force_N"]).max() <= 7e5 * rounding_m * (count + 1) ** 2
     off_m = np.abs(states["displacement_m"] - strain[:, None, None] * position).max()
-    assert off_m <= rounding_m * (count + 1) ** 3
+    assert off_m <= 2 * rounding_m * (count + 1) ** 3
     assert found.complete and len(found.events) == 0
 
 

@@ -146,9 +146,9 @@ bool Walker::note_slack(double when, const VectorXd& at, const Statuses& statuse
   for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
     if (statuses[index(i)] == JointStatus::open) open.push_back(i);
   }
-  if (open.empty() || !mechanism(system, at, when, statuses, JointModel::friction)) return false;
-  note(NoteKind::slack, when, open);
-  return true;
+  is_loose = !open.empty() && mechanism(system, at, when, statuses, JointModel::friction);
+  if (is_loose) note(NoteKind::slack, when, open);
+  return is_loose;
 }
 
 /// Makes the dashpots of slack joints stiffer; false: there are none, or none stiffer.

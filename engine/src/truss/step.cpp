@@ -108,6 +108,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
   const bool is_short = target - time <= 1.5 * tolerance;
   // A joint that opens may leave a mechanism, which only a short step finds.
   origin.slack_stiffness = is_short || is_slack ? system.slack_stiffness(slack_level) : 0.0;
+  origin.is_loose = is_loose;
   VectorXd trial = z;
   Statuses trial_statuses =
       is_short && !changed_at_start.empty() ? changed_at_start : origin.statuses;
@@ -206,7 +207,8 @@ StepEnd Walker::step_to(double target, double tolerance) {
       changed_at_start = trial_statuses;
       event_share = 0.0;
     }
-    if (report.leaves_at_start) event_share = 0.0;
+    expects_at_start = report.leaves_at_start && looks_at_start && is_loose;
+    if (expects_at_start) event_share = 0.0;
     ++path.solves;
     return StepEnd::event_inside;
   }
@@ -305,12 +307,14 @@ StepEnd Walker::step_to(double target, double tolerance) {
   }
   changed_at_start.clear();
   idle_changes = std::move(idle);
-  looks_at_start = looks_at_start || events.size() > idle_changes.size();
+  const bool is_confirmed = !std::exchange(expects_at_start, false) || !events.empty();
+  looks_at_start = (looks_at_start && is_confirmed) || events.size() > idle_changes.size();
   state = std::move(next);
   rate = rate_after;
   slide_rate = slide_rate_after;
   z = trial;
-  origin = after;
+  origin = std::move(after);
+  is_loose = is_loose && is_slack;
   time = target;
   path.events.insert(path.events.end(), events.begin(), events.end());
   if (!events.empty() && options.locate_events && !options.cycle_ends_only) {

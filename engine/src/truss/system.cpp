@@ -306,7 +306,7 @@ Vector3d System::slack_motion(int joint, const VectorXd& z, double time,
 
 double System::dashpot_force(const VectorXd& z, double time, const StepStart& start,
                              const Statuses& statuses) const {
-  if (start.slack_stiffness == 0.0) return 0.0;
+  if (!start.is_loose || start.slack_stiffness == 0.0) return 0.0;
   double sum = 0.0;
   for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
     if (!is_damped(statuses[index(i)], start)) continue;

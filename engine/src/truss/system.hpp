@@ -54,6 +54,7 @@ struct StepStart {
   double slack_stiffness = 0.0;
   /// Whether joints with play are held so as well while they touch, see Walker::follow_snap().
   bool damps_contact = false;
+  bool is_loose = false;       ///< Whether elements are slack, held by nothing but dashpots.
   double dashpot_force = 0.0;  ///< Of all dashpots of joints in the last step, added up [N].
 
   /// What the rule is going to leave in a step to a time [m]: it grows with the third power of the
@@ -310,7 +311,7 @@ class System {
   bool is_event(int joint, JointStatus before, JointStatus after) const {
     return !(is_slip(before) && is_slip(after)) || remembers_when(joint, before, after);
   }
-  /// Forces of the dashpots of slack joints in a step, all taken as positive and added up [N].
+  /// Forces of the dashpots of slack elements in a step, all taken as positive and added up [N].
   double dashpot_force(const VectorXd& z, double time, const StepStart& start,
                        const Statuses& statuses) const;
   /// Whether a joint with play carries no more than `force`. If that is what dashpots carry,

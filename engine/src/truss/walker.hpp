@@ -71,6 +71,8 @@ struct Walker {
   double event_share = 1.0;
   /// Whether long steps hold open joints by dashpots: nothing else determines their positions.
   bool is_slack = false;
+  /// Whether the last answer of note_slack() was that there are slack elements.
+  bool is_loose = false;
   double slack_level = 0.0;  ///< Of these dashpots, see System::slack_stiffness().
   /// Joints that changed in the last step and carry no more than dashpots do, see
   /// System::is_idle().
@@ -81,6 +83,8 @@ struct Walker {
   /// Whether such are looked for; not again where a short step did not confirm them, until the next
   /// event.
   bool looks_at_start = true;
+  /// Whether the tangents of a longer step saw one at its start.
+  bool expects_at_start = false;
   /// Whether the last step was refused because what slips at its end is unstable.
   bool slip_is_unstable = false;
   /// Whether steps end at foreseen changes; else they pass them, see most_unconfirmed.

@@ -165,7 +165,7 @@ inline void expect_the_same_turned(const Model& model, double friction_share) {
   EXPECT_LT(
       (turned.transpose() * found.states.back().displacement - path.states.back().displacement)
           .norm(),
-      1e-10 * size);
+      2e-10 * size);  // each of both paths by as much as closures leave
   EXPECT_LT((turned.transpose() * friction(other, found.states.back()) -
              friction(model, path.states.back()))
                 .norm(),
