@@ -187,14 +187,17 @@ class Case(Section):
         written: Path = _SAVED(self, Path(path))
         return written
 
-    def reduced(self, progress: Progress = False, *, dynamic: bool = False) -> Run:
+    def reduced(self, progress: Progress = False, *, dynamic: bool = False,
+                trace: str | Path | Callable[[tuple[Any, ...]], object] | None = None) -> Run:
         """Run the reduced model.
 
-        :param progress: True: show it on standard error; or what is called with the finished share, 0 to 1
-        :param dynamic: with inertia, where the reduced model has none without being asked: the motion of a truss
+        :param progress: True: show it on standard error; or what is called with the finished fraction, 0 to 1
+        :param dynamic: with inertia, where the reduced model has none by default: the motion of a truss
+        :param trace: CSV file that gets a row for every Newton iteration of a truss, or a function that is called with
+            each row as a tuple; :data:`statejump.kinds.truss.trace.COLUMNS` names its entries
         :raises StatejumpError: the kind has no such reduced model, or the run could not be finished
         """
-        run: Run = _RUN(self, "dynamic" if dynamic else "reduced", progress)
+        run: Run = _RUN(self, "dynamic" if dynamic else "reduced", progress, trace=trace)
         return run
 
     def quasi_static(self) -> Any:
@@ -205,15 +208,16 @@ class Case(Section):
         """
         return _PATHS(self)
 
-    def dem(self, progress: Progress = False) -> Run:
+    def dem(self, progress: Progress = False, *, keep_input: str | Path | None = None) -> Run:
         """Run the case in YADE, in a process of its own.
 
-        :param progress: True: show it on standard error; or what is called with the finished share, 0 to 1
+        :param progress: True: show it on standard error; or what is called with the finished fraction, 0 to 1
+        :param keep_input: folder that gets the script and the data of the run, to repeat it by hand
         :raises StatejumpError: the kind has no DEM, YADE is missing or failed
         :raises Interrupted: Ctrl-C; its ``run`` has the samples so far
         """
         self.check_dem()
-        run: Run = _RUN(self, "dem", progress)
+        run: Run = _RUN(self, "dem", progress, keep_input=keep_input)
         return run
 
     def check_dem(self) -> None:

@@ -27,6 +27,11 @@ def _cell(value: Any) -> Any:
     return repr(value) if isinstance(value, float) else value
 
 
+def cells(row: Iterable[Any]) -> list[Any]:
+    """Return a row as the cells of a CSV file: full precision, None and NaN as an empty cell."""
+    return [_cell(value) for value in row]
+
+
 def write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[Any]]) -> Path:
     """Write a table; full precision, None and NaN as an empty cell. Return the path.
 
@@ -35,7 +40,7 @@ def write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[Any]]) 
     with write_atomically(path) as stream:
         writer = csv.writer(stream)
         writer.writerow(header)
-        writer.writerows([_cell(value) for value in row] for row in rows)
+        writer.writerows(map(cells, rows))
     return path
 
 

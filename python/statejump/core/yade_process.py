@@ -26,6 +26,7 @@ from statejump.core.thermal import parameters
 from statejump.schema.fields import choice
 
 MARK = "STATEJUMP "
+RUNNER, DATA, SAMPLES = "run_case.py", "case.json", "dem.samples"  # names that the script has by default, too
 PR_SET_PDEATHSIG = 1  # prctl(2)
 Columns = Mapping[str, np.ndarray]
 MakeRun = Callable[[Case, Columns, Mapping[str, Any]], Run]
@@ -70,6 +71,20 @@ def find_yade() -> str:
     return found
 
 
+def command_of(values: Mapping[str, Any], script: Path, *, view: bool = False) -> list[str]:
+    """Return the command that runs a script in YADE.
+
+    :param view: with YADE's windows and its prompt
+    """
+    return [find_yade(), *([] if view else ["-n", "-x"]), f"-j{values['dem']['threads']}", str(script)]
+
+
+def python_path() -> str:
+    """Return the PYTHONPATH with which the script in YADE finds this package and the plugin."""
+    modules = str(Path(__file__).resolve().parents[2])
+    return os.pathsep.join(filter(None, [modules, os.environ.get("PYTHONPATH")]))
+
+
 def _dying_with_us() -> Callable[[], None]:
     """Return what a new process calls so that the kernel kills it with the thread that waits for it: a YADE whose
     caller was killed would run on."""
@@ -109,18 +124,17 @@ def execute(values: Mapping[str, Any], tell: Tell) -> Samples:
     """Run a resolved case in YADE; see :func:`run`. Of an interrupted one ``run`` is :class:`Samples`."""
     from statejump.core.scratch import scratch  # as which
 
-    name, threads = values["case"]["name"], values["dem"]["threads"]
-    command = [find_yade(), "-n", "-x", f"-j{threads}", str(_paths.YADE_SCRIPTS / "runner" / "run_case.py")]
+    name = values["case"]["name"]
+    command = command_of(values, _paths.YADE_SCRIPTS / "runner" / RUNNER)
     with scratch() as folder:
-        input_file, output = folder / "case.json", folder / "dem.samples"
+        input_file, output = folder / DATA, folder / SAMPLES
         input_file.write_text(json.dumps(values), encoding="utf-8")
-        modules = str(Path(__file__).resolve().parents[2])
         environment = dict(
             os.environ,
             STATEJUMP_CASE_JSON=str(input_file),
             STATEJUMP_OUTPUT=str(output),
-            PYTHONPATH=os.pathsep.join(filter(None, [modules, os.environ.get("PYTHONPATH")])),
-            OMP_NUM_THREADS=str(threads),
+            PYTHONPATH=python_path(),
+            OMP_NUM_THREADS=str(values["dem"]["threads"]),
             HOME=os.environ.get("HOME") or str(folder),  # without, YADE does not start
             TMPDIR=str(folder),  # YADE's own temporary folder goes with ours
         )

@@ -156,6 +156,7 @@ def path(
     cycle_ends_only: bool = False,
     problem_times: Sequence[float] = (),
     progress: Callable[[float], bool | None] | None = None,
+    trace: Callable[[tuple[Any, ...]], object] | None = None,
 ) -> TrussPath:
     """Return the quasi-static path of a truss.
 
@@ -166,7 +167,8 @@ def path(
         located: increments that lose more are cut; 1: none is
     :param cycle_ends_only: keep the states at the ends of cycles only
     :param problem_times: when the frictional contact problem of a step is kept, in order [s]
-    :param progress: called with the share that is done; returning False ends the path
+    :param progress: called with the finished fraction; returning False ends the path
+    :param trace: called with each Newton iteration, see :data:`statejump.kinds.truss.trace.COLUMNS`
     :raises FailedRun: for a mechanism, an unloaded joint, no equilibrium: with names and temperature
     :raises StatejumpError: a link is driven
     """
@@ -178,6 +180,7 @@ def path(
             **engine_items(truss), increments_per_branch=increments_per_branch, locate_events=locate_events,
             event_tolerance=event_tolerance, energy_tolerance=energy_tolerance, cycle_ends_only=cycle_ends_only,
             problem_times=problem_times, start_friction=truss.start_friction, progress=progress,
+            trace=trace,
         )
     except _engine.EngineFailure as failure:
         raise _failed(truss, failure, locate_events) from None
@@ -211,27 +214,29 @@ def _failed(truss: ResolvedTruss, failure: _engine.EngineFailure, locate_events:
     return EngineFailed(failure, remedy=remedy, case=truss.name, place=truss.name)
 
 
-def solve(case: TrussCase, tell: Tell = lambda share: None) -> TrussPath:
+def solve(case: TrussCase, tell: Tell = lambda fraction: None,
+          trace: Callable[[tuple[Any, ...]], object] | None = None) -> TrussPath:
     """Return the path of a case, with the settings of its [reduced]. A case is immutable, so its path is found once:
-    the DEM begins where the reduced model does.
+    the DEM begins where the reduced model does. A trace needs a new solution.
 
-    :param tell: takes the finished share, 0 to 1
+    :param tell: takes the finished fraction, 0 to 1
+    :param trace: as of :func:`path`
     :raises FailedRun: for a mechanism, an unloaded joint, no equilibrium: with names and temperature
     :raises Interrupted: Ctrl-C
     """
     kept = vars(case)
-    if "_path" not in kept:
-        kept["_path"] = _solved(case, tell)
+    if trace is not None or "_path" not in kept:
+        kept["_path"] = _solved(case, tell, trace)
     found: TrussPath = kept["_path"]
     return found
 
 
-def _solved(case: TrussCase, tell: Tell) -> TrussPath:
+def _solved(case: TrussCase, tell: Tell, trace: Callable[[tuple[Any, ...]], object] | None) -> TrussPath:
     truss = case.resolve()
     items = 3 * len(truss.nodes.names) + len(truss.links.names) + 8 * len(truss.revolutes.names)
     branches = max(2, *(len(program.table_time_s or ()) for program in (case.thermal, *case.program)))
     states = branches * case.thermal.cycles * case.reduced_settings.increments_per_branch
-    return whole_path(truss, tell, cycle_ends_only=8 * items * states > LARGEST_PATH, **settings(case))
+    return whole_path(truss, tell, cycle_ends_only=8 * items * states > LARGEST_PATH, trace=trace, **settings(case))
 
 
 def settings(case: TrussCase) -> dict[str, Any]:
