@@ -16,7 +16,7 @@ from statejump.core.errors import FailedRun, NotAllowed
 from statejump.core.samples import read_samples
 from statejump.kinds import running
 
-SHORT = {"table1": {"thermal.period_s": 0.05}, "umbrella_damped": {"thermal.period_s": 0.02}}
+SHORT = {"table1": {"thermal.period_s": 0.05}, "umbrella_damped": {"thermal.period_s": 0.1, "dem.steps_per_cycle": 50_000}}
 
 
 def short_case(name: str) -> sj.Case:
