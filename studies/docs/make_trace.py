@@ -45,10 +45,12 @@ def main() -> None:
             chosen = rows[rows["decision"] == decision]
             below.plot(chosen.index, chosen["node_residual_N"].clip(smallest_N), marker, color=color, label=label)
         below.set_yscale("log")
+        below.set_ylim(1e-18, 1e4)  # room for the legend
         below.set_ylabel("Residual of the nodes [N]")
         for axes in (above, below):
             axes.set_xlabel("Iteration")
-            axes.legend()
+        above.legend(loc="upper left")
+        below.legend(loc="lower center", ncol=len(DECISIONS))
         figure.suptitle("Trace of a rib around the first slip of its joint")
         figure.savefig(REPOSITORY / "docs" / "howto" / "trace.png", dpi=110)
 
