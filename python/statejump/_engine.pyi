@@ -388,6 +388,7 @@ def truss_path(
     problem_times: Sequence[float] = ...,
     start_friction: str = ...,
     progress: Callable[[float], bool | None] | None = ...,
+    trace: Callable[[tuple[Any, ...]], object] | None = ...,
 ) -> _Fields: ...
 def truss_motion(
     nodes: _Items,

@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs one case in YADE and writes its history; started by ``statejump dem CASE``.
+"""Runs one case in YADE and writes its history; ``statejump dem CASE`` starts it.
 
     STATEJUMP_CASE_JSON=case.json STATEJUMP_OUTPUT=dem.samples yade -n -x yade_scripts/runner/run_case.py
 
-The resolved case comes as JSON. Samples, see ``statejump.core.samples``, go to ``<output>.partial``, block by block;
-at the end the file is renamed. A scene's module has ``COLUMNS`` or ``columns(case)``, ``build``, ``watched``,
-``sample``, ``names``, ``step_remedy`` and ``summary``; those beside this script say what they do. What the caller is
-told stands on lines of standard output that begin with ``STATEJUMP``: ``{"progress": share}``, or
-``{"failure": {...}}`` by the names of a failure's fields.
+Both variables name files beside this script by default: ``statejump dem CASE --keep-input FOLDER`` copies it there.
+Without ``-x``, YADE keeps the scene after the run or after a failure and shows its prompt. ``STATEJUMP_VIEW=1`` opens
+the 3-D view in place of a run.
+
+The resolved case comes as JSON. The script writes samples, see ``statejump.core.samples``, block by block to
+``<output>.partial``, and renames this file at the end. A scene's module has ``COLUMNS`` or ``columns(case)``,
+``build``, ``watched``, ``sample``, ``names``, ``step_remedy`` and ``summary``; the modules beside this script document
+them. The caller reads lines of standard output that begin with ``STATEJUMP``: ``{"progress": fraction}``, or
+``{"failure": {...}}`` with the fields of a failure.
 """
 import json
 import os
@@ -20,6 +24,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(sys.argv[0]).resolve().parent))
 import statejump_yade as sj
+import yade
 from failures import described
 from states import Recorder
 from statejump.core.samples import names_line, rows_of
@@ -29,6 +34,7 @@ SECONDS_OF_A_BLOCK, BYTES_OF_A_BLOCK = 0.1, 2**25
 # Between two looks at the samples a run makes a hundredth of its steps, of a small scene so many times bodies: some
 # milliseconds of the JointStepper, whose arrays are filled and given back each time.
 STEPS_OF_A_BODY = 100_000
+NO_DISPLAY = 3  # exit status of a view
 
 
 class CaseFailure(Exception):
@@ -105,8 +111,7 @@ def run(case, output):
         between.iterPeriod = every * max(1, min(
             max(steps // 100, STEPS_OF_A_BODY // len(O.bodies)) // every, BYTES_OF_A_BLOCK // recorder.bytes_of_a_sample
         ))
-        if case["dem"].get("stepper") == "joint":
-            O.engines = [O.engines[0], sj.JointStepper(substeps=between.iterPeriod), *O.engines[1:]]
+        step_joints(case, between.iterPeriod)
         globals()["block"] = block = Block(case, kind, built, recorder, write)
         started, started_cpu = time.perf_counter(), time.process_time()
         try:
@@ -131,7 +136,7 @@ def run(case, output):
         "time_step_s": O.dt,
         "wall_time_s": elapsed,
         "cpu_time_s": elapsed_cpu,
-        "yade_version": __import__("yade").config.version,
+        "yade_version": yade.config.version,
         "stable_time_step_s": sj.stable_time_step(),
         **kind.summary(case, built),
     }
@@ -140,15 +145,50 @@ def run(case, output):
     os.replace(side.with_name(side.name + ".partial"), side)
 
 
+def step_joints(case, substeps):
+    """Let the JointStepper make the steps, if the case selects it.
+
+    :param substeps: that it makes in one step of YADE's loop
+    """
+    if case["dem"].get("stepper") == "joint":
+        O.engines = [O.engines[0], sj.JointStepper(substeps=substeps), *O.engines[1:]]
+
+
+def view(case):
+    """Build the scene and open YADE's 3-D view; its play button starts the steps."""
+    if not yade.runtime.hasDisplay:
+        os._exit(NO_DISPLAY)
+    from yade import qt  # which opens the display
+
+    scene_of(case["scene"]).build(case, [])
+    step_joints(case, max(1, case["dem"]["number_of_steps"] // case["number_of_samples"]))
+    # YADE's main script keeps its namespace, and so both windows.
+    globals()["controller"], globals()["scene_view"] = qt.Controller(), qt.View()
+
+
+def end(failure):
+    """Report a failure; end YADE, or show the traceback and leave the scene to whoever started YADE without -x."""
+    tell({"failure": failure})
+    if yade.runtime.opts.exitAfter:
+        os._exit(2)
+
+
+def main():
+    """Run the case that the environment names, or that is beside this script."""
+    here = Path(sys.argv[0]).resolve().parent
+    case = json.loads(Path(os.environ.get("STATEJUMP_CASE_JSON", here / "case.json")).read_text())
+    if os.environ.get("STATEJUMP_VIEW"):
+        view(case)
+        return
+    run(case, Path(os.environ.get("STATEJUMP_OUTPUT", here / "dem.samples")))
+    tell({"progress": 1.0})
+
+
 try:
-    run(
-        json.loads(Path(os.environ["STATEJUMP_CASE_JSON"]).read_text()),
-        Path(os.environ["STATEJUMP_OUTPUT"]),
-    )
+    main()
 except CaseFailure as failure:
-    tell({"failure": failure.args[0]})
-    os._exit(2)
-except Exception as error:  # whatever went wrong, the caller is told
-    tell({"failure": {"cause": " ".join(str(error).split())}})
-    os._exit(2)
-tell({"progress": 1.0})
+    end(failure.args[0])
+    raise
+except Exception as error:  # the caller needs the cause, whatever it is
+    end({"cause": " ".join(str(error).split())})
+    raise

@@ -370,6 +370,24 @@ std::function<bool(double)> going_on(const py::object& progress) {
   };
 }
 
+/// Hands the iterations of a path to a caller's function, as tuples in the order of the
+/// record.
+truss::TraceSink trace_to(const py::object& function, const truss::Model& model) {
+  if (function.is_none()) return {};
+  return [&](const truss::TraceRecord& one) {
+    py::gil_scoped_acquire lock;
+    const std::string joint =
+        one.changed_joint < 0
+            ? std::string()
+            : truss::name_of(model.joints[static_cast<std::size_t>(one.changed_joint)]);
+    function(py::make_tuple(one.branch, one.increment, one.step, one.solve, to_string(one.joints),
+                            one.opening, one.time, one.temperature_change, one.iteration,
+                            one.node_residual, one.closure_residual, one.joint_residual,
+                            one.step_length, one.status_changes, joint, one.factorizations,
+                            to_string(one.decision), one.step_end));
+  };
+}
+
 /// The same, where Ctrl-C ends a run that is worth what it has.
 std::function<bool(double)> until_interrupted(const py::object& progress) {
   return [go_on = going_on(progress)](double done) {
@@ -518,7 +536,7 @@ void bind_truss(py::module_& module) {
          std::vector<thermal::Program> programs, int increments_per_branch, bool locate_events,
          double event_tolerance, double energy_tolerance, bool cycle_ends_only,
          std::vector<double> problem_times, const std::string& start_friction,
-         const py::object& progress) {
+         const py::object& progress, const py::object& trace) {
         const truss::Model model =
             make_model(nodes, links, springs, torsion_springs, joints, std::move(programs));
         truss::Options options;
@@ -530,6 +548,7 @@ void bind_truss(py::module_& module) {
         options.cycle_ends_only = cycle_ends_only;
         options.problem_times = std::move(problem_times);
         options.progress = going_on(progress);
+        options.trace = trace_to(trace, model);
         truss::Path path;
         {
           py::gil_scoped_release unlocked;
@@ -546,7 +565,7 @@ void bind_truss(py::module_& module) {
       py::arg("energy_tolerance") = truss::Options().energy_tolerance,
       py::arg("cycle_ends_only") = truss::Options().cycle_ends_only,
       py::arg("problem_times") = std::vector<double>(), py::arg("start_friction") = "stuck",
-      py::arg("progress") = py::none(),
+      py::arg("progress") = py::none(), py::arg("trace") = py::none(),
       "Quasi-static path of a truss: exact Coulomb friction at every joint.\n\n"
       "Every kind of item is a dict of arrays, one entry per item, and 'names'. Index -1: ground.\n"
       "nodes: position_m (n, 3), fixed (n, 3), guide_normal (n, 3), force_N (n, 3)\n"
@@ -561,7 +580,9 @@ void bind_truss(py::module_& module) {
       "problem_times or later, see truss/local_problem.hpp), complete, solves, factorizations, "
       "unknowns, largest residuals.\n"
       "start_friction: 'stuck' or 'frictionless', see start_friction.hpp.\n"
-      "progress(share) may return False to end the path early: complete is then False. Raises "
+      "progress(share) may return False to end the path early: complete is then False.\n"
+      "trace is called with every Newton iteration, a tuple in the order of\n"
+      "statejump/truss/trace.hpp with names in place of numbers. Raises "
       "ValueError for items out of range, RuntimeError that names joint or nodes "
       "and\n"
       "temperature for mechanisms, unloaded joints and failed equilibrium.");

@@ -11,9 +11,11 @@
 #include <utility>
 
 #include "condensed_pivots.hpp"
+#include "newton_options.hpp"
 #include "numerics/raise.hpp"
 #include "parallel.hpp"
 #include "rate_problem.hpp"
+#include "trace.hpp"
 
 namespace statejump::truss::detail {
 
@@ -22,25 +24,11 @@ namespace {
 using numerics::raise;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-/// Forces balance to this share of the largest one.
-constexpr double force_tolerance = 1e-12;
-/// Steps that a step is compared with: M of Grippo, Lampariello and Lucidi.
-constexpr std::size_t remembered_steps = 10;
-/// Steps after which Newton's method goes to and fro if they have not even halved.
-constexpr std::size_t swing_steps = 4;
-/// Halvings of a step after which it is below a thousandth: Newton's direction leads nowhere.
-constexpr int most_halvings = 10;
-/// Halvings of the share of a step at which a joint changes: to rounding of the step.
-constexpr int share_halvings = 50;
+constexpr NewtonOptions tuned;
 /// Compliance of a closure whose reaction is not unique, in that of the stiffest element. Rounding
 /// of a closure then changes reactions by a thousand roundings of them, and what is regularised
 /// wrongly in unique directions shrinks by a thousand in every iteration.
 constexpr double reaction_compliance = 1e-3;
-/// Length of a step along a displacement that only the regularisation resists, in the size of the
-/// truss: beyond it lengths and directions are no longer those of the equations.
-constexpr double proximal_share = 0.05;
-/// How often those who wait are told [s]: often enough for a bar of progress and for Ctrl-C.
-constexpr double told_every = 0.1;
 
 /// Multiplying as many columns takes some ten times as long as starting a thread.
 constexpr Eigen::Index halved_columns = 50000;
@@ -165,7 +153,7 @@ Newton::Violation Newton::first_violation(const std::vector<int>& joints, const 
     if (first.share < 1.0 && !violates(joint, first.share)) continue;
     first.joint = joint;
     double before = 0.0;
-    for (int halving = 0; halving < share_halvings; ++halving) {
+    for (int halving = 0; halving < tuned.fraction_halvings; ++halving) {
       const double middle = 0.5 * (before + first.share);
       (violates(joint, middle) ? first.share : before) = middle;
     }
@@ -214,6 +202,8 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   VectorXd from;
   VectorXd step;
   int halvings = 0;
+  TracedSolve traced(tracer_,
+                     {time, joints, opening, report, statuses, lengths, halvings, factorizations_});
   double merit_before = 0.0;  // what was left of the equations at `from` [N]
   int iterations = 0;
   std::size_t pieces = 0;
@@ -382,6 +372,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     const double reach = system_->reach(z);
     const double rounding = system_->force_rounding(z);
     const Residuals left = residuals(at_);
+    traced.iteration(left.balance, left.closure, left.force);
     // Steps on other pieces of the branches say nothing of those on these.
     if (std::exchange(pieces, at_.pieces) != at_.pieces) {
       lengths.clear();
@@ -421,10 +412,10 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     };
     // Where rounding is larger than foreseen the iteration stands still: that is the end as well,
     // if forces balance at all.
-    const bool closed = left.balance <= force_tolerance * largest + rounding &&
+    const bool closed = left.balance <= tuned.force_tolerance * largest + rounding &&
                         closes(left.closure) && left.force <= 16.0 * epsilon * largest + rounding;
     const bool still = !lengths.empty() && lengths.back() <= closure_tolerance * reach &&
-                       left.balance <= 1e3 * force_tolerance * largest + rounding;
+                       left.balance <= 1e3 * tuned.force_tolerance * largest + rounding;
     if (total > 0 && (closed || still)) {
       Violations found = settled ? Violations{} : violations();
       if (found.joints.empty()) {
@@ -478,7 +469,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
         return report;
       }
       next_length = length(next);
-      const double most = proximal_share * system_->size();
+      const double most = tuned.proximal_fraction * system_->size();
       if (regularisation_ == Regularisation::displacements && next_length > most && most > 0.0) {
         next *= most / next_length;
         next_length = most;
@@ -490,7 +481,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
                           next_length > closure_tolerance * reach &&
                           next_length > *std::max_element(lengths.begin(), lengths.end());
     if (too_long) {
-      if (++halvings > most_halvings) return report;
+      if (++halvings > tuned.most_halvings) return report;
       z = from + std::ldexp(1.0, -halvings) * step;
       settled = false;
       continue;
@@ -501,12 +492,14 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     merit_before = merit;
     // Steps to and fro between the same two places meet in the middle.
     const std::size_t taken = lengths.size();
-    if (taken >= swing_steps && next_length > 0.5 * lengths[taken - swing_steps]) next *= 0.5;
+    if (taken >= tuned.swing_steps && next_length > 0.5 * lengths[taken - tuned.swing_steps])
+      next *= 0.5;
     step = next;
     z += next;
     settled = false;
     lengths.push_back(next_length);
-    if (lengths.size() > remembered_steps) lengths.pop_front();
+    traced.step(next_length);
+    if (lengths.size() > tuned.remembered_steps) lengths.pop_front();
     // Of a law with several pieces a step on the tangent of another piece says nothing: elements
     // that slip stand at their bound at the start of a step, where their tangent is that of
     // sticking.
@@ -522,7 +515,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
       if (!pivot(found, true)) return report;
     }
     const auto now = std::chrono::steady_clock::now();
-    if (std::chrono::duration<double>(now - told).count() > told_every) {
+    if (std::chrono::duration<double>(now - told).count() > tuned.progress_interval_s) {
       told = now;
       if (!going_on_()) {
         report.end = SolveEnd::stopped;

@@ -29,6 +29,8 @@ struct SolveReport {
   bool leaves_at_start = false;  ///< Whether that joint does so as soon as the step begins.
 };
 
+class Tracer;
+
 /// What was singular in equations that a solve regularised.
 enum class Regularisation : unsigned char { none, reactions, displacements };
 
@@ -114,6 +116,8 @@ class Newton {
   /// Joints whose reactions share a constraint, by the factors of the last solve, which regularised
   /// reactions.
   std::vector<int> dependent_joints() const;
+  /// Traces every iteration from now on; null: none.
+  void trace(Tracer* to) { tracer_ = to; }
   /// Lets free displacements be regularised as well, by this stiffness [N/m]: on the way to a first
   /// equilibrium, where friction may be exhausted before a stop or another part carries.
   void regularise_displacements(double stiffness) { proximal_stiffness_ = stiffness; }
@@ -177,6 +181,7 @@ class Newton {
   double proximal_stiffness_ = 0.0;  ///< Of free displacements [N/m]; 0: they are not regularised.
   Statuses solved_on_;               ///< Where the last solve converged.
   JointModel solved_model_ = JointModel::pins;
+  Tracer* tracer_ = nullptr;
 };
 
 /// Factors equations that are singular with a compliance in their closures, or, if that is not

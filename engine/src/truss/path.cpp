@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "start_choice.hpp"
+#include "trace.hpp"
 #include "walker.hpp"
 
 namespace statejump::truss {
@@ -134,11 +135,13 @@ Path solve(const Model& model, const Options& options) {
   const double duration = model.programs.front().duration();
   double now = 0.0;
   const auto going_on = [&] { return !options.progress || options.progress(now / duration); };
+  detail::Tracer tracer(model, options.trace);
   Walker walker{.model = model,
                 .system = system,
                 .options = options,
                 .newton = Newton(system, options.locate_events, going_on),
                 .rates = detail::RateProblem(system)};
+  if (tracer) walker.newton.trace(&tracer);
   const auto joints = static_cast<Eigen::Index>(model.joints.size());
   walker.slide_rate = VectorXd::Zero(joints);
   walker.path.unknowns = system.unknowns();
@@ -191,6 +194,7 @@ Path solve(const Model& model, const Options& options) {
       bool flickers = false;
       int unstable = 0;  // steps since the last change whose slip would be unstable
       while (walker.time < target && walker.path.complete) {
+        tracer.begin_step(static_cast<int>(b) + 1, k);
         const double goal =
             std::max(std::nextafter(walker.time, target), std::min(target, walker.time + stride));
         const double from = walker.time;
@@ -263,6 +267,7 @@ Path solve(const Model& model, const Options& options) {
           fields.numbers = {{"steps", options.most_steps}, {"last_step_s", goal - from}};
           throw Failure(std::move(fields));
         }
+        tracer.end_step(end);
         now = walker.time;
         walker.path.complete = walker.path.complete && going_on();
       }

@@ -17,9 +17,10 @@ from statejump.core.errors import Interrupted, TolerancesMissed
 from statejump.kinds.limits import check_memory, history_of
 from statejump.core.results_folder import Results, ResultsFolder
 from statejump.core.run import Run, warnings_of
-from statejump.kinds import require
+from statejump.core.scratch import scratch
+from statejump.kinds import require, running
 from statejump.kinds.protocol import (
-    DemInput, DynamicModel, FiniteElements, ModelComparison, QuasiStaticModel, ReducedModel,
+    DemInput, DynamicModel, FiniteElements, ModelComparison, QuasiStaticModel, ReducedModel, TracedModel,
 )
 from statejump.report.capabilities import RunText
 from statejump.results.read import is_result_file
@@ -65,9 +66,12 @@ def _folder_name(case: Case, dynamic: bool) -> str:
 @DYNAMIC
 @click.option("--quasi-static", "slow", is_flag=True,
               help="Without inertia: paths of a loaded rib. Results go to the folder CASE_quasi_static.")
+@click.option("--trace", metavar="FILE", type=click.Path(path_type=Path),
+              help="CSV file with a row for every iteration of the truss solver.")
 @RESULTS
 @QUIET
-def reduced_command(case_file: Path, dynamic: bool, slow: bool, results: Results, quiet: bool) -> None:
+def reduced_command(case_file: Path, dynamic: bool, slow: bool, trace: Path | None, results: Results,
+                    quiet: bool) -> None:
     """Reduced model of CASE: events, state jump, history.
 
     \b
@@ -75,22 +79,28 @@ def reduced_command(case_file: Path, dynamic: bool, slow: bool, results: Results
       statejump reduced cases/table1.toml
       statejump reduced --dynamic cases/trusses/chain_10.toml
       statejump reduced --quasi-static cases/umbrella_bias.toml
+      statejump reduced --trace trace.csv cases/trusses/chain_10.toml
     """
     console = make_console(quiet)
+    if trace is not None and (dynamic or slow):
+        raise click.UsageError(f"'--trace' shows the quasi-static solver of trusses, "
+                               f"'{'--dynamic' if dynamic else '--quasi-static'}' runs another model.")
     if slow:
         if dynamic:
             raise click.UsageError("'--dynamic' is with inertia, '--quasi-static' without.")
         _quasi_static(loaded(case_file, QuasiStaticModel), results, console)
         return
-    case = loaded(case_file, DynamicModel if dynamic else ReducedModel)
+    case = loaded(case_file, DynamicModel if dynamic else ReducedModel if trace is None else TracedModel)
     with results.folder(_folder_name(case, dynamic), case) as folder:
         _check(case, folder, "reduced")
         try:
             with progress(console, "reduced model") as tell:
-                run = case.reduced(tell, dynamic=dynamic)
+                run = case.reduced(tell, dynamic=dynamic, trace=trace)
         except Interrupted as stopped:
             raise _kept("reduced", "reduced", case, {}, folder, stopped) from None
         _finish("reduced", case, run, folder, console)
+    if trace is not None:
+        console.print(f"trace: {trace}")
 
 
 def _quasi_static(case: Case, results: Results, console: Console) -> None:
@@ -123,20 +133,42 @@ def _kept(command: str, model: str, case: Case, before: dict[str, Run], folder: 
 
 @click.command("dem")
 @CASE
+@click.option("--keep-input", "kept", metavar="FOLDER", type=click.Path(path_type=Path),
+              help="Folder that gets the YADE script and the data of the run; prints the command that repeats the run.")
+@click.option("--view", "viewed", is_flag=True, help="Open YADE's 3-D view of the scene in place of a run.")
 @RESULTS
 @QUIET
-def dem_command(case_file: Path, results: Results, quiet: bool) -> None:
+def dem_command(case_file: Path, kept: Path | None, viewed: bool, results: Results, quiet: bool) -> None:
     """DEM run of CASE in YADE: history.
 
     \b
-    Example:
+    Examples:
       statejump dem cases/table1.toml
+      statejump dem cases/table1.toml --keep-input table1_input
+      statejump dem cases/table1.toml --view
     """
     console = make_console(quiet)
     case = loaded(case_file, DemInput)
+    if viewed:
+        _view(case, kept)
+        return
     with results.folder(case.name, case) as folder:
         _check(case, folder, "dem")
+        if kept is not None:
+            command = running.keep_input(case, kept)
+            console.print(f"input of the DEM run: {kept}; to repeat the run:")
+            console.print(command, soft_wrap=True, highlight=False)
         _finish("dem", case, _dem("dem", case, {}, folder, console), folder, console)
+
+
+def _view(case: Case, kept: Path | None) -> None:
+    """Open YADE's 3-D view."""
+    case.check_dem()
+    if kept is not None:
+        running.view(case, kept)
+        return
+    with scratch() as folder:
+        running.view(case, folder)
 
 
 @click.command("compare")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A case: header and temperature program, which all kinds have, and what one can do with it."""
+"""A case: header and temperature program of all kinds, and the methods of a case."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
@@ -38,7 +38,7 @@ _RUN, _PATHS, _CHECKED = (Later(f"statejump.kinds.running:{name}") for name in (
 
 @definition
 class CaseHeader(Section):
-    """What the case is."""
+    """Name, kind, title and source of a case."""
 
     name: str = text(..., "name of the results folder", pattern=FOLDER_NAME)
     kind: str = text(..., "which experiment")
@@ -61,29 +61,29 @@ class Origin:
 
     @property
     def document(self) -> dict[str, Any]:
-        """The sections and keys as a file without tables beside it has them."""
+        """The sections and keys of a file that holds all items itself."""
         return with_rows(self.data)
 
     @property
     def folder(self) -> Path:
-        """Where files that the case names are looked for."""
+        """The folder to which paths in the case are relative."""
         return Path() if self.file is None else self.file.parent
 
 
 @definition
 class Case(Section):
-    """A case in SI units, checked as a whole and immutable, and what one can do with it.
+    """A case in SI units, checked as a whole and immutable.
 
     :func:`statejump.load` makes it.
 
     Each kind has its own class with its own sections. They are attributes, ``case.joint.friction_coefficient``;
-    ``case["dem.threads"]`` reaches every key, also those of the sections ``[reduced]`` and ``[dem]``, whose names are
-    those of the models here: as attributes they are ``case.reduced_settings`` and ``case.dem_settings``.
+    ``case["dem.threads"]`` returns the value of any key. The sections ``[reduced]`` and ``[dem]`` are the attributes
+    ``case.reduced_settings`` and ``case.dem_settings``, because ``case.reduced`` and ``case.dem`` run the models.
     """
 
     NAMED: ClassVar[bool] = True
     KIND: ClassVar[str]
-    # Keys that once stood elsewhere, by that place; both are understood, see :func:`statejump.schema.paths.current`.
+    # New paths of moved keys by their old paths; both are accepted, see :func:`statejump.schema.paths.current`.
     MOVED: ClassVar[Mapping[str, str]] = {}
     # Sections that a file of this kind may not have, and why.
     NOT_IN_FILE: ClassVar[Mapping[str, str]] = {}
@@ -102,7 +102,7 @@ class Case(Section):
                                 f"{name}_settings and declare it with section(..., name={name!r})")
 
     def __attrs_post_init__(self) -> None:
-        # What nothing says of the period is settled here, so that every reader finds a number.
+        # The default of the period is filled in here, so that every reader finds a number.
         thermal = self.thermal
         ending = programs.ending(self._given_programs(), thermal.return_to_reference, thermal.period_s)
         return_s = ending.return_s if ending is not None else 0.0
@@ -112,7 +112,7 @@ class Case(Section):
 
     def __getstate__(self) -> dict[str, Any]:
         fields = (attribute.name for attribute in fields_of(type(self)).values())
-        kept = {*fields, "_ending", "_origin"}  # what else is there was derived, partly by the engine
+        kept = {*fields, "_ending", "_origin"}  # other attributes are derived, some of them by the engine
         return {name: value for name, value in vars(self).items() if name in kept}
 
     def _given_programs(self) -> Sequence[Thermal | MemberProgram]:
@@ -127,7 +127,7 @@ class Case(Section):
 
     @property
     def has_jump(self) -> bool:
-        """Whether the program, with a return that is added, ends at the reference temperature."""
+        """Whether the program ends at the reference temperature, with its return if one is added."""
         return self.ending is None or self.ending.returns
 
     def check_cycles(self) -> None:
@@ -138,16 +138,16 @@ class Case(Section):
 
     @property
     def thermal_notes(self) -> tuple[str, ...]:
-        """What is to be known of the program: where it ends, if that is not at the reference temperature."""
+        """Note on a program that does not end at the reference temperature."""
         return () if self.ending is None else (self.ending.note,)
 
     @property
     def implausible(self) -> tuple[str, ...]:
-        """Values that are allowed and hardly meant, a sentence each."""
+        """Warnings for allowed but implausible values, one sentence each."""
         return ()
 
     def need_jump(self, what: str) -> None:
-        """Raise StatejumpError for what needs a state jump where the program does not return."""
+        """Raise StatejumpError if a function needs a state jump and the program does not return."""
         if self.ending is not None and not self.ending.returns:
             raise StatejumpError(cause=f"{what} needs a state jump, and {self.ending.where}", case=self.name,
                                  remedy=self.ending.remedy)
@@ -161,12 +161,12 @@ class Case(Section):
         return Origin(self.to_dict())
 
     def with_defaults(self) -> dict[str, Any]:
-        """Return all sections and keys with all defaults, also those that no file has."""
+        """Return all sections and keys with all defaults, including sections that no file has."""
         return super().to_dict()
 
     def to_dict(self) -> dict[str, Any]:
-        """Return sections and keys with all defaults, as a dict that :func:`statejump.load` takes: sections that the
-        case lacks and lists without items are left out."""
+        """Return sections and keys with all defaults, as a dict for :func:`statejump.load`. Absent sections and empty
+        lists are omitted."""
         return {name: part for name, part in self.with_defaults().items()
                 if name not in self.NOT_IN_FILE and part is not None and part != []}
 
@@ -187,44 +187,48 @@ class Case(Section):
         written: Path = _SAVED(self, Path(path))
         return written
 
-    def reduced(self, progress: Progress = False, *, dynamic: bool = False) -> Run:
+    def reduced(self, progress: Progress = False, *, dynamic: bool = False,
+                trace: str | Path | Callable[[tuple[Any, ...]], object] | None = None) -> Run:
         """Run the reduced model.
 
-        :param progress: True: show it on standard error; or what is called with the finished share, 0 to 1
-        :param dynamic: with inertia, where the reduced model has none without being asked: the motion of a truss
+        :param progress: True: show it on standard error; or what is called with the finished fraction, 0 to 1
+        :param dynamic: with inertia, where the reduced model has none by default: the motion of a truss
+        :param trace: CSV file that gets a row for every Newton iteration of a truss, or a function that is called with
+            each row as a tuple; :data:`statejump.kinds.truss.trace.COLUMNS` names its entries
         :raises StatejumpError: the kind has no such reduced model, or the run could not be finished
         """
-        run: Run = _RUN(self, "dynamic" if dynamic else "reduced", progress)
+        run: Run = _RUN(self, "dynamic" if dynamic else "reduced", progress, trace=trace)
         return run
 
     def quasi_static(self) -> Any:
-        """Return the paths of infinitely slow heating, of a case whose reduced model has inertia: a loaded rib, with
-        rigid and, where its laws allow, elastic links.
+        """Return the paths under infinitely slow heating, for a kind whose reduced model has inertia: a loaded rib with
+        rigid links and, if its laws permit, with elastic links.
 
         :raises StatejumpError: the kind has no such paths, or nothing loads the joint at the start
         """
         return _PATHS(self)
 
-    def dem(self, progress: Progress = False) -> Run:
+    def dem(self, progress: Progress = False, *, keep_input: str | Path | None = None) -> Run:
         """Run the case in YADE, in a process of its own.
 
-        :param progress: True: show it on standard error; or what is called with the finished share, 0 to 1
+        :param progress: True: show it on standard error; or what is called with the finished fraction, 0 to 1
+        :param keep_input: folder that gets the script and the data of the run, to repeat it by hand
         :raises StatejumpError: the kind has no DEM, YADE is missing or failed
         :raises Interrupted: Ctrl-C; its ``run`` has the samples so far
         """
         self.check_dem()
-        run: Run = _RUN(self, "dem", progress)
+        run: Run = _RUN(self, "dem", progress, keep_input=keep_input)
         return run
 
     def check_dem(self) -> None:
-        """Check what :meth:`dem` needs, as far as it is known before anything is solved.
+        """Check the requirements of :meth:`dem` before anything is solved.
 
         :raises StatejumpError: the kind has no DEM, the DEM cannot represent a part, or YADE is missing
         """
         _CHECKED(self)
 
     def with_origin(self, origin: Origin) -> Case:
-        """Say where the case comes from, and return the case itself."""
+        """Set the origin of the case, and return the case itself."""
         object.__setattr__(self, "_origin", origin)
         return self
 
@@ -272,15 +276,14 @@ class Case(Section):
         return programs.returns_s([self.thermal], self.period_s)
 
     def check(self) -> None:
-        """Raise StatejumpError for what is wrong between several keys."""
+        """Raise StatejumpError for a contradiction between several keys."""
 
     def changed(self, changes: Mapping[str, Any]) -> Case:
         """Return the case with other values, checked as a whole.
 
-        :param changes: value by key: ``section.key`` as in the case file, ``section.item.key`` of an item of a
-            list, ``section.*.key`` of all of them, ``section.joint*.key`` of those that fit; None takes a key away, so
-            that its default holds
-        :raises StatejumpError: there is no such key, or the case is not allowed with these values
+        :param changes: values by key: ``section.key`` as in the case file, ``section.item.key`` for an item of a list,
+            ``section.*.key`` for all items, ``section.joint*.key`` for matching items. None restores the default
+        :raises StatejumpError: a key does not exist, or the new case is not allowed
         """
         origin, data = self.origin, deepcopy(self.origin.document)
         for path, value in changes.items():
@@ -289,9 +292,9 @@ class Case(Section):
         return made
 
     def __getitem__(self, path: str) -> Any:
-        """Return the value of ``section.key``, or of ``section.item.key`` of an item of a list.
+        """Return the value of ``section.key``, or of ``section.item.key`` for an item of a list.
 
-        :raises StatejumpError: there is no such key or item
+        :raises StatejumpError: the key or the item does not exist
         """
         return value_of(self, path)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a kind says of the page of ``statejump report``: which curves it shows, and a part of its own."""
+"""Parts of a kind on the page of ``statejump report``: its curves, and a part of its own."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
@@ -61,7 +61,7 @@ class Part(Protocol):
 
     @property
     def verdict(self) -> str:
-        """What it finds, as a sentence; "": nothing."""
+        """The finding of the part, as a sentence; "": none."""
 
     def cards(self) -> list[dict[str, Any]]:
         """Return numbers for the top of the page: ``label`` and ``values``, pairs of a name and a text."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which key a column of a table is, and how its numbers become those of the key's unit.
+"""Keys of the columns of a table, and conversion of their numbers to the unit of the key.
 
 A key ends in its unit: ``force_N``. A column may name another unit of the same quantity, and in other ways:
 ``force_kN``, ``Force [kN]``, ``Force (kN)``, ``Force / kN``, ``Force kN``. Only then units are looked up in pint, which

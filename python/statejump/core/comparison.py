@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from statejump.core.case import Case
 
-# Whose value a number can be, in the order of the columns.
+# Sources of a value, in the order of the columns.
 CLOSED_FORM, REDUCED, DEM, FE = "closed_form", "reduced", "dem", "fe"
 # Of two runs of one model, or of two files.
 FIRST, SECOND = "first", "second"
@@ -34,9 +34,9 @@ _SAVED = Later("statejump.results.record:save_as")
 class Quantity:
     """One compared number.
 
-    :param name: what is compared
-    :param values: two values by whose they are (``closed_form``, ``reduced``, ``dem``; ``first``, ``second`` of two
-        runs of one model); None: it has none
+    :param name: name of the quantity
+    :param values: two values by their source (``closed_form``, ``reduced``, ``dem``; ``first``, ``second`` for two
+        runs of one model); None: the source has no value
     :param difference: the second less the first; None: one is missing
     :param tolerance: allowed size of the difference
     """
@@ -50,7 +50,7 @@ class Quantity:
 
     @property
     def finite(self) -> bool:
-        """Whether every value that the row has is a finite number."""
+        """Whether all values of the row are finite numbers."""
         known = [value for value in (*self.values.values(), self.difference, self.tolerance) if value is not None]
         return all(map(math.isfinite, known))
 
@@ -60,15 +60,15 @@ class Quantity:
         raise AttributeError(name)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the row as tables and JSON have it."""
+        """Return the row for tables and JSON."""
         return {"name": self.name, "unit": self.unit, **self.values, "difference": self.difference,
                 "tolerance": self.tolerance, "pass": self.passed}
 
 
 def quantity(name: str, unit: str, tolerance: float, **values: float | None) -> Quantity:
-    """Return one row; a value that one side lacks fails, one that both lack passes.
+    """Return one row. A value that is missing on one side fails; a value that is missing on both sides passes.
 
-    :param values: two values by whose they are; the second is judged by the first
+    :param values: two values by their source; the first is the reference
     """
     first, second = values.values()
     if first is None or second is None:
@@ -79,8 +79,8 @@ def quantity(name: str, unit: str, tolerance: float, **values: float | None) -> 
 
 
 def share(difference: float, scale: float) -> float:
-    """Return a difference over what it is measured by: 0 where both are zero, for then nothing happens and nothing
-    differs; infinite for a difference without a scale. A number that is none stays one, so that its row fails."""
+    """Return a difference over its scale. It is 0 if both are zero, because then nothing moves, and infinite for a
+    difference without a scale. NaN stays NaN, so its row fails."""
     if difference == 0 and scale == 0:
         return 0.0
     if scale > 0:
@@ -94,17 +94,17 @@ def models(name: str, unit: str, reduced: float | None, dem: float | None, toler
 
 
 def of_two(rows: Iterable[Quantity]) -> list[Quantity]:
-    """Return rows of two runs as those of the first and the second, whatever their models are."""
+    """Return rows of two runs with the sources ``first`` and ``second``, for any models."""
     return [replace(row, values=dict(zip((FIRST, SECOND), row.values.values()))) for row in rows]
 
 
 def sides(rows: Sequence[Quantity]) -> list[str]:
-    """Return whose values rows have, in the order of ``SIDES``."""
+    """Return the sources of the values in rows, in the order of ``SIDES``."""
     return [side for side in SIDES if any(side in row.values for row in rows)]
 
 
 def table(rows: Sequence[Quantity]) -> list[dict[str, Any]]:
-    """Return rows with the same cells in all of them."""
+    """Return rows that all have the same cells."""
     known = sides(rows)
     return [
         {"name": row.name, "unit": row.unit, **{side: row.values.get(side) for side in known},
@@ -117,7 +117,7 @@ def table(rows: Sequence[Quantity]) -> list[dict[str, Any]]:
 class Comparison:
     """Two models of a case beside each other.
 
-    :param reasons: why a tolerance may have been missed, and what to set; none where all are kept
+    :param reasons: possible reasons for a missed tolerance, with the keys to set; empty if all are met
     """
 
     case: Case

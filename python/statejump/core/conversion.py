@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How numbers of one unit become those of another."""
+"""Conversion of numbers between two units."""
 from __future__ import annotations
 
 from dataclasses import dataclass

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The one door through which files are written: a file appears whole or not at all, and is on disk when it does.
+"""Atomic output: every file is written through this module. A file appears complete and on disk, or not at all.
 
-A file is written aside under a name of its own, synced, and renamed. What a kill leaves aside is locked by nobody,
-and goes when a file of that name is next written. A whole set of files that belong together: :mod:`.results_folder`.
+A file is written under a temporary name, synced, and renamed. A killed run leaves an unlocked temporary file; the next
+write of a file of that name removes it. :mod:`.results_folder` writes sets of files that belong together.
 """
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ PARTIAL = ".partial"
 
 
 def unique() -> str:
-    """Return a part of a name that no other run has."""
+    """Return a string that is unique among runs, for a name."""
     return secrets.token_hex(6)
 
 
 def not_written(path: Path, error: OSError) -> NotWritten:
-    """Return why a file cannot be written, of what the system says."""
+    """Return the error for a file that cannot be written, with the reason of the system."""
     return NotWritten("cannot be written", file=path, cause=error.strerror or str(error))
 
 
 def synced(path: Path) -> None:
-    """Return when a file, or what a folder lists, is on disk. :raises OSError: it cannot be"""
+    """Sync a file, or the list of a folder, to disk. :raises OSError: it cannot be synced"""
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)
@@ -40,7 +40,7 @@ def synced(path: Path) -> None:
 
 
 def check_target(path: Path) -> None:
-    """Raise NotWritten where no file can take the place: a folder, a device or a pipe is there."""
+    """Raise NotWritten if the path is a folder, a device or a pipe."""
     try:
         if not stat.S_ISREG(os.stat(path).st_mode):
             raise NotWritten("cannot be written", file=path, cause="there is something else than a file")
@@ -51,7 +51,7 @@ def check_target(path: Path) -> None:
 
 
 def check_suffix(option: str, path: Path, *allowed: str) -> None:
-    """Raise NotAllowed for a file name that promises another format than is written; one without suffix does not.
+    """Raise NotAllowed for a file name with the suffix of another format. A name without suffix is allowed.
 
     :param option: the option that names the file
     :param allowed: suffixes, as ``.html``
@@ -61,7 +61,7 @@ def check_suffix(option: str, path: Path, *allowed: str) -> None:
 
 
 def _sweep(path: Path) -> None:
-    """Remove what killed runs left beside a file: nobody holds it."""
+    """Remove the unlocked temporary files that killed runs left beside a file."""
     for name in os.listdir(path.parent):
         if name.startswith(f".{path.name}.") and name.endswith(PARTIAL):
             with suppress(OSError):
@@ -94,7 +94,7 @@ def _opened(path: Path) -> tuple[int, Path]:
 def write_atomically(path: Path) -> Iterator[IO[str]]:
     """Open a text file that appears under its name when it is complete and on disk.
 
-    :raises NotWritten: it cannot be written; what was there before stays
+    :raises NotWritten: it cannot be written; an earlier file stays
     """
     with _replacing(path) as descriptor:
         with open(descriptor, "w", encoding="utf-8", newline="", closefd=False) as stream:
@@ -104,7 +104,7 @@ def write_atomically(path: Path) -> Iterator[IO[str]]:
 def write_bytes(path: Path, content: bytes) -> Path:
     """Write a file that appears under its name when it is complete and on disk; return the path.
 
-    :raises NotWritten: it cannot be written; what was there before stays
+    :raises NotWritten: it cannot be written; an earlier file stays
     """
     with _replacing(path) as descriptor:
         with open(descriptor, "wb", buffering=0, closefd=False) as stream:
@@ -117,7 +117,7 @@ def write_bytes(path: Path, content: bytes) -> Path:
 @contextmanager
 def _replacing(path: Path) -> Iterator[int]:
     check_target(path)
-    aside_folder = path.parent.name.endswith(PARTIAL)  # all of it is synced when it is published
+    aside_folder = path.parent.name.endswith(PARTIAL)  # the whole folder is synced when it is published
     try:
         if not aside_folder:
             _sweep(path)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Progress of long runs: for a caller's function, or shown on standard error."""
+"""Progress of long runs, for a function of the caller or on standard error."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
@@ -16,7 +16,7 @@ Tell = Callable[[float], None]
 
 
 def silent(share: float) -> None:
-    """Tell nobody."""
+    """Ignore the progress."""
 
 
 @contextmanager
@@ -79,11 +79,11 @@ def on_console(console: Console, label: str) -> Iterator[Tell]:
 
 
 def one_of(tell: Tell, done: int, total: int) -> Tell:
-    """Return what a run tells, so many of ``total`` alike runs being done, for ``tell`` to take the share of all."""
+    """Return the progress function of a run after ``done`` of ``total`` equal runs; it reports their total fraction."""
     return lambda share: tell((done + share) / total)
 
 
 def counted(tell: Tell, total: int) -> Callable[[], None]:
-    """Return what to call after each of so many runs; it tells the finished share."""
+    """Return a function to call after each run; it reports the finished fraction of all runs."""
     finished = count(1)
     return lambda: tell(next(finished) / total)

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The folder that gets what one run leaves: one run at a time, and all of its files or none.
+"""Results folder of a run: one run at a time, and all of its files or none.
 
-A run holds a lock on the folder and writes into a folder of its own inside of it, ``.ID.partial``. When everything is
-there and on disk, that folder is renamed to ``.ID.ready``: this instant decides. Its files are then moved to their
-places; where a kill comes in between, the next run in the folder moves the others first. What a kill leaves before
-that instant is removed by the next run.
+A run locks the folder and writes into its subfolder ``.ID.partial``. When all files are complete and on disk, the run
+renames the subfolder to ``.ID.ready``, and moves the files to their places. After a kill, the next run in the folder
+moves the remaining files of ``.ID.ready`` and removes ``.ID.partial``.
 """
 from __future__ import annotations
 
@@ -25,13 +24,13 @@ if TYPE_CHECKING:
 
 READY = ".ready"
 SYNCED_AT_ONCE = 32
-SIDE_BY_SIDE = 8  # files from which on threads are worth their start
+SIDE_BY_SIDE = 8  # number of files from which threads save time
 OTHER = "choose another with --results"
 
 
 @dataclass(frozen=True)
 class Results:
-    """Where results go.
+    """Root and options of results folders.
 
     :param root: gets one folder per case
     :param wait: wait for another run in the same folder instead of being refused
@@ -44,10 +43,10 @@ class Results:
 
     @contextmanager
     def folder(self, name: str, case: Case | None = None) -> Iterator[ResultsFolder]:
-        """Make (if needed), lock and yield ``root/name``. What is not published is dropped at the end, and with
-        it folders that were made here and stay empty.
+        """Make (if needed), lock and yield ``root/name``. At the end, unpublished files and empty new folders are
+        removed.
 
-        :param case: whose results these are; None: of a file that gives the folder its name
+        :param case: the case of the results; None: a file gives the folder its name
         :raises NotWritten: it cannot be written to, another run is at work in it, or it holds results of another case
         """
         path = self.root / name
@@ -57,7 +56,7 @@ class Results:
                 yield found
         finally:
             for folder in missing[1:]:
-                with suppress(OSError):  # it is not empty, or another run removed it
+                with suppress(OSError):  # not empty, or another run removed it
                     os.rmdir(folder)
 
     @contextmanager
@@ -92,7 +91,7 @@ class Results:
             os.close(descriptor)
 
     def _locked(self, path: Path) -> int:
-        """Return an open descriptor of the folder that holds its lock; the kernel lets go of it with the process."""
+        """Return an open descriptor of the folder that holds its lock. The kernel releases it with the process."""
         while True:
             path.mkdir(parents=True, exist_ok=True)
             try:
@@ -116,11 +115,11 @@ class Results:
 
 @dataclass
 class ResultsFolder:
-    """A results folder that is held.
+    """A locked results folder.
 
-    :param path: the folder, as readers know it
-    :param staged: where files are written until they are published
-    :param case: whose results these are, None: of no case
+    :param path: the folder for readers
+    :param staged: folder of files that are not published yet
+    :param case: the case of the results; None: no case
     """
 
     path: Path
@@ -128,7 +127,7 @@ class ResultsFolder:
     case: Case | None = None
 
     def check_space(self, needed_bytes: float) -> None:
-        """Raise NotWritten where the file system has no room for so many bytes."""
+        """Raise NotWritten if the file system lacks the needed bytes."""
         room = os.statvfs(self.path)
         free = room.f_bavail * room.f_frsize
         if needed_bytes > free:
@@ -136,9 +135,9 @@ class ResultsFolder:
                             "left", OTHER, what="no space left")
 
     def publish(self, written: Sequence[Path] = ()) -> list[Path]:
-        """Let everything that was written appear, together; return the paths of files of ``staged`` as they are then.
+        """Publish all staged files at once; return their new paths.
 
-        More can be written and published afterwards.
+        Further files can be staged and published afterwards.
 
         :raises NotWritten: it could not be brought to disk, nothing appears; or a file could not be moved to its place
         """
@@ -168,7 +167,7 @@ class ResultsFolder:
 
 
 def _sync(paths: Sequence[Path]) -> None:
-    """Bring files and folders to disk: many side by side, which a file system does at once."""
+    """Sync files and folders to disk; many of them in parallel, which a file system combines."""
     if len(paths) < SIDE_BY_SIDE:  # the threads cost more than they save
         for path in paths:
             synced(path)
@@ -180,7 +179,7 @@ def _sync(paths: Sequence[Path]) -> None:
 
 
 def _move(ready: Path, path: Path) -> None:
-    """Move files that are complete to their places; what was there is replaced."""
+    """Move complete files to their places and replace earlier ones."""
     for folder, _, files in os.walk(ready, topdown=False):
         place = path / Path(folder).relative_to(ready)
         place.mkdir(parents=True, exist_ok=True)
@@ -200,7 +199,7 @@ def _remove(folder: Path, ignore_errors: bool = False) -> None:
 
 
 def _recover(path: Path) -> None:
-    """Finish what a killed run had decided, and remove what it had not."""
+    """Move the published files of a killed run to their places, and remove its unpublished ones."""
     for ready in sorted(path.glob(f".*{READY}")):
         _move(ready, path)
     for left in path.glob(f".*{PARTIAL}"):

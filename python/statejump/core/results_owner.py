@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whose results a folder holds: a copied case whose name was kept must not replace the results of the original.
+"""Owner of a results folder: a copied case with the same name must not replace the results of the original.
 
 A results folder has a small hidden file with the case file, relative to the folder, and a checksum of the case. Results
 of an edited file replace those of the same file. Another case from another file is refused.
@@ -23,7 +23,7 @@ NAME = ".case.json"
 
 
 def _known(folder: Path) -> dict[str, str]:
-    """Return what a folder says of its case; empty: nothing that can be read."""
+    """Return the record of the case in a folder; empty: no readable record."""
     try:
         found = json.loads((folder / NAME).read_text(encoding="utf-8"))
     except (OSError, ValueError):

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A run of a model: columns over its samples, events, numbers that sum it up. The same class for every kind of
-case and for both models."""
+"""A run of a model: columns over its samples, events, summary. All kinds of case and both models share the class."""
 from __future__ import annotations
 
 import re
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
 
     from statejump.core.case import Case
 
-# What a contact does at a sample; the number is the place in this list.
+# States of a contact at a sample; a number is an index of this list.
 CONTACT_STATES = ("separated", "stick", "slip", "at_stop")
 SEPARATED, STICK, SLIP, AT_STOP = range(len(CONTACT_STATES))
 MODELS = {"reduced": "reduced model", "dem": "DEM"}
@@ -38,9 +37,9 @@ _DRAWN, _HTML = Later("statejump.core.figures:drawn"), Later("statejump.core.htm
 
 
 class Parts(dict[str, Any]):
-    """Parts of a file by name: what is asked for and is not there is missed in a sentence.
+    """Parts of a file by name. The error for a missing part is one sentence.
 
-    :param place: of the parts, within the file
+    :param place: path of the parts in the file
     """
 
     def __init__(self, parts: Mapping[str, Any], place: str, file: object) -> None:
@@ -51,14 +50,14 @@ class Parts(dict[str, Any]):
         raise MissingPart(f"{self.place}/{name} is missing", file=self.file)
 
     def like(self, parts: Mapping[str, Any]) -> Parts:
-        """Return other parts of the same place."""
+        """Return other parts with the same path."""
         return Parts(parts, self.place, self.file)
 
 
 class Named(dict[str, Any]):
-    """Columns or numbers of a run by name: a name that is not there is an error that suggests one.
+    """Columns or numbers of a run by name. The error for an unknown name suggests a known one.
 
-    :param what: what a value is, as ``column``
+    :param what: noun for a value, as ``column``
     """
 
     def __init__(self, values: Mapping[str, Any], what: str) -> None:
@@ -70,7 +69,7 @@ class Named(dict[str, Any]):
 
 
 class MissingName(UnknownKey, KeyError):
-    """A run has no column or number of a name; a KeyError, as of any mapping."""
+    """Unknown name of a column or number of a run; a KeyError, as for any mapping."""
 
     def __init__(self, what: str, name: Any, known: Sequence[str]) -> None:
         ends = [path for path in known if path.rpartition("/")[2] == name]
@@ -83,7 +82,7 @@ class Column:
     """Values over the samples of a run: one per sample, or (samples, items), or (samples, items, 3).
 
     ``items`` is the key of the list of names of the second axis, see :attr:`Run.names`.
-    ``labels``: the values are places in this list. ``note`` says where it comes from, if not obvious.
+    ``labels``: the values are indices of this list. ``note`` gives the source, if it is not obvious.
     """
 
     values: np.ndarray
@@ -94,14 +93,14 @@ class Column:
 
     @property
     def shown(self) -> np.ndarray:
-        """The values, of labels the texts themselves."""
+        """The values; the texts, if the column has labels."""
         found: np.ndarray = np.array(self.labels)[self.values] if self.labels else self.values
         return found
 
 
 @dataclass(frozen=True)
 class Event:
-    """Something that happened. ``joint`` is the contact or joint, "" for none.
+    """An event of a run. ``joint`` is the contact or joint, "" for none.
 
     ``time_uncertainty_s``: 0 for an instant that the model locates, else half the distance of the two
     samples between which it lies.
@@ -117,7 +116,7 @@ class Event:
 class Events(Sequence[Event]):
     """Events of a run in order of time.
 
-    :param events: what happened, or what returns it, called when somebody looks
+    :param events: the events, or a function that returns them at the first access
     """
 
     def __init__(self, events: Sequence[Event] | Callable[[], Sequence[Event]]) -> None:
@@ -137,7 +136,7 @@ class Events(Sequence[Event]):
         return isinstance(other, Events) and self._events == other._events
 
     def first(self, kind: str, until_s: float = float("inf")) -> Event | None:
-        """Return the first event of a kind; None if there is none until then."""
+        """Return the first event of a kind, or None."""
         return next((event for event in self._events if event.kind == kind and event.time_s <= until_s), None)
 
     def frame(self) -> pandas.DataFrame:
@@ -171,20 +170,20 @@ class Run:
     A run can be pickled and copied; the copy has no ``native`` and, between samples, is linear.
 
     :param model: ``reduced`` or ``dem``
-    :param history: what the model gives over time
-    :param energy: energies, dissipated and supplied energies [J]
-    :param links: what is known of every link, (samples, links)
-    :param contacts: what is known of every contact, (samples, contacts) and (samples, contacts, 3)
-    :param events: what happened, in order of time
-    :param summary: numbers that sum up the run; their names end in their units, NaN: it did not happen
+    :param history: columns over time
+    :param energy: stored, dissipated and supplied energies [J]
+    :param links: columns of links, (samples, links)
+    :param contacts: columns of contacts, (samples, contacts) and (samples, contacts, 3)
+    :param events: events in order of time
+    :param summary: summary numbers; their names end in their units. NaN: did not happen
     :param names: names of the items of the second axes of columns
-    :param case_of: returns the definition of the case that ran; of a file it is only read when it is asked for
+    :param case_of: returns the case of the run; a case in a file is read at the first access
     :param warnings: limits of the model that the run met
-    :param complete: False: the run was interrupted, this is what there is of it
-    :param about: what a DEM run says of itself: version of YADE, steps, seconds
-    :param native: what the model itself returned (the path of a solver); None: the run was read from a file
-    :param kind: of the case, where ``case_of`` is not to be asked for it
-    :param sampler: returns the run at other times [s], where the model can tell it exactly
+    :param complete: False: the run was interrupted and has its first samples only
+    :param about: data on a DEM run: version of YADE, steps, seconds
+    :param native: result of the model itself (the path of a solver); None: the run was read from a file
+    :param kind: kind of the case, which avoids a call of ``case_of``
+    :param sampler: returns the run at other times [s], if the model can compute it exactly
     """
 
     model: str
@@ -213,21 +212,21 @@ class Run:
         if self.case_of is not None:
             try:
                 case_of = partial(_same, self.definition)
-            except StatejumpError as error:  # of a file; whoever asks for the case gets the reason
+            except StatejumpError as error:  # from a file; the access to the case raises the reason
                 case_of = partial(_raised, error)
         state = {name: value for name, value in vars(self).items() if name != "definition"}
         return {**state, "case_of": case_of, "native": None, "sampler": None}
 
     @cached_property
     def definition(self) -> Case:
-        """What the case says that ran. :raises StatejumpError: this version does not understand it any more"""
+        """The case of the run. :raises StatejumpError: this version cannot read the case any more"""
         if self.case_of is None:
             raise ValueError("this run was made without a case")
         return self.case_of()
 
     @property
     def case(self) -> Case:
-        """The case that ran. :raises StatejumpError: this version does not understand it any more"""
+        """The case of the run. :raises StatejumpError: this version cannot read the case any more"""
         return self.definition
 
     @property
@@ -258,8 +257,8 @@ class Run:
         return found
 
     def at(self, times_s: float | Sequence[float] | np.ndarray) -> Run:
-        """Return the run at other times [s], one or several: exact where the model can tell, else linear between
-        samples, labels those of the sample before. :raises NotAllowed: they are no finite numbers"""
+        """Return the run at one or several other times [s]. It is exact if the model can compute it. Otherwise it is
+        linear between samples, with the labels of the earlier one. :raises NotAllowed: a time is no finite number"""
         try:
             asked = np.atleast_1d(np.asarray(times_s, dtype=float))
         except (TypeError, ValueError):
@@ -283,7 +282,7 @@ class Run:
             here, there, way = column.values[before], column.values[after], np.clip(weight, 0, 1).reshape(shape)
             with np.errstate(invalid="ignore"):  # of two that are infinite
                 between = here + way * (there - here)
-            # A sample is itself beside one that is no number.
+            # At its own time a sample keeps its value, even beside a NaN.
             return replace(column, values=np.where(way > 0, between, here))
 
         groups: dict[str, Any] = {}
@@ -312,7 +311,7 @@ class Run:
         return found
 
     def _ordered(self, names: Mapping[str, Any]) -> list[str]:
-        """Return names of columns in the order of the kind; those that it does not know last, by name."""
+        """Return names of columns in the order of the kind; unknown names come last, sorted."""
         known = _COLUMNS(self.kind or self.definition.kind)
         return [name for name in known if name in names] + sorted(set(names).difference(known))
 
@@ -364,7 +363,7 @@ class Run:
 
 
 def columns_of(columns: Columns) -> tuple[dict[str, Column], dict[str, Column]]:
-    """Return columns of one value a sample as history and, apart from them, energies (names that end in ``_J``)."""
+    """Return columns with one value per sample as history and, separately, energies (names that end in ``_J``)."""
     plain: dict[str, Column] = {}
     energy: dict[str, Column] = {}
     for name, values in columns.items():
@@ -377,13 +376,13 @@ def columns_of(columns: Columns) -> tuple[dict[str, Column], dict[str, Column]]:
     return plain, energy
 
 
-# Differs from run to run of the same case: not a result.
+# They differ between runs of the same case, so they are no results.
 _OF_THE_DAY = ("wall_time_s", "cpu_time_s")
 
 
 def numbers_of(values: Mapping[str, Any]) -> dict[str, float]:
-    """Return what sums up a run of what a model says of it: numbers; None becomes NaN, texts and what does not
-    repeat are left out."""
+    """Return the summary numbers of a run from the data of a model. None becomes NaN. Texts and numbers that differ
+    between repeated runs are omitted."""
     return {
         name: float("nan") if value is None else float(value) for name, value in values.items()
         if (value is None or isinstance(value, (int, float))) and name not in _OF_THE_DAY
@@ -391,7 +390,7 @@ def numbers_of(values: Mapping[str, Any]) -> dict[str, float]:
 
 
 def change(columns: Mapping[str, Any], name: str) -> float:
-    """Return the last value of a column less its first; 0 where there is no such column."""
+    """Return the last value of a column minus its first; 0 if the column does not exist."""
     if name not in columns:
         return 0.0
     values = columns[name]
@@ -404,7 +403,7 @@ def energy_residue_J(
 ) -> float:
     """Return supplied minus stored minus dissipated energy over a whole run [J].
 
-    :param columns: columns by name; one that a model lacks counts as 0
+    :param columns: columns by name; a missing one counts as 0
     :param supplied: names of the columns, ``thermal_work_J`` and the like; so the others
     """
     total = [sum(change(columns, name) for name in names) for names in (supplied, stored, dissipated)]
@@ -416,8 +415,8 @@ _AMOUNT = re.compile(r"[-+]?\d\S*( \S+)?")
 
 
 def warnings_of(runs: Iterable[Run]) -> list[str]:
-    """Return what runs of one case warn of. What several say is said once, in the words of the first: of two runs,
-    sentences that differ in amounts only are one."""
+    """Return the warnings of runs of one case. If sentences of two runs differ only in numbers, the first is
+    kept."""
     found: list[str] = []
     for run in runs:
         known = {_AMOUNT.sub("", warning) for warning in found}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Samples that a run leaves on its way: a line with the names of columns, as a list of JSON, then one row after the
-other, numbers in double precision. What a row cut short leaves behind the last whole one says nothing."""
+"""File of samples of a running model: a line with the names of the columns as a JSON list, then rows of numbers in
+double precision. Readers ignore an incomplete last row."""
 from __future__ import annotations
 
 import json
@@ -20,14 +20,14 @@ def names_line(names: Iterable[str]) -> bytes:
 
 
 def rows_of(columns: Sequence[np.ndarray]) -> bytes:
-    """Return rows as they stand in a file, of columns of equal length; arrays with two axes are several of them."""
+    """Return the bytes of rows, from columns of equal length; an array with two axes holds several columns."""
     return np.column_stack(columns).astype(NUMBER).tobytes()
 
 
 def read_samples(path: Path, whole: bool = True) -> dict[str, np.ndarray]:
     """Return the columns of a file.
 
-    :param whole: whether the last row has to be whole; else it is left out
+    :param whole: raise an error if the last row is incomplete; else omit this row
     :raises Unreadable: the file holds no samples, or not these
     """
     with path.open("rb") as stream:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Temporary folders that go also when the run that made them was killed: each is locked while it is used, and
-whoever makes the next one removes those that nobody holds."""
+"""Temporary folders that do not outlive a killed run: a folder is locked while a run uses it, and each new run removes
+unlocked ones."""
 from __future__ import annotations
 
 import fcntl
@@ -12,8 +12,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-PREFIX = "statejump-run-"  # of nothing else: what bears it and is not locked is removed
-YOUNG_S = 60.0  # a folder this young may be one that is not locked yet
+PREFIX = "statejump-run-"  # used for nothing else: unlocked folders with this prefix are removed
+YOUNG_S = 60.0  # a younger folder may not be locked yet
 
 
 @contextmanager
@@ -34,7 +34,7 @@ def scratch() -> Iterator[Path]:
 
 
 def _sweep(place: Path) -> None:
-    """Remove our own folders that nobody holds."""
+    """Remove unlocked folders of this user."""
     for left in place.glob(f"{PREFIX}*"):
         with suppress(OSError):
             about = left.lstat()

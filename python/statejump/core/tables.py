@@ -27,6 +27,11 @@ def _cell(value: Any) -> Any:
     return repr(value) if isinstance(value, float) else value
 
 
+def cells(row: Iterable[Any]) -> list[Any]:
+    """Return a row as the cells of a CSV file: full precision, None and NaN as an empty cell."""
+    return [_cell(value) for value in row]
+
+
 def write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[Any]]) -> Path:
     """Write a table; full precision, None and NaN as an empty cell. Return the path.
 
@@ -35,7 +40,7 @@ def write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[Any]]) 
     with write_atomically(path) as stream:
         writer = csv.writer(stream)
         writer.writerow(header)
-        writer.writerows([_cell(value) for value in row] for row in rows)
+        writer.writerows(map(cells, rows))
     return path
 
 
@@ -49,7 +54,7 @@ def write_rows(path: Path, rows: Sequence[Mapping[str, Any]], header: Sequence[s
 
 
 def write_columns(columns: Mapping[str, np.ndarray], path: Path) -> None:
-    """Write columns of equal length; NaN stays ``nan``, for it is a value that a model gave."""
+    """Write columns of equal length. NaN stays ``nan``, because a model returned it as a value."""
     length = max((len(values) for values in columns.values()), default=0)
     with write_atomically(path) as stream:
         csv.writer(stream).writerow(columns)
@@ -59,7 +64,7 @@ def write_columns(columns: Mapping[str, np.ndarray], path: Path) -> None:
 
 
 def _cells(values: np.ndarray) -> Iterable[str]:
-    """Return the cells of a column, as the writer of ``csv`` makes them, who looks for quotes within numbers too."""
+    """Return the cells of a column. The writer of ``csv`` is slower, because it looks for quotes in numbers too."""
     if values.dtype.kind in "biuf":
         return map(repr, values.tolist())
     return (_quoted(value) if isinstance(value, str) else repr(value) for value in values.tolist())
@@ -70,7 +75,7 @@ def _quoted(text: str) -> str:
 
 
 def finite(value: Any) -> Any:
-    """Return a value for JSON, which has no NaN: None instead, in lists and dicts too."""
+    """Return a value for JSON. NaN and infinity become None, in lists and dicts too."""
     if isinstance(value, Mapping):
         return {key: finite(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A case in YADE: a process of its own, its progress, what it leaves, what goes wrong with it.
+"""Runs a case in a YADE process: progress, results, failures.
 
-The script in YADE writes :mod:`~statejump.core.samples` and says everything else in lines of JSON that begin with
-``MARK``: the finished share, or a failure by the names of :class:`~statejump.core.errors.StatejumpError`.
+The script in YADE writes :mod:`~statejump.core.samples`. It reports in lines of JSON that begin with ``MARK``: the
+finished fraction, or the fields of a :class:`~statejump.core.errors.StatejumpError`.
 """
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ from statejump.core.thermal import parameters
 from statejump.schema.fields import choice
 
 MARK = "STATEJUMP "
+RUNNER, DATA, SAMPLES = "run_case.py", "case.json", "dem.samples"  # names that the script has by default, too
 PR_SET_PDEATHSIG = 1  # prctl(2)
 Columns = Mapping[str, np.ndarray]
 MakeRun = Callable[[Case, Columns, Mapping[str, Any]], Run]
@@ -33,14 +34,14 @@ MakeRun = Callable[[Case, Columns, Mapping[str, Any]], Run]
 
 @dataclass(frozen=True)
 class Samples:
-    """What a process left: its samples by column, and what it says of itself."""
+    """Results of a process: its samples by column, and its summary."""
 
     columns: dict[str, np.ndarray]
     about: dict[str, Any]
 
 
 def common_values(case: Case, number_of_steps: int) -> dict[str, Any]:
-    """Return what the YADE script needs of a case of any kind, as plain values; keys as in the case file."""
+    """Return the data that the YADE script needs for any kind of case, as plain values; keys as in the case file."""
     values = case.with_defaults()
     values["period_s"] = case.period_s
     values["thermal"].update(parameters(case.thermal, case.period_s))
@@ -50,14 +51,14 @@ def common_values(case: Case, number_of_steps: int) -> dict[str, Any]:
 
 
 def stepper() -> Any:
-    """Declare the key of what makes the steps of a DEM run: the plugin's JointStepper, or all engines of YADE's loop
-    in every step. Both give the same numbers, bit for bit on one thread."""
+    """Declare the key that selects the stepper of a DEM run: the plugin's JointStepper, or all engines of YADE's loop.
+    Both give the same numbers, bit for bit on one thread."""
     return choice("joint", ("joint", "yade"), "the same numbers as YADE's loop, in less time")
 
 
 def find_yade() -> str:
     """Return the yade command: STATEJUMP_YADE if set, otherwise from PATH."""
-    from shutil import which  # cases know this module, few of them start YADE
+    from shutil import which  # cases import this module, but few of them start YADE
 
     if not _paths.YADE:
         raise FailedRun("YADE is missing", cause="this statejump was built without it",
@@ -70,12 +71,26 @@ def find_yade() -> str:
     return found
 
 
+def command_of(values: Mapping[str, Any], script: Path, *, view: bool = False) -> list[str]:
+    """Return the command that runs a script in YADE.
+
+    :param view: with YADE's windows and its prompt
+    """
+    return [find_yade(), *([] if view else ["-n", "-x"]), f"-j{values['dem']['threads']}", str(script)]
+
+
+def python_path() -> str:
+    """Return the PYTHONPATH with which the script in YADE finds this package and the plugin."""
+    modules = str(Path(__file__).resolve().parents[2])
+    return os.pathsep.join(filter(None, [modules, os.environ.get("PYTHONPATH")]))
+
+
 def _dying_with_us() -> Callable[[], None]:
-    """Return what a new process calls so that the kernel kills it with the thread that waits for it: a YADE whose
-    caller was killed would run on."""
+    """Return a function for a new process, by which the kernel kills it with the thread that waits for it. Otherwise
+    YADE would continue after its caller was killed."""
     import ctypes  # as which
 
-    prctl = ctypes.PyDLL(None).prctl  # found before the process is there, which shall do as little as it can
+    prctl = ctypes.PyDLL(None).prctl  # looked up before the fork, after which the process does as little as possible
 
     def ask() -> None:
         prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
@@ -86,9 +101,9 @@ def _dying_with_us() -> Callable[[], None]:
 def run(case: Case, values: Mapping[str, Any], make_run: MakeRun, tell: Tell) -> Run:
     """Run a case in YADE.
 
-    :param values: what the script needs, see :func:`common_values`
-    :param make_run: makes the run of its samples
-    :param tell: takes the finished share, 0 to 1
+    :param values: data of the script, see :func:`common_values`
+    :param make_run: makes the run from its samples
+    :param tell: receives the finished fraction, 0 to 1
     :raises FailedRun: YADE is missing, failed or was killed
     :raises Interrupted: Ctrl-C; its ``run`` has the samples so far, None if there are none
     """
@@ -99,30 +114,29 @@ def run(case: Case, values: Mapping[str, Any], make_run: MakeRun, tell: Tell) ->
             samples: Samples = stopped.run
             try:
                 stopped.run = replace(make_run(case, samples.columns, samples.about), complete=False)
-            except (KeyError, IndexError, ValueError):  # cut so early that there is no run in it
+            except (KeyError, IndexError, ValueError):  # interrupted before a run can be made
                 stopped = Interrupted("interrupted before a whole sample; nothing was written")
         raise stopped from None
     return make_run(case, done.columns, done.about)
 
 
 def execute(values: Mapping[str, Any], tell: Tell) -> Samples:
-    """Run a resolved case in YADE; see :func:`run`. Of an interrupted one ``run`` is :class:`Samples`."""
+    """Run a resolved case in YADE; see :func:`run`. The ``run`` of an interruption is :class:`Samples`."""
     from statejump.core.scratch import scratch  # as which
 
-    name, threads = values["case"]["name"], values["dem"]["threads"]
-    command = [find_yade(), "-n", "-x", f"-j{threads}", str(_paths.YADE_SCRIPTS / "runner" / "run_case.py")]
+    name = values["case"]["name"]
+    command = command_of(values, _paths.YADE_SCRIPTS / "runner" / RUNNER)
     with scratch() as folder:
-        input_file, output = folder / "case.json", folder / "dem.samples"
+        input_file, output = folder / DATA, folder / SAMPLES
         input_file.write_text(json.dumps(values), encoding="utf-8")
-        modules = str(Path(__file__).resolve().parents[2])
         environment = dict(
             os.environ,
             STATEJUMP_CASE_JSON=str(input_file),
             STATEJUMP_OUTPUT=str(output),
-            PYTHONPATH=os.pathsep.join(filter(None, [modules, os.environ.get("PYTHONPATH")])),
-            OMP_NUM_THREADS=str(threads),
-            HOME=os.environ.get("HOME") or str(folder),  # without, YADE does not start
-            TMPDIR=str(folder),  # YADE's own temporary folder goes with ours
+            PYTHONPATH=python_path(),
+            OMP_NUM_THREADS=str(values["dem"]["threads"]),
+            HOME=os.environ.get("HOME") or str(folder),  # YADE does not start without HOME
+            TMPDIR=str(folder),  # YADE's own temporary folder is removed with this one
         )
         try:
             _watch(command, environment, tell)
@@ -140,7 +154,7 @@ def execute(values: Mapping[str, Any], tell: Tell) -> Samples:
 
 
 def _watch(command: list[str], environment: dict[str, str], tell: Tell) -> None:
-    """Run the command and pass its progress on. :raises FailedRun: what went wrong"""
+    """Run the command and report its progress. :raises FailedRun: it failed"""
     import subprocess  # as which
 
     failure: dict[str, Any] | None = None
@@ -154,7 +168,7 @@ def _watch(command: list[str], environment: dict[str, str], tell: Tell) -> None:
         text=True,
         errors="replace",
         preexec_fn=_dying_with_us(),
-        start_new_session=True,  # Ctrl-C reaches us alone; we end YADE in order
+        start_new_session=True,  # Ctrl-C reaches this process alone, which ends YADE
     ) as process:
         try:
             for line in process.stdout or []:
@@ -168,7 +182,7 @@ def _watch(command: list[str], environment: dict[str, str], tell: Tell) -> None:
                 elif said:
                     last = said
         except BaseException:
-            os.killpg(process.pid, signal.SIGKILL)  # YADE and whatever it has started
+            os.killpg(process.pid, signal.SIGKILL)  # YADE and its children
             raise
     if failure is not None:
         raise RunFailed(**failure)
@@ -180,7 +194,7 @@ def _watch(command: list[str], environment: dict[str, str], tell: Tell) -> None:
 
 
 def _message(line: str) -> dict[str, Any]:
-    """Return what a line tells; nothing if it is YADE's own, or torn."""
+    """Return the message in a line; empty if the line is YADE's own or incomplete."""
     if not line.startswith(MARK):
         return {}
     try:

@@ -12,6 +12,7 @@ more than it needs; a kind of one's own may have plain methods.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any, ClassVar, Generic, Protocol, TypeVar, cast
 
 import numpy as np
@@ -55,6 +56,15 @@ class ReducedModel(Protocol):
     def reduced(self, case: Any, tell: Tell) -> Run: ...
 
 
+@capability("reduced --trace")
+class TracedModel(Protocol):
+    """The reduced model with a record of each iteration of its solver.
+
+    ``trace`` is a CSV file, or a function that takes each row."""
+
+    def traced(self, case: Any, tell: Tell, trace: Path | Callable[[tuple[Any, ...]], object]) -> Run: ...
+
+
 @capability("reduced --quasi-static")
 class QuasiStaticModel(Protocol):
     """Paths of infinitely slow heating, of a kind whose reduced model has inertia."""
@@ -74,6 +84,13 @@ class DemInput(Protocol):
     """What the scene in YADE needs, as plain values."""
 
     def dem_input(self, case: Any) -> dict[str, Any]: ...
+
+
+@capability("dem --keep-input")
+class DemValues(Protocol):
+    """The data that the script in YADE reads; :class:`Kind` makes it of the input."""
+
+    def dem_values(self, case: Any) -> dict[str, Any]: ...
 
 
 @capability("dem run")

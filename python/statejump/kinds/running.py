@@ -3,34 +3,75 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
+from statejump.core import yade_input, yade_process
 from statejump.core.case import Case, Progress
+from statejump.core.errors import StatejumpError
 from statejump.core.progress import Tell, shown
 from statejump.core.run import Run
 from statejump.kinds import require
 from statejump.kinds.limits import check_memory
-from statejump.kinds.protocol import DemInput, DemModel, DynamicModel, QuasiStaticModel, ReducedModel
+from statejump.kinds.protocol import (
+    DemInput, DemModel, DemResult, DemValues, DynamicModel, QuasiStaticModel, ReducedModel, TracedModel,
+)
 
 LABELS = {"reduced": "reduced model", "dynamic": "reduced model", "dem": "DEM"}
+Trace = str | Path | Callable[[tuple[Any, ...]], object]
 
 
-def _model(case: Case, name: str) -> Callable[[Any, Tell], Run]:
-    if name == "dem":
-        return require(case, DemModel).dem
-    return require(case, DynamicModel).dynamic if name == "dynamic" else require(case, ReducedModel).reduced
-
-
-def run(case: Case, name: str, progress: Progress) -> Run:
+def run(case: Case, name: str, progress: Progress, *, trace: Trace | None = None,
+        keep_input: str | Path | None = None) -> Run:
     """Run a case in a model.
 
     :param name: ``reduced``, ``dynamic`` or ``dem``
     :param progress: as of :meth:`statejump.Case.reduced`
+    :param trace: as of :meth:`statejump.Case.reduced`
+    :param keep_input: as of :meth:`statejump.Case.dem`
     """
-    model = _model(case, name)
+    if trace is not None:
+        return _traced(case, name, progress, trace)
+    if name == "dem":
+        model = require(case, DemModel).dem if keep_input is None else _keeping(case, Path(keep_input))
+    else:
+        model = require(case, DynamicModel).dynamic if name == "dynamic" else require(case, ReducedModel).reduced
     check_memory(case, "dem" if name == "dem" else "reduced")
     with shown(progress, LABELS[name]) as tell:
         return model(case, tell)
+
+
+def _traced(case: Case, name: str, progress: Progress, trace: Trace) -> Run:
+    if name == "dynamic":
+        raise StatejumpError(cause="a trace shows the quasi-static solver, not the motion", case=case.name,
+                             remedy="leave out 'dynamic' or 'trace'")
+    model = require(case, TracedModel)
+    check_memory(case, "reduced")
+    with shown(progress, LABELS[name]) as tell:
+        return model.traced(case, tell, trace if callable(trace) else Path(trace))
+
+
+def _keeping(case: Case, folder: Path) -> Callable[[Any, Tell], Run]:
+    """Return a DEM run whose input is in a folder."""
+    make_run = require(case, DemResult).dem_run
+    values = require(case, DemValues).dem_values(case)
+    yade_input.keep_input(values, folder)
+    return lambda _, tell: yade_process.run(case, values, make_run, tell)
+
+
+def keep_input(case: Case, folder: Path) -> str:
+    """Write script and data of the DEM run into a folder; return the shell command that repeats the run."""
+    yade_input.check_folder(folder)
+    return yade_input.keep_input(require(case, DemValues).dem_values(case), folder)
+
+
+def view(case: Case, folder: Path) -> None:
+    """Write script and data of the DEM run into a folder, and open YADE's 3-D view of their scene."""
+    yade_input.check_display()
+    yade_input.check_folder(folder)
+    values = require(case, DemValues).dem_values(case)
+    yade_input.keep_input(values, folder)
+    yade_input.view(values, folder)
 
 
 def quasi_static(case: Case) -> Any:

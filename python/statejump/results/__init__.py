@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One HDF5 file per run: what was asked, what came out, what to draw. The layout is :mod:`.layout`, in words
-docs/reference/result_file.md. :func:`statejump.read` reads a file."""
+"""One HDF5 file per run: case, results, scene. :mod:`.layout` has its layout, which docs/reference/result_file.md
+describes. :func:`statejump.read` reads a file."""

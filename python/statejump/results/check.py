@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Holds an HDF5 file against the layout before anything of it is read: types, axes, attributes."""
+"""Checks types, axes and attributes of an HDF5 file against the layout, before its contents are read."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -12,12 +12,12 @@ from statejump.core.errors import Unreadable
 from statejump.core.hdf5 import objects
 from statejump.results.layout import ENTRIES, FORMAT, MODELS, VERSION, Form, entry_of
 
-# Of columns: which list of names their second axis has says their attribute.
+# For columns: an attribute names the list of names of their second axis.
 OF_ITEMS = ("items", "links", "contacts")
 
 
 def check(file: h5py.File, path: Path) -> None:
-    """Raise Unreadable unless the file is ours, of a layout we know, and everything in it is what the layout says."""
+    """Raise Unreadable unless the file is a result file of a known layout, and its contents match this layout."""
     form = file.attrs.get("format")
     if not isinstance(form, str) or form != FORMAT:
         raise Unreadable("not a result file", cause=f"HDF5, but its attribute format is not {FORMAT!r}", file=path)
@@ -69,7 +69,7 @@ def _check_missing(found: dict[str, Any], models: list[str], path: Path) -> None
 
 
 def _type(item: Any) -> str:
-    """Return what the layout calls the type of an object or of an attribute's value."""
+    """Return the layout's name for the type of an object or of the value of an attribute."""
     if isinstance(item, h5py.Group):
         return "group"
     if isinstance(item, str):
@@ -83,7 +83,7 @@ def _type(item: Any) -> str:
 
 
 def _check_form(place: str, item: Any, form: Form, path: Path) -> list[tuple[str, int]]:
-    """Raise Unreadable for another type or shape than those of the layout; return the lengths of the axes by name."""
+    """Raise Unreadable for a type or shape outside the layout; return the lengths of the axes by name."""
     found = _type(item)
     if found not in form.types:
         raise _damaged(path, f"{place} is {found}, must be {' or '.join(form.types)}")
@@ -99,7 +99,7 @@ def _check_form(place: str, item: Any, form: Form, path: Path) -> list[tuple[str
 
 
 def _check_column(place: str, item: h5py.Dataset, names: h5py.Group, path: Path) -> None:
-    """Raise Unreadable where the second axis of a column is not that of the names that it refers to."""
+    """Raise Unreadable if the second axis of a column does not match the list of names that it refers to."""
     items = item.attrs.get("items")
     if not place.startswith("/models/"):
         return
@@ -112,14 +112,14 @@ def _check_column(place: str, item: h5py.Dataset, names: h5py.Group, path: Path)
 
 
 def _scope(place: str, axis: str) -> str:
-    """Return within what an axis has one length."""
+    """Return the scope in which an axis has one length."""
     if axis in ("samples", "events"):
         return "/".join(place.split("/")[:3])  # of a model
     return place if axis in ("sentences", "vertices", "triangles") else place.rpartition("/")[0]
 
 
 def _check_attributes(place: str, item: Any, path: Path) -> None:
-    """Raise Unreadable for attributes of other types than the layout says."""
+    """Raise Unreadable for attributes whose types do not match the layout."""
     for key, value in item.attrs.items():
         if isinstance(item, h5py.Group):
             entry = entry_of(f"{place}@{key}")

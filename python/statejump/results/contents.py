@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a result file holds, in memory: written from it, read into it, exported from it."""
+"""Contents of a result file in memory, for writing, reading and export."""
 from __future__ import annotations
 
 import json
@@ -20,7 +20,7 @@ from statejump.kinds.loading import parse_case
 
 @dataclass(frozen=True)
 class Scalar:
-    """One number of the answers. NaN: there is none."""
+    """One number of the answers. NaN: no value."""
 
     value: float
     unit: str = "-"
@@ -28,11 +28,11 @@ class Scalar:
 
 @dataclass(frozen=True)
 class Answers:
-    """What a designer asks of a truss. ``tables`` has the rows of the CSV files of the same names; a value is
-    text, a whole number, a number or None."""
+    """Answers to design questions on a truss. ``tables`` has the rows of the CSV files of the same names. A value is a
+    text, an integer, a number or None."""
 
-    output: str  # what is traced to the joints: node:NAME, rms, tilt
-    text: str  # the same in words
+    output: str  # the output whose jump is attributed to joints: node:NAME, rms, tilt
+    text: str  # the same in a sentence
     unit: str
     verdict: str
     verdict_text: str
@@ -55,7 +55,7 @@ class Mesh:
 
 
 def _given(values: Any) -> Any:
-    """Return parsed JSON without what is null or a list of nothing: a case file has no such value."""
+    """Return parsed JSON without null and empty lists, which a case file cannot have."""
     if isinstance(values, dict):
         return {key: _given(value) for key, value in values.items() if value is not None and value != []}
     return [_given(value) for value in values] if isinstance(values, list) else values
@@ -77,8 +77,8 @@ class Result:
     names: dict[str, list[str]]  # of the second axes of columns
     scene: dict[str, Any]  # see scene.py
     models: dict[str, Run]
-    rows: tuple[Quantity, ...] | None = None  # of a comparison; None: nothing was compared
-    reasons: list[str] = field(default_factory=list)  # why the comparison may have missed a tolerance
+    rows: tuple[Quantity, ...] | None = None  # of a comparison; None: no comparison
+    reasons: list[str] = field(default_factory=list)  # possible reasons for a missed tolerance
     warnings: list[str] = field(default_factory=list)
     meshes: dict[str, Mesh] = field(default_factory=dict)
     answers: Answers | None = None
@@ -86,7 +86,7 @@ class Result:
 
     @cached_property
     def definition(self) -> Case:
-        """What the case says. :raises StatejumpError: this version does not understand it any more"""
+        """The sections and keys of the case. :raises StatejumpError: this version cannot read the case any more"""
         data = _given(json.loads(self.case_json))
         if self.members is not None:
             data["thermal"]["members"] = self.members
@@ -97,12 +97,12 @@ class Result:
 
     @property
     def case(self) -> Case:
-        """The case. :raises StatejumpError: this version does not understand it any more"""
+        """The case. :raises StatejumpError: this version cannot read the case any more"""
         return self.definition
 
     @property
     def comparison(self) -> Comparison | None:
-        """The models beside each other; None: nothing was compared."""
+        """The comparison of the models; None: no comparison."""
         if self.rows is None:
             return None
         return Comparison(self.definition, self.models, self.rows, warnings=tuple(self.warnings),

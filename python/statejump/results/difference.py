@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Two result files of the same case beside each other."""
+"""Comparison of two result files of the same case."""
 from __future__ import annotations
 
 import json
@@ -17,9 +17,9 @@ from statejump.core.units import unit_of
 from statejump.kinds import protocol, require
 from statejump.results.contents import Result
 
-# How a case is computed, written and judged; the other sections say what it is.
+# Sections on solution, output and tolerances; the other sections define the structure.
 NUMERICAL_SECTIONS = ("case", "dem", "reduced", "motion", "output", "ensemble", "tolerance")
-# Groups of columns that are compared: of a contact that opens there are columns that are no number.
+# Compared groups of columns. Columns of an open contact may be NaN.
 COMPARED = ("history", "energy", "links")
 SAME_TIME = 1e-9  # of the duration: rounding of the last sample's time
 
@@ -55,7 +55,7 @@ class RunDifference:
     """
 
     names: tuple[str, str]
-    summary: list[tuple[str, str, float, float]]  # quantity, unit, first, second; NaN: none
+    summary: list[tuple[str, str, float, float]]  # quantity, unit, first, second; NaN: no value
     columns: list[ColumnDifference]
     events: list[EventDifference]
     rows: list[Quantity] | None
@@ -64,8 +64,8 @@ class RunDifference:
 
     @property
     def missed(self) -> list[str]:
-        """What is not as it should be: rows beyond their tolerance, columns that cannot be compared. Two models need
-        not have the same columns."""
+        """The faults: rows beyond their tolerance, columns that cannot be compared. Two models may have different
+        columns."""
         beyond = [row.name for row in self.rows or () if not row.passed]
         alone = [f"{name} (in one file only)" for name in self.lacking] if self.names[0] == self.names[1] else []
         return beyond + alone + [f"{name} (not finite)" for name in self.not_finite]
@@ -80,7 +80,7 @@ def _entries(values: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def case_differences(first: Result, second: Result) -> tuple[list[str], list[str]]:
-    """Return what differs between the cases: what they are, and how they are computed; as
+    """Return the differences between the cases, in the structure and in its solution, as
     ``section.key = first and second``."""
     entries = [dict(_entries(json.loads(result.case_json))) for result in (first, second)]
     physical: list[str] = []
@@ -88,7 +88,7 @@ def case_differences(first: Result, second: Result) -> tuple[list[str], list[str
     for key in dict.fromkeys([*entries[0], *entries[1]]):
         values = [found.get(key) for found in entries]
         if values[0] != values[1]:
-            # A list of the nodes of a truss is no sentence.
+            # A list of items does not fit into a sentence.
             shown = " and ".join(text if len(text) <= 60 else "(another list)" for text in map(repr, values))
             (numerical if key.partition(".")[0] in NUMERICAL_SECTIONS else physical).append(f"{key} = {shown}")
     return physical, numerical
@@ -107,7 +107,7 @@ def check_comparable(first: Result, second: Result) -> None:
 
 
 def pairs(first: Result, second: Result) -> list[tuple[str, str]]:
-    """Return which model is compared with which: the common ones, or the only one of each file."""
+    """Return the pairs of compared models: the common ones, or the only one of each file."""
     common = [(model, model) for model in first.models if model in second.models]
     if common:
         return common
@@ -124,7 +124,7 @@ def _lacking(first: Run, second: Run) -> list[str]:
 
 
 def _not_finite(first: Run, second: Run) -> list[str]:
-    """Return columns that are finite in one run where they are not in the other, or otherwise not finite."""
+    """Return columns with values that are finite in one run only, or not finite in another way."""
     found = []
     for group in COMPARED:
         for name, column in getattr(first, group).items():
@@ -179,8 +179,8 @@ def _summary(first: Run, second: Run) -> list[tuple[str, str, float, float]]:
 def difference(first: Result, second: Result) -> list[RunDifference]:
     """Compare two result files.
 
-    The second run is taken at the times of the first, linear between its samples. If one of the files is
-    not complete, the common time is compared and nothing is judged.
+    The second run is interpolated linearly at the times of the first. If a file is incomplete, the common time is
+    compared without a verdict.
 
     :raises StatejumpError: they are not of the same case or do not last equally long
     """
@@ -195,7 +195,7 @@ def difference(first: Result, second: Result) -> list[RunDifference]:
             raise StatejumpError("not comparable", cause=f"the runs last {ends[0]:g} s and {ends[1]:g} s")
         times = one.time_s[one.time_s <= min(ends) * (1 + SAME_TIME)]
         left, right = one.at(times), other.at(times)
-        with np.errstate(over="ignore", invalid="ignore"):  # rows and columns name what is not finite
+        with np.errstate(over="ignore", invalid="ignore"):  # rows and columns report values that are not finite
             found.append(RunDifference(
                 names, _summary(one, other), _columns(left, right), _events(one, other),
                 of_two(judge(first.definition, left, right)) if complete else None,

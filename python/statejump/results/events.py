@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Events of a run, read off the states of its contacts between two samples."""
+"""Events of a run, from the states of its contacts at consecutive samples."""
 from __future__ import annotations
 
 from collections.abc import Sequence

@@ -66,7 +66,7 @@ class _Lines:
 
 @dataclass(frozen=True)
 class _Shape:
-    """Something drawn: polylines or triangles in the part's own frame, and how they move."""
+    """A drawn part: polylines or triangles in its own frame, and their motion."""
 
     part: dict[str, Any]
     lines: list[np.ndarray]
@@ -78,7 +78,7 @@ class _Shape:
 
 
 class _Parts:
-    """Everything but links and springs."""
+    """All parts except links and springs."""
 
     suffix = ".vtp"
 
@@ -185,7 +185,7 @@ def _forces(result: Result, run: Run) -> _Vertices | None:
 
 
 def sorts(result: Result, model: str) -> dict[str, Any]:
-    """Return what is drawn of a model: name of the sort and what makes its frames."""
+    """Return the drawings of a model: name of the sort and the object that makes its frames."""
     run = result.models[model]
     found = {
         "links": _Lines(result, run, model), "parts": _Parts(result, run, model),

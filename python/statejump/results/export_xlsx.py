@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A workbook of a result for Excel and LibreOffice: the tables of the CSV export as sheets. Numbers are numbers,
-whatever the decimal sign of the country, of 16 digits."""
+"""A workbook of a result for Excel and LibreOffice: the tables of the CSV export as sheets. Cells hold numbers of 16
+digits, independent of the decimal sign of the country."""
 from __future__ import annotations
 
 import math

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Layout of a result file, as data: the writer is checked against it, the reader checks by it, the
-table in docs/reference/result_file.md is made from it."""
+"""Layout of a result file, as data. Tests check the writer against it, the reader checks files with it, and the table
+in docs/reference/result_file.md is generated from it."""
 from __future__ import annotations
 
 import re
@@ -8,17 +8,17 @@ from dataclasses import dataclass
 from functools import cached_property
 
 FORMAT = "statejump result"
-VERSION = 1  # raised when a reader of the old layout would go wrong
+VERSION = 1  # increased when a reader of the old layout would misread a file
 SUFFIX = ".h5"
 MODELS = ("reduced", "dem")
 
 
 @dataclass(frozen=True)
 class Form:
-    """What may stand at a place.
+    """Allowed types and shapes of an entry.
 
     :param types: ``group``, ``text``, ``bool``, ``int64``, ``uint8`` (with labels) or ``float64``
-    :param shapes: names of the axes, for each shape that is allowed; an axis of a certain length is called by it
+    :param shapes: names of the axes of each allowed shape; the name of an axis of fixed length is this length
     :param words: how the documentation calls the types
     """
 
@@ -38,7 +38,7 @@ def _array(types: str, *axes: str) -> Form:
 
 @dataclass(frozen=True)
 class Entry:
-    """One place in the file. In ``path`` ``{model}`` is a model, ``{name}`` any name; an attribute follows ``@``."""
+    """An entry of the file. In ``path``, ``{model}`` is a model, ``{name}`` any name; an attribute has ``@``."""
 
     path: str
     form: Form
@@ -51,7 +51,7 @@ class Entry:
                           .replace(r"\{name\}", "[^/@]+"))
 
     def matches(self, path: str) -> bool:
-        """Whether a place in a file is this entry."""
+        """Whether a path in a file belongs to this entry."""
         return self._pattern.fullmatch(path) is not None
 
 
@@ -173,9 +173,9 @@ ENTRIES = (
           required=False),
 )
 
-# Numbers of /answers/summary that stand there together, or not at all.
+# Numbers of /answers/summary that are all present or all absent.
 SUM_OF_CONTRIBUTIONS = ("sum_of_contributions", "sum_error_relative")
-# Tables of /answers: what a row is, and the columns in the order of the CSV file.
+# Tables of /answers: meaning of a row, and the columns in the order of the CSV file.
 _JUMP = ("jump_x_m", "jump_y_m", "jump_z_m", "jump_m")
 TABLES: dict[str, tuple[str, tuple[str, ...]]] = {
     "cycles": ("a cycle: largest motion of a node over it, heat of friction",
@@ -193,7 +193,7 @@ TABLES: dict[str, tuple[str, tuple[str, ...]]] = {
                        "verdict")),
 }
 
-# Attributes of data sets of numbers, wherever they stand.
+# Attributes of all data sets of numbers.
 ATTRIBUTES = {
     "unit": "unit of the values, - for none; all data sets of numbers have it",
     "items": "name of the list below /names that names the second axis",
@@ -205,11 +205,11 @@ ATTRIBUTES = {
 # Columns of these tables that are texts; all others are numbers.
 TEXTS = frozenset({"node", "joint", "kind", "state", "parameter", "verdict"})
 ALWAYS = ("cycles", "node_jumps", "joint_jumps")  # tables that all answers have
-WITHOUT_GAPS = (*ALWAYS, "contributions")  # tables in which no number lacks
+WITHOUT_GAPS = (*ALWAYS, "contributions")  # tables without missing numbers
 
 
 def entry_of(path: str) -> Entry | None:
-    """Return the entry that a place in a file belongs to, the most special first."""
+    """Return the most specific entry for a path in a file."""
     found = [entry for entry in ENTRIES if entry.matches(path)]
     return min(found, key=lambda entry: entry.path.count("{name}")) if found else None
 

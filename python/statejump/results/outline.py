@@ -35,7 +35,7 @@ def outlines(part: dict[str, Any]) -> list[np.ndarray]:
 
 def _flat_outlines(part: dict[str, Any]) -> list[np.ndarray]:
     kind = part["type"]
-    if kind == "journal":  # the spoke shows how it turns
+    if kind == "journal":  # the spoke shows the rotation
         return [_circle(part["radius_m"]), _polyline([(0, 0), (part["radius_m"], 0)])]
     if kind == "bearing":
         return [_circle(part["radius_m"])]

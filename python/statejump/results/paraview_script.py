@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A Python script for ParaView that opens what :mod:`.export_vtk` wrote."""
+"""A Python script for ParaView that opens the files of :mod:`.export_vtk`."""
 from __future__ import annotations
 
 import json
@@ -139,7 +139,7 @@ if len(sys.argv) > 1 and sys.argv[-1].endswith(".png"):
 
 
 def _size_m(result: Result) -> float:
-    """Return the size of what is drawn at the start [m]."""
+    """Return the size of the drawing at the start [m]."""
     points = []
     for model, run in result.models.items():
         for part in result.scene["parts"]:
@@ -159,7 +159,7 @@ def _largest_force_N(result: Result) -> float:
 
 
 def _range_N(result: Result) -> tuple[float, float]:
-    """Return a range of axial forces that holds all links at all times, 0 in its middle."""
+    """Return a range of axial forces around 0 that covers all links at all times."""
     largest = [
         np.nanmax(np.abs(run.links["axial_force_N"].values), initial=0.0)
         for run in result.models.values() if "axial_force_N" in run.links

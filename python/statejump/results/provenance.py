@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What computed a result: versions, threads, seed. Nothing of the machine, nothing of the day."""
+"""Provenance of a result: versions, threads, seed; neither machine nor date."""
 from __future__ import annotations
 
 import platform

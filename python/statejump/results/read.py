@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads a result file; whatever is wrong with it is one sentence."""
+"""Reads a result file; the error for a fault in it is one sentence."""
 from __future__ import annotations
 
 import json
@@ -24,14 +24,14 @@ from statejump.results.scene_check import problems
 
 
 def is_result_file(path: Path) -> bool:
-    """Whether a path is meant as a result file: it is one, or is called so."""
+    """Whether a path is a result file by its content or its name."""
     return path.suffix in (SUFFIX, ".hdf5") or is_ours(path)
 
 
 def read(path: str | Path) -> Result:
-    """Return what a result file holds.
+    """Return the contents of a result file.
 
-    :raises Unreadable: no such file, not ours, of a newer layout, cut off or altered, a part is missing
+    :raises Unreadable: the file is missing, no result file, of a newer layout, truncated or altered, or lacks a part
     """
     path = Path(path)
     try:
@@ -53,7 +53,7 @@ def _result(file: h5py.File, path: Path) -> Result:
     _parsed("/case/resolved", case_json)
     names = Parts({key: _texts(values) for key, values in file["names"].items()}, "/names", path)
     complete = bool(file.attrs["complete"])
-    made: list[Result] = []  # a run of the file reads its case only when it is asked for
+    made: list[Result] = []  # a run reads its case from the file at the first access
     runs = {
         model: replace(_model(model, file["models"][model], path), names=names, complete=complete,
                        kind=case.attrs["kind"], case_of=lambda: made[0].definition)
@@ -158,7 +158,7 @@ def _comparison(group: h5py.Group) -> tuple[Quantity, ...]:
 
 def _answers(group: h5py.Group, names: Mapping[str, list[str]]) -> Answers:
     summary = _scalars(group["summary"])
-    # A sum of contributions comes with its error.
+    # A sum of contributions has an error estimate.
     needed = ["jump", *(SUM_OF_CONTRIBUTIONS if any(name in summary for name in SUM_OF_CONTRIBUTIONS) else ())]
     missing = [name for name in needed if name not in summary]
     if missing:

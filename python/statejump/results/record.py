@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a command leaves behind: the result file of its runs, and from it the CSV files."""
+"""Output of a command: the result file of its runs, and CSV files made from it."""
 from __future__ import annotations
 
 import json
@@ -73,7 +73,7 @@ def save(
 ) -> Path:
     """Write the result file of runs and the CSV files of their histories, or of the answers; return its path.
 
-    Runs that are not complete get names of their own, so that they replace no finished ones.
+    Incomplete runs get other names, so they replace no complete ones.
 
     :param folder: results folder, exists
     """

@@ -26,7 +26,7 @@ Point = list[Value] | dict[str, Any]
 # Okabe-Ito colours, different in lightness as well.
 STATE_COLOURS = dict(zip(CONTACT_STATES, ("#999999", "#0072B2", "#E69F00", "#D55E00"), strict=True))
 
-# Keys that a part of each type must have beside name and type; further ones are in the docs.
+# Required keys of each type of part besides name and type; the documentation has optional ones.
 PART_TYPES: dict[str, tuple[str, ...]] = {
     "link": ("ends", "width_m"),
     "spring": ("ends",),
@@ -85,10 +85,10 @@ def description(
     parts: list[dict[str, Any]], contacts: list[tuple[str, str, str]], smallest_clearance_m: float,
     forces: Sequence[dict[str, Any]] = (),
 ) -> dict[str, Any]:
-    """Return a whole description.
+    """Return a complete description.
 
     :param contacts: name, part that the forces act on, the other part
-    :param smallest_clearance_m: what a viewer may have to magnify; 0: there is none
+    :param smallest_clearance_m: smallest clearance, which a viewer may magnify; 0: none
     :param forces: further ones
     """
     return {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether what a file says of what to draw is a description as :mod:`.scene` has it. Whoever draws relies on it."""
+"""Checks the description of a scene in a file against :mod:`.scene`. Viewers rely on it."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
@@ -16,13 +16,13 @@ Problems = Iterator[str]
 
 
 def problems(result: Result) -> list[str]:
-    """Return what is wrong with a result's description, one sentence each."""
+    """Return the faults in the description of a result, one sentence each."""
     return list(_Check(result.models, result.names, [*result.meshes]).scene(result.scene))
 
 
 @dataclass(frozen=True)
 class _Check:
-    """What a description may refer to."""
+    """Data that a description may refer to."""
 
     models: Mapping[str, Run]
     names: Mapping[str, list[str]]
@@ -135,7 +135,7 @@ class _Check:
             yield f"{repr(value)} is not a mesh of the file"
 
     def _reference(self, value: dict[str, Any], axes: int) -> Problems:
-        """A column of every model that has, with its item chosen, so many axes."""
+        """A column of every model that has a given number of axes after the selection of its item."""
         for model, run in self.models.items():
             try:
                 column = run.column(value["data"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What all VTK files are made of: points, cells, named arrays, a file, a series of files with true times."""
+"""Parts of VTK files: points, cells, named arrays, a file, a series of files with true times."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -24,7 +24,7 @@ def frames_of(samples: int, wanted: int) -> np.ndarray:
 
 
 def file_time(time_s: float) -> float:
-    """Return a time [s] as files have it: what rounding left between two models is not another instant."""
+    """Return a time [s], rounded for files: two models round the same instant differently."""
     return float(f"{time_s:.9g}")
 
 
@@ -37,7 +37,7 @@ def points(values: np.ndarray) -> vtkPoints:
 
 
 def cells(lengths: list[int], connectivity: np.ndarray) -> vtkCellArray:
-    """Return cells of so many points each; ``connectivity`` holds their numbers, one cell after another."""
+    """Return cells with equal numbers of points; ``connectivity`` holds their indices, one cell after another."""
     made = vtkCellArray()
     offsets = np.concatenate((np.zeros(1, dtype=np.int64), np.cumsum(lengths, dtype=np.int64)))
     made.SetData(numpy_to_vtkIdTypeArray(offsets, deep=True),

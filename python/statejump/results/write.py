@@ -17,7 +17,7 @@ from statejump.core.units import unit_of
 from statejump.results.contents import Answers, Result
 from statejump.results.layout import FORMAT, VERSION
 
-COMPRESSED_FROM = 4096  # bytes; below, a chunk's administration is larger than what it saves
+COMPRESSED_FROM = 4096  # bytes; the overhead of a smaller chunk exceeds its savings
 
 
 def write(result: Result, path: Path) -> None:
@@ -77,7 +77,7 @@ def _comparison(group: h5py.Group, result: Result) -> None:
     known = sides(rows)
     for key in (*known, "difference", "tolerance"):
         values = [row.values.get(key) if key in SIDES else getattr(row, key) for row in rows]
-        # Units differ from row to row: they stand in `unit`.
+        # Units differ between rows: the column `unit` has them.
         group.create_dataset(key, data=np.array([math.nan if value is None else value for value in values], float),
                              track_times=False)
     if known != ["reduced", "dem"]:

@@ -10,6 +10,7 @@
 #include "statejump/start_friction.hpp"
 #include "statejump/truss/local_problem.hpp"
 #include "statejump/truss/model.hpp"
+#include "statejump/truss/trace.hpp"
 
 namespace statejump::truss {
 
@@ -40,6 +41,8 @@ struct Options {
   /// Called with the share of the program that is done (0 to 1); returning false ends the path
   /// there, with Path::complete false.
   std::function<bool(double)> progress;
+  /// Called with every iteration of Newton's method; empty: no trace.
+  TraceSink trace;
 };
 
 /// Change of a joint's status.

@@ -44,6 +44,7 @@ class Truss(Kind[TrussCase]):
         return tuple(name for name in self.OUTCOMES if case.reflector is not None or not name.startswith("reflector_"))
 
     reduced = Later("statejump.kinds.truss.running:reduced")
+    traced = Later("statejump.kinds.truss.trace:traced")
     dynamic = Later("statejump.kinds.truss.running:dynamic")
     quick = Later("statejump.kinds.truss.outcomes:quick")
     dem_input = Later("statejump.kinds.truss.dem:dem_input")

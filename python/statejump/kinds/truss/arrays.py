@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From items of a truss, which have keys and refer to each other by name, to arrays.
+"""Converts the items of a truss, which refer to each other by name, to arrays.
 
 Vectors have three components; the third is 0 in planar trusses. Items are numbered as in the file.
 Index -1 stands for ground.
@@ -17,12 +17,12 @@ from statejump.schema.items import Item
 from statejump.schema.texts import BLOCK, Names
 
 GROUND = -1
-# Directions that differ by less are one: far above rounding, far below what anybody means.
+# Directions that differ by less are equal: far above rounding, far below any intended difference.
 SAME_DIRECTION = 1e-6
 
 
 def none_of(joints: Any) -> Any:
-    """Return joints of the same type as these arrays, none of them."""
+    """Return arrays of the same type without any joint."""
     return type(joints)(**{key: value[:0] for key, value in vars(joints).items()})
 
 
@@ -63,7 +63,7 @@ def given_or(given: np.ndarray, other: np.ndarray | float) -> np.ndarray:
 
 
 def said(items: Sequence[Any], key: str) -> np.ndarray:
-    """Return which items (n,) have a number, or a vector, of a key."""
+    """Return the items (n,) for which a number or a vector of a key is given."""
     if not isinstance(items, ItemColumns):
         return np.array([getattr(item, key) is not None for item in items], dtype=bool)
     given = ~np.isnan(items.numbers(key))

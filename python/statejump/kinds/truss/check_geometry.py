@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is wrong with the shape of a truss: lengths, clearances over the temperatures, axes, supports."""
+"""Checks of the shape of a truss: lengths, clearances over the temperatures, axes, supports."""
 from __future__ import annotations
 
 from typing import Any
@@ -16,7 +16,7 @@ from statejump.kinds.truss.resolved import Links, ResolvedTruss, Springs
 
 
 def check_geometry(truss: ResolvedTruss) -> None:
-    """Raise StatejumpError for the first thing that is wrong with the shape of a truss whose names are right."""
+    """Raise StatejumpError for the first fault in the shape of a truss whose references are valid."""
     ranges_K = truss.temperature_ranges_K
     _lengths(truss)
     _stretches(truss.springs)
@@ -64,7 +64,7 @@ def _expansions(truss: ResolvedTruss, ranges_K: np.ndarray) -> None:
 
 
 class NoSupport(StatejumpError):
-    """Parts of a truss that nothing holds.
+    """Parts of a truss without a path to a support.
 
     :param loose: a node of each of them
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is wrong with bodies, weights and drives of a truss, and which trusses have no path without inertia."""
+"""Checks of bodies, weights and drives of a truss, and of trusses without a quasi-static path."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -81,7 +81,7 @@ def _check_program(drive: Drive, where: Mapping[str, Any]) -> None:
 
 
 def refused_at_rest(truss: ResolvedTruss) -> str | None:
-    """Return why a truss has no path without inertia."""
+    """Return why a truss has no quasi-static path; None: it has one."""
     for name in truss.drives.names[:1]:
         return f"drive {name!r} turns a link, which is motion: 'statejump reduced --dynamic' runs the case"
     for name in BALL_JOINT.rigid_ones(truss.joints[BALL_JOINT.section])[:1]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What items of a truss say of each other: names that are there, ends that fit, keys that exclude each other."""
+"""Checks of references between the items of a truss: names exist, ends fit, no two keys exclude each other."""
 from __future__ import annotations
 
 import difflib
@@ -24,7 +24,7 @@ _WITH_TEMPERATURE = [joint for joint in JOINTS if joint.has_temperature]
 
 
 def check_references(case: TrussSections) -> None:
-    """Raise StatejumpError for the first name that is not there or does not fit."""
+    """Raise StatejumpError for the first name that does not exist or does not fit."""
     nodes, links = by_name(case.node), by_name(case.link)
     node_places, link_places = Places(case.node), Places(case.link)
     for link in where_wrong(case.link, lambda items: wrong_ends(node_places.of(items, "nodes"), 2)):

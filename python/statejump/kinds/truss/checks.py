@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What can be wrong between several keys of a truss. Each check raises the first thing that it finds, with the item.
+"""Checks between several keys of a truss. Each check raises an error for its first finding and names the item.
 
-Programs, names and references first, then geometry and temperatures on arrays. Whether the truss is a mechanism
-is the solver's to find: it depends on which joints are in contact.
+Programs, names and references come first, then geometry and temperatures on arrays. The solver detects mechanisms,
+because these depend on the joints in contact.
 """
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ SECTIONS = ("node", "link", "program", "expansion", *(joint.section for joint in
 
 
 def check(case: TrussSections, resolve: Callable[[], ResolvedTruss]) -> None:
-    """Raise StatejumpError for the first thing that is wrong with a truss as a whole, without the file's name.
+    """Raise StatejumpError for the first fault of a truss as a whole, without the name of the file.
 
-    :param resolve: returns its arrays; called where its references are right
+    :param resolve: returns its arrays; called when its references are valid
     """
     if case.tables is not None:
         raise NotAllowed("section [tables]", cause="only where a case file names files")

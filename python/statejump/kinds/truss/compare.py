@@ -20,7 +20,7 @@ def energy_residual(energy: Mapping[str, Column]) -> float:
     """Return supplied minus stored minus dissipated energy over the whole run [J]."""
     undamped = energy_residue_J(energy, ("thermal_work_J", "external_work_J"), ("elastic_energy_J", "kinetic_energy_J"),
                                 ("friction_dissipation_J",))
-    # Last, because the residue is a small difference: another order rounds otherwise.
+    # Subtracted last: the residue is a small difference, and another order would round differently.
     return undamped - change(energy, "damping_dissipation_J") - change(energy, "impact_dissipation_J")
 
 

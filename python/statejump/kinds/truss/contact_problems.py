@@ -38,7 +38,7 @@ class ContactProblem:
 
 
 def contact_problems(case: TrussCase, number: int, tell: Tell = lambda share: None) -> list[ContactProblem]:
-    """Return the problems of so many steps, evenly spread over the path; fewer where the path has fewer steps.
+    """Return the problems of a number of steps, evenly spaced over the path; fewer if the path has fewer steps.
 
     :raises NotAllowed: the number is out of its range
     :raises StatejumpError: the truss has no joints that are contacts, or too many for a dense W; they slip in part

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Thermal creak and snap: what a node of a truss in motion feels when joints let go."""
+"""Thermal creak and snap: acceleration of a node of a truss in motion when joints slip."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -126,7 +126,7 @@ BAND = ("low_Hz", "high_Hz", "rms_m_per_s2", "peak_m_per_s2")
 
 
 def creak(case: TrussCase, node: str, tell: Tell = lambda share: None) -> Creak:
-    """Return what a node feels while a truss moves through its program.
+    """Return the acceleration of a node while a truss moves through its program.
 
     :param node: name of the node
     :param tell: takes the finished share, 0 to 1

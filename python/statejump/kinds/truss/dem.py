@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A truss as the YADE script needs it: bodies, masses, contact groups, time step, loaded start.
+"""The data of a truss for the YADE script: bodies, masses, contact groups, time step, loaded start.
 
-Nodes are bodies with lumped masses, see :mod:`~statejump.kinds.truss.masses`. A slider's pad is held by the
-node's supports at the depth at which its floor carries the normal force, so that the friction limit is that of the
-quasi-static model whatever else loads the supports.
+Nodes are bodies with lumped masses, see :mod:`~statejump.kinds.truss.masses`. The supports
+of the node hold the pad of a slider at the depth at which its floor carries the normal force. The friction limit then
+equals that of the quasi-static model, independent of other loads on the supports.
 """
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ from statejump.schema.paths import with_values
 
 CONTACT_GROUPS = 30  # bits of a body's mask in YADE that are free to use
 
-PATH_SHARE = 0.1  # of the progress that is told of a DEM run: the path that it begins with
+PATH_SHARE = 0.1  # fraction of the reported progress of a DEM run that belongs to its path
 
 
 def refuse(case: TrussCase, why: str, **fields: Any) -> StatejumpError:
-    """Return the error for what the DEM cannot represent."""
+    """Return the error for an item that the DEM cannot represent."""
     return StatejumpError(cause=why, case=case.name, remedy="'statejump reduced' can run the case", **fields)
 
 
@@ -198,7 +198,7 @@ def _refuse_tilted_torsion(case: TrussCase, truss: ResolvedTruss) -> None:
 
 
 def _refuse_far_turns(case: TrussCase, path: Course) -> None:
-    """Beyond a quarter of a turn the DEM cannot tell an angle from its opposite."""
+    """Beyond a quarter of a turn the DEM cannot distinguish an angle from its opposite."""
     torsion = path.truss.torsion_springs
     if len(torsion.links) and np.abs(torsion.bias_rad).max() > pi / 2:
         raise refuse(case, "a torsion spring has a bias above π/2, beyond what the DEM can tell from its opposite")
@@ -226,11 +226,11 @@ def _lists(part: Any, **more: Any) -> dict[str, Any]:
 
 
 def resolved(case: TrussCase, path: Course) -> dict[str, Any]:
-    """Return everything that the YADE script needs, as plain values.
+    """Return the data for the YADE script as plain values.
 
-    :param path: the quasi-static path of the case, or its motion: its first state is the start, its forces give the
-        time step, its slides the size of the floors
-    :raises StatejumpError: the DEM cannot represent an item, which the sentence names
+    :param path: the quasi-static path of the case, or its motion. Its first state is the start; its forces determine
+        the time step, its slides the size of the floors
+    :raises StatejumpError: the DEM cannot represent an item; the message names it
     """
     check(case)
     truss, mass = path.truss, lumped_mass_kg(path.truss)
@@ -257,16 +257,16 @@ def resolved(case: TrussCase, path: Course) -> dict[str, Any]:
 
 
 def dem_input(case: TrussCase, tell: Tell = lambda share: None) -> dict[str, Any]:
-    """Return everything that the YADE script needs, see :func:`resolved`; the path is found first, or the motion.
+    """Compute the path or the motion, and return the data for the YADE script, see :func:`resolved`.
 
-    :param tell: takes the finished share of the path
+    :param tell: receives the finished fraction of the path
     """
     check(case)
     return resolved(case, course(case, tell))
 
 
 def course(case: TrussCase, tell: Tell) -> Course:
-    """Return the quasi-static path; of a case that snaps its motion, since such a path ends at its limit point."""
+    """Return the quasi-static path. For a case that snaps, return its motion: a path ends at its limit point."""
     try:
         return solve(case, tell)
     except EngineFailed as failure:
@@ -276,7 +276,7 @@ def course(case: TrussCase, tell: Tell) -> Course:
 
 
 def run(case: TrussCase, scene: str, make_run: Callable[..., Run], tell: Tell) -> Run:
-    """Find the path and run the case in YADE from where it begins; see :func:`statejump.core.yade_process.run`.
+    """Compute the path and run the case in YADE from its start; see :func:`statejump.core.yade_process.run`.
 
     :param scene: module that builds the scene in YADE
     """

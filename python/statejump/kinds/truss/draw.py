@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drawings of trusses: what the case file says, before anything is solved.
+"""Drawings of trusses as in the case file; nothing is solved.
 
-Symbols have the size that the number of nodes leaves, not that of the parts: a clearance is written in
-the legend.
+The size of symbols depends on the number of nodes, not on the size of the parts. The legend has the clearances.
 """
 from __future__ import annotations
 
@@ -21,7 +20,7 @@ from statejump.kinds.truss.draw_symbols import MOST_NAMED
 def draw(case: TrussCase, axes: Axes | None = None, names: bool = False) -> Figure:
     """Return the drawing of a truss.
 
-    :param names: whether all nodes are named, also where their names cover the drawing
+    :param names: write the names of all nodes, even if they cover the drawing
     :param axes: axes to draw into, of a spatial truss with projection ``3d``; None: a new figure
     :raises StatejumpError: the axes are not those of three dimensions
     """

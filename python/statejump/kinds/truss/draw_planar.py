@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drawing of a planar truss; of a dense one with a detail."""
+"""Drawing of a planar truss; a dense one gets an enlarged detail."""
 from __future__ import annotations
 
 from typing import Any
@@ -24,7 +24,7 @@ WIDTH_IN, HEIGHT_IN = 8.0, 7.0  # of the panel, at most
 
 
 def _bowed(truss: ResolvedTruss) -> list[np.ndarray]:
-    """Return the lines (k, 2) of the links; those that would cover each other are bows."""
+    """Return the lines (k, 2) of the links; links that would cover each other are arcs."""
     positions, links = truss.nodes.position_m[:, :2], truss.links
     start, end = positions[links.nodes[:, 0]], positions[links.nodes[:, 1]]
     groups: dict[tuple[Any, ...], list[int]] = {}
@@ -56,9 +56,9 @@ def _zigzag(a: np.ndarray, b: np.ndarray, height: float) -> np.ndarray:
 
 
 def planar(truss: ResolvedTruss, most_named: int = MOST_NAMED) -> Figure:
-    """Return the drawing of a planar truss as a new figure, its legend below.
+    """Return the drawing of a planar truss as a new figure with its legend below.
 
-    :param most_named: nodes that are named; of more none is
+    :param most_named: largest number of nodes that get names; if there are more, none gets one
     """
     lines = _bowed(truss)
     low, high = _corners(truss, lines)
@@ -100,7 +100,7 @@ def planar(truss: ResolvedTruss, most_named: int = MOST_NAMED) -> Figure:
 
 
 def draw_planar(truss: ResolvedTruss, axes: Axes, most_named: int = MOST_NAMED) -> None:
-    """Draw a planar truss into axes; the size of its symbols is that which the axes leave."""
+    """Draw a planar truss into axes, which determine the size of its symbols."""
     lines = _bowed(truss)
     low, high = _corners(truss, lines)
     box = axes.get_window_extent()
@@ -112,7 +112,7 @@ def draw_planar(truss: ResolvedTruss, axes: Axes, most_named: int = MOST_NAMED) 
 
 
 def _corners(truss: ResolvedTruss, lines: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lower left and the upper right corner [m] of what is drawn."""
+    """Return the lower left and the upper right corner [m] of the drawn items."""
     corners = np.concatenate((*lines, truss.nodes.position_m[:, :2]))
     low, high = corners.min(axis=0), corners.max(axis=0)
     # Arrows begin outside of the truss.
@@ -121,7 +121,7 @@ def _corners(truss: ResolvedTruss, lines: list[np.ndarray]) -> tuple[np.ndarray,
 
 
 def _first_joint(truss: ResolvedTruss) -> np.ndarray:
-    """Where the first joint is, of a truss without any the first node."""
+    """Return the position of the first joint; without joints, of the first node."""
     return truss.nodes.position_m[[*covered(truss), 0][0]]
 
 

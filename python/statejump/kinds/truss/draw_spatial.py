@@ -20,9 +20,9 @@ MOST_TICKS = 8  # of the longest axis
 
 
 def spatial(truss: ResolvedTruss, most_named: int = MOST_NAMED) -> Figure:
-    """Return the drawing of a spatial truss as a new figure, its legend below.
+    """Return the drawing of a spatial truss as a new figure with its legend below.
 
-    :param most_named: nodes that are named; of more none is
+    :param most_named: largest number of nodes that get names; if there are more, none gets one
     """
     handles = legend(truss)
     below_in = 0.3 + 0.22 * -(-len(handles) // 2)
@@ -39,8 +39,8 @@ def spatial(truss: ResolvedTruss, most_named: int = MOST_NAMED) -> Figure:
 
 
 def _fit(drawing: Figure, axes: Axes3D, below: float) -> None:
-    """Make what is drawn as large as the room above the legend allows, and centre it there: labels and edges in three
-    dimensions know no limits of their axes."""
+    """Scale the drawing to the room above the legend and centre it. Labels and edges in three dimensions may exceed the
+    limits of their axes."""
     room = axes.get_position()
     for _ in range(2):  # sizes of labels do not grow with the axes: the second time for what is left
         drawing.canvas.draw()  # only then the axes know where things are

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Symbols of drawn trusses, their sizes, and what the legend says of them."""
+"""Symbols of drawn trusses: sizes and legend."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ LINK, SPRING, CABLE, LOAD, TORSION, SURFACE = (
     "#0072B2", "#009E73", "#D55E00", "#D55E00", "#CC79A7", "#E69F00",
 )
 FRACTION = "Temperature fraction of a link [-]"
-MOST_NAMED = 24  # nodes that are named unasked; of more the names would cover the drawing
+MOST_NAMED = 24  # nodes that get names by default; more names would cover the drawing
 
 
 def _outline(*strokes: Sequence[tuple[float, float]]) -> Outline:
@@ -46,7 +46,7 @@ SPIRAL: Strokes = (tuple((0.28 * t * np.cos(5.2 * t), 0.28 * t * np.sin(5.2 * t)
 
 
 def gap_m(truss: ResolvedTruss) -> float:
-    """Distance of neighbouring places [m]. A few that are nearer may touch: not all symbols shall be tiny."""
+    """Distance of neighbouring positions [m]. A few nearer ones may touch, so that not all symbols are tiny."""
     places = np.unique(np.round(truss.nodes.position_m, 9), axis=0)
     return float(np.quantile(cKDTree(places).query(places, k=2)[0][:, 1], 0.1))
 

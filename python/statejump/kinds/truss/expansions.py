@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What warms the links of a truss: programs of a case, and for links with an [[expansion]] those of their strain."""
+"""Temperature programs of the links of a truss. A link with an [[expansion]] gets a program of its strain."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -32,7 +32,7 @@ class LinkTemperatures:
 
 
 def link_temperatures(case: TrussSections, shown: np.ndarray, names: tuple[str, ...]) -> LinkTemperatures:
-    """Return what warms the links. References must be right: ``checks`` sees to it when a case is read.
+    """Return the programs of the links. ``checks`` has checked the references when the case was read.
 
     :param shown: the program of the temperature of every link
     :param names: of the programs of the case

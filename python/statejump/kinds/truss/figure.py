@@ -91,7 +91,7 @@ def sheet(case: TrussCase, runs: Sequence[Run]) -> Sheet:
 
 
 def _label(case: TrussCase, run: Run, jump_m: float) -> str:
-    """Return how the mark at the end of a loop is called."""
+    """Return the label of the mark at the end of a loop."""
     if not case.has_jump:
         return f"end of the program, {text(jump_m, 'm', 4)}"
     rounding = abs(jump_m) <= scales_of(case, run).rounding_m

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What makes a mechanism of a truss in motion: bodies that are no rods, their weight, links that are driven."""
+"""Parts of a mechanism, for a truss in motion: bodies that are no rods, weights, driven links."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -60,7 +60,7 @@ def _table(item: Drive) -> tuple[np.ndarray, np.ndarray]:
 
 
 def resolve_bodies(links: Sequence[Any], length_m: np.ndarray, mass_kg: np.ndarray) -> Bodies:
-    """Return the shapes of links; those of which nothing is said are rods."""
+    """Return the shapes of links; the default is a rod."""
     moment = column(links, "moment_of_inertia_kg_m2")
     own_centre = said(links, "centre_of_mass_m")
     middle = np.stack((length_m / 2, np.zeros(len(links))), axis=1)
@@ -74,8 +74,8 @@ def resolve_bodies(links: Sequence[Any], length_m: np.ndarray, mass_kg: np.ndarr
 
 def weights_N(gravity_m_per_s2: np.ndarray, link_nodes: np.ndarray, mass_kg: np.ndarray, bodies: Bodies,
               node_mass_kg: np.ndarray) -> np.ndarray:
-    """Return the weights of all bodies on the nodes (n, 3) [N], which are dead: where a body's centre of mass is
-    depends linearly on its nodes, also when it turns in the plane."""
+    """Return the weights of all bodies on the nodes (n, 3) [N]. These loads are constant: the centre of mass of a body
+    depends linearly on its nodes, even if the body rotates in the plane."""
     found = node_mass_kg[:, None] * gravity_m_per_s2
     along, left = bodies.centre.T
     x, y, z = gravity_m_per_s2

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the axial forces of a run ask of the links: Euler's load and the yield strength, as warnings.
+"""Warnings for links whose axial force exceeds Euler's load or the yield strength.
 
-Both models take links as straight and elastic whatever their force. Springs and cables have no section: nothing is said
-of them.
+Both models keep links straight and elastic at any force. Springs and cables have no section and are not checked.
 """
 from __future__ import annotations
 
@@ -16,7 +15,7 @@ from statejump.kinds.truss.resolved import Links
 
 def warnings(links: Links, time_s: np.ndarray, temperature_change_K: np.ndarray, axial_force_N: np.ndarray
              ) -> tuple[str, ...]:
-    """Return what the links could not carry: one sentence on buckling, one on yielding, each of the worst link.
+    """Return one sentence on buckling and one on yielding, each for the worst link.
 
     :param axial_force_N: (times, links), compression positive
     """

@@ -24,7 +24,7 @@ from statejump.kinds.truss.solve import TrussEvents, engine_items
 
 @dataclass(frozen=True)
 class TrussMotion:
-    """What the engine found. ``states`` are those of :class:`TrussPath` with velocities and energies."""
+    """Result of the engine. ``states`` are those of :class:`TrussPath` with velocities and energies."""
 
     truss: ResolvedTruss
     states: dict[str, np.ndarray]
@@ -48,7 +48,7 @@ class TrussMotion:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What the motion leaves open, in sentences."""
+        """Sentences on reactions that the motion does not determine."""
         found = []
         if self.inexact_steps and self.regularised:
             found.append(f"in {self.inexact_steps} of {self.steps} steps a contact was stiffer than explicit steps of "
@@ -105,7 +105,7 @@ def joint_dashpots_sqrt_kg(truss: ResolvedTruss, ratio: float, mass_kg: np.ndarr
 
 
 def inertia(case: TrussCase) -> dict[str, Any]:
-    """Return masses and dashpots of a case as the engine takes them."""
+    """Return masses and dashpots of a case for the engine."""
     truss, links, springs = case.resolve(), case.resolve().links, case.resolve().springs
     lumped = lumped_mass_kg(truss)
     axial = physics.axial_stiffness_N_per_m(

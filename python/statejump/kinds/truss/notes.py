@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Notes of a quasi-static path as sentences: what a user has to know of a run that did not fail."""
+"""Notes of a quasi-static path as sentences: warnings of a run that did not fail."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -9,7 +9,7 @@ import numpy as np
 
 from statejump.kinds.truss.resolved import ResolvedTruss
 
-MOST_NAMED = 8  # joints or nodes that a sentence names; of more it gives the number
+MOST_NAMED = 8  # joints or nodes that a sentence names; it gives the number of further ones
 
 
 def sentences(truss: ResolvedTruss, notes: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:

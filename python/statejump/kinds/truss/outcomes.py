@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a campaign records of one truss. Reflector columns are NaN without a surface that determines a fit, jumps and
-reflector columns where the program does not return to the reference temperature."""
+"""Outcomes of one truss in a campaign. Reflector columns are NaN if no surface determines a fit. Jumps and reflector
+columns are NaN if the program does not return to the reference temperature."""
 from __future__ import annotations
 
 import numpy as np
@@ -13,12 +13,12 @@ from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.result import reduced_run
 from statejump.kinds.truss.solve import TrussPath, heat_of_joints_J
 
-# Share of the heat of all joints below which a joint does not slip: what it has is rounding.
+# Fraction of the heat of all joints. A joint with less does not slip: its heat is rounding.
 LEAST_HEAT = 1e-9
 
 
 def quick(case: TrussCase) -> Run:
-    """Return the reduced model as a run of its ends; only those events are located on which the state depends."""
+    """Run the reduced model and keep the ends of cycles. The solver locates only events that influence the state."""
     path = quick_path(case.resolve(), case.reduced_settings.increments_per_branch)
     return reduced_run(case, path, np.array([0.0, case.duration_s]))
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a page says of a truss: how far its nodes jump, which joints hold that, what would change it.
+"""Report page of a truss: jumps of nodes, contributions of joints, sensitivities.
 
-All of it comes from the answers in a file of ``statejump truss answers``. Without them jumps are read off
-the histories, and joints are ranked by how far they move and by their heat: not by what they contribute.
+The data are in a file of ``statejump truss answers``. Without this file the page takes jumps from the histories. It
+then ranks joints by their motion and their heat, not by their contributions.
 """
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from statejump.report.drawing import round_down
 from statejump.results.contents import Result
 
 SHOWN_JUMP = 0.12  # of the truss' size: how large the largest jump is drawn at first
-MOST_CYCLES = 12  # that the drawing offers, of more the first and the last ones
+MOST_CYCLES = 12  # cycles that the drawing offers; if there are more, the first and the last ones
 MOST_BARS = 15
 MOST_SENSITIVITIES = 20
 LEAST_PERCENT = 5e-3
@@ -44,7 +44,7 @@ _TYPES: dict[str, Any] = {joint.section: joint for joint in JOINTS}
 
 @dataclass(frozen=True)
 class Measure:
-    """Something joints are ranked by."""
+    """A quantity that ranks joints."""
 
     key: str
     label: str
@@ -54,13 +54,13 @@ class Measure:
 
 
 def _vectors(rows: list[Row], cycles: int) -> np.ndarray:
-    """Return the jumps (cycles, items, 3) of rows that are in order of cycles."""
+    """Return the jumps (cycles, items, 3) of rows in the order of cycles."""
     found = np.array([[row[f"jump_{axis}_m"] for axis in "xyz"] for row in rows], dtype=float)
     return found.reshape(cycles, -1, 3)
 
 
 class TrussPart:
-    """The part of a page that only trusses have.
+    """The part of a page for trusses only.
 
     :param result: a truss with the history of its nodes, see :func:`page`
     """
@@ -105,14 +105,14 @@ class TrussPart:
 
     @property
     def _first(self) -> int:
-        """Node whose jump is spoken of: that of the answers if it is one, else the most moved one."""
+        """Node whose jump the page reports: the output of the answers, if it is a node, else the most moved node."""
         named = self.answers.output.partition("node:")[2] if self.answers is not None else ""
         return self._number[named] if named in self._number else int(np.argmax(self._size_m))
 
     # ---------------------------------------------------------------- joints
 
     def _joints(self) -> list[Row]:
-        """Every joint: name, kind, node, and what it is ranked by; in the order of the file."""
+        """Every joint in the order of the file: name, kind, node, and the quantities that rank it."""
         truss = self.case.resolve()
         found: list[Row] = []
         for joint in JOINTS:
@@ -136,7 +136,7 @@ class TrussPart:
         return found
 
     def _read_off(self, joints: list[Row]) -> None:
-        """Find in the histories how far joints are from where they began, and what heat their friction made."""
+        """Read from the histories how far joints are from their start, and the heat of their friction."""
         run = self._run
         contacts = self._since_start(run, "contacts", "dissipation_J") if "dissipation_J" in run.contacts else None
         first = 0
@@ -206,7 +206,7 @@ class TrussPart:
 
     @property
     def verdict(self) -> str:
-        """What the answers find of the cycles, as a sentence; "" without answers."""
+        """Sentence of the answers on the cycles; "" without answers."""
         told = "" if self.answers is None else self.answers.verdict_text
         return f"{told[:1].upper()}{told[1:]}." if told else ""
 
@@ -219,7 +219,7 @@ class TrussPart:
 
     @property
     def sentences(self) -> list[str]:
-        """What was found, in words."""
+        """The results in sentences."""
         if self.answers is None:
             return self._without_answers()
         numbers, unit = self.answers.summary, self.answers.unit
@@ -253,12 +253,12 @@ class TrussPart:
 
     @property
     def notes(self) -> list[str]:
-        """What the answers say of themselves, but for warnings of the run: the page has them at its head."""
+        """Remarks of the answers, without the warnings of the run, which the head of the page has."""
         return [] if self.answers is None else [
             note[:1].upper() + note[1:] + "." for note in self.answers.notes if note not in self.result.warnings]
 
     def cycle_rows(self) -> list[Row]:
-        """Rows of the table of cycles: of many the first and the last ones."""
+        """Rows of the table of cycles; of many cycles the first and the last ones."""
         rows = self.answers.tables.get("cycles", []) if self.answers is not None else []
         return [rows[place] for place in _some(len(rows), MOST_CYCLES)] if len(rows) > 1 else []
 
@@ -372,7 +372,7 @@ class TrussPart:
         between: dict[str, Sequence[Link | Spring]] = {"link": self.case.link, "spring": self.case.spring}
         lines = [{"nodes": [self._number[name] for name in item.nodes], "kind": kind, "name": item.name}
                  for kind, items in between.items() for item in items]
-        # The drawing magnifies jumps until journals leave their bearings: a line says which belong together.
+        # The drawing magnifies jumps until journals leave their bearings: a line connects each pair.
         truss = self.case.resolve()
         for joint in (one for one in JOINTS if one.columns[0].vector):
             joints = truss.joints[joint.section]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Values of a truss that are allowed and hardly meant."""
+"""Warnings for allowed but implausible values of a truss."""
 from __future__ import annotations
 
 import numpy as np
@@ -11,7 +11,7 @@ from statejump.kinds.truss.resolved import ResolvedTruss
 
 
 def implausible(truss: ResolvedTruss) -> tuple[str, ...]:
-    """Return a sentence per kind of value, of the worst item."""
+    """Return one sentence for each kind of value, for its worst item."""
     links = truss.links
     largest_K = np.abs(truss.temperature_ranges_K).max(axis=1)
     found = list(moduli("link", links.names, links.young_modulus_Pa))

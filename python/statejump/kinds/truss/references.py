@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks that several sections of a truss share: names that are there, ends, axes, links that turn."""
+"""Checks that several sections of a truss share: names, ends, axes, links that rotate."""
 from __future__ import annotations
 
 import difflib
@@ -21,12 +21,12 @@ MOST_LISTED = 5
 
 
 def listed(names: list[str]) -> str:
-    """Return the first names as a sentence lists them."""
+    """Return the first names as a list in a sentence."""
     return ", ".join(repr(name) for name in names[:MOST_LISTED]) + (", ..." if len(names) > MOST_LISTED else "")
 
 
 def known_name(key: str, value: Any, name: str, known: Mapping[str, Any], what: str, **where: Any) -> None:
-    """Raise NotAllowed for a name that is not known; its remedy is the nearest one."""
+    """Raise NotAllowed for an unknown name; the remedy is the most similar name."""
     if name in known:
         return
     nearest = difflib.get_close_matches(name, list(known), n=1, cutoff=0.5)
@@ -62,7 +62,7 @@ def known_links(names: list[str], links: Mapping[str, Any], where: Mapping[str, 
 
 @dataclass(frozen=True)
 class Around:
-    """What joints by columns are held against, as arrays."""
+    """Arrays that the checks of joints in columns need."""
 
     nodes: Places
     links: Places
@@ -71,7 +71,7 @@ class Around:
 
 
 def wrong_ends(places: np.ndarray, least: int) -> np.ndarray:
-    """Return which items (n,) do not name two that are different, or one where the least is one.
+    """Return the items (n,) that do not name two different ones, or one if the least is one.
 
     :param places: what they name (n, k), as :class:`~statejump.schema.item_tables.Places` returns it
     """
@@ -82,7 +82,7 @@ def wrong_ends(places: np.ndarray, least: int) -> np.ndarray:
 
 
 def wrong_vectors(items: ItemColumns[Any], key: str, dimension: int, direction: bool) -> np.ndarray:
-    """Return of which items (n,) :func:`vector` raises."""
+    """Return the items (n,) for which :func:`vector` raises an error."""
     given = items.numbers(key)
     if given.ndim == 1:
         return ~np.isnan(given)
@@ -91,7 +91,7 @@ def wrong_vectors(items: ItemColumns[Any], key: str, dimension: int, direction: 
 
 
 def wrong_axes(items: ItemColumns[Any], dimension: int) -> np.ndarray:
-    """Return of which items (n,) :func:`axis_of_rotation` raises."""
+    """Return the items (n,) for which :func:`axis_of_rotation` raises an error."""
     there = said(items, "axis")
     return there if dimension == 2 else ~there | wrong_vectors(items, "axis", dimension, True)
 
@@ -108,7 +108,7 @@ def vector(key: str, value: list[float] | None, unit: str, dimension: int, direc
 
 
 def axis_of_rotation(axis: list[float] | None, dimension: int, where: Mapping[str, Any]) -> None:
-    """Raise an error unless an axis of rotation is z, unsaid, in the plane, and said in space."""
+    """Raise an error unless an axis of rotation is absent in a planar truss and given in a spatial one."""
     if dimension == 2 and axis is not None:
         raise NotAllowed("axis", axis, "in a planar truss it is z", **where)
     if dimension == 3 and axis is None:
@@ -117,7 +117,7 @@ def axis_of_rotation(axis: list[float] | None, dimension: int, where: Mapping[st
 
 
 def turned_links(truss: ResolvedTruss, section: str, items: Any) -> None:
-    """Raise NotAllowed unless links that something turns against each other share a place and have an angle.
+    """Raise NotAllowed unless links that an item rotates against each other share a position and have an angle.
 
     :param items: arrays with names, links (k, 2) and axis (k, 3)
     """

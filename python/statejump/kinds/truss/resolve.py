@@ -20,7 +20,7 @@ from statejump.schema.item_tables import Places, once
 
 
 def resolve(case: TrussSections) -> ResolvedTruss:
-    """Return the arrays of a case. References must be right: ``checks`` sees to it when a case is read."""
+    """Return the arrays of a case. ``checks`` has checked the references when the case was read."""
     dimension = case.truss.dimension
     node_places, link_places = Places(case.node), Places(case.link)
     positions = vectors(case.node, "position_m", dimension)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A truss as arrays, the same for solver, DEM and drawing; :mod:`.resolve` makes it of a case.
+"""A truss as arrays for solver, DEM and drawing; :mod:`.resolve` makes it from a case.
 
 Vectors have three components; the third is 0 in planar trusses. Items are numbered as in the file.
 Index -1 stands for ground.
@@ -22,7 +22,7 @@ FIXITY = {
     "pinned_pinned": 1.0, "clamped_pinned": (4.493409457909064 / np.pi) ** 2, "clamped_clamped": 4.0, "guided": inf,
 }
 
-# How contacts stick: not at all giving way, as springs, as springs that slide at their rim first.
+# How contacts stick: rigidly, as springs, or with partial slip that begins at the rim.
 STICKING = ("rigid", "elastic", "partial_slip")
 
 
@@ -105,7 +105,7 @@ class ReflectorSurface:
 
 
 class JoinsNodes(Protocol):
-    """A type of joint, as far as a truss needs it."""
+    """A type of joint: the functions that a truss needs."""
 
     section: ClassVar[str]
 
@@ -115,8 +115,8 @@ class JoinsNodes(Protocol):
 
 @dataclass(frozen=True)
 class ResolvedTruss:
-    """A whole truss. ``programs[0]`` is the common [thermal], then those that have names, then the histories of
-    members, then those of links with an [[expansion]]; all of them last equally long."""
+    """A whole truss. ``programs[0]`` is the common [thermal]. Named programs, the histories of members, and those of
+    links with an [[expansion]] follow. All programs have the same duration."""
 
     name: str
     dimension: int
@@ -131,7 +131,7 @@ class ResolvedTruss:
     program_names: tuple[str, ...]  # "thermal", those of the file, those of members, "EXPANSION of PROGRAM"
     reflector: ReflectorSurface | None
     sticking: str  # one of STICKING: contacts of the reduced model
-    start_friction: str  # how it gets to its first equilibrium
+    start_friction: str  # stuck or frictionless
     types: Sequence[JoinsNodes]  # of joints, in the order in which results list them
 
     @property
@@ -162,12 +162,12 @@ class ResolvedTruss:
         return sum(len(joints.names) for joints in self.joints.values())
 
     def turning_places(self, links: np.ndarray) -> np.ndarray:
-        """Return where what turns links (k, 2) against each other is (k, 3)."""
+        """Return the positions (k, 3) of items that rotate links (k, 2) against each other."""
         return self.nodes.position_m[self.turning_nodes(links)]
 
     def turning_nodes(self, links: np.ndarray) -> np.ndarray:
-        """Return at which node what turns links (k, 2) against each other is (k,): the nearest end of both, else the
-        first node of the one."""
+        """Return the nodes (k,) of items that rotate links (k, 2) against each other: the nearest end of both links, or
+        the first node of a single link."""
         positions, nodes = self.nodes.position_m, []
         for one, two in links:
             first = self.links.nodes[one]
@@ -180,11 +180,11 @@ class ResolvedTruss:
 
 
 class Course(Protocol):
-    """What a truss went through: a quasi-static path, or a motion."""
+    """A quasi-static path or a motion."""
 
     @property
     def truss(self) -> ResolvedTruss:
-        """Which."""
+        """The truss."""
 
     @property
     def states(self) -> dict[str, np.ndarray]:

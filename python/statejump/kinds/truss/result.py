@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a result file says of a ``truss`` case: both models have the same columns, by item."""
+"""Results of a ``truss`` case: both models have the same columns, by item."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
@@ -25,7 +25,7 @@ from statejump.kinds.truss.solve import TrussPath, engine_programs, heat_of_join
 from statejump.results import scene as drawing
 from statejump.results.events import from_states, kind_of
 
-# Of the engine's statuses stick, slip_plus, slip_minus, stop_plus, stop_minus, open.
+# For the engine's statuses stick, slip_plus, slip_minus, stop_plus, stop_minus, open.
 STATES = np.array([STICK, SLIP, SLIP, AT_STOP, AT_STOP, SEPARATED], dtype=np.uint8)
 STATE_OF = {"stick": STICK, "slip_plus": SLIP, "slip_minus": SLIP, "stop_plus": AT_STOP, "stop_minus": AT_STOP,
             "open": SEPARATED}
@@ -35,10 +35,10 @@ ITEMS = {"displacement_m": ("nodes", True), "axial_force_N": ("links", False), "
 TOUCHING = [joint for joint in JOINTS if joint.has_contacts]
 # Of these the DEM samples states; those of contacts are among the contacts of a result.
 STICKING = [joint for joint in JOINTS if joint.has_contacts or not joint.not_in_dem]
-# Where the rows of a program end that does not end at the reference temperature, from the start.
+# Displacement at the end of a program that does not end at the reference temperature.
 AT_END = "largest_displacement_at_program_end_m"
 HEAT = "heat of friction since the start"
-LOCATED = 1e-6  # of a cycle: an event within less has no uncertainty worth telling
+LOCATED = 1e-6  # fraction of a cycle: a smaller uncertainty of an event is not reported
 NOTES = {"displacement_m": "from the drawn shape", "axial_force_N": "compression positive"} | {
     column.name: column.note for joint in JOINTS for column in joint.columns}
 
@@ -49,14 +49,14 @@ def _joints(truss: ResolvedTruss) -> list[str]:
 
 
 def joint_names(truss: ResolvedTruss) -> dict[tuple[str, str], str]:
-    """Name of every contact by kind and name of its joint; with the kind where joints of two types share one."""
+    """Name of every contact by kind and name of its joint; with the kind if joints of two types share the name."""
     listed = [(joint.section, name) for joint in TOUCHING for name in truss.joints[joint.section].names]
     shared = len({name for _, name in listed}) < len(listed)
     return {(kind, name): f"{kind} {name}" if shared else name for kind, name in listed}
 
 
 def every_joint_name(truss: ResolvedTruss) -> dict[tuple[str, str], str]:
-    """Name of every joint, those of contacts as there; with the kind where a joint before has the same."""
+    """Name of every joint; contacts keep their name. It includes the kind if an earlier joint has the same name."""
     found = joint_names(truss)
     taken = set(found.values())
     for joint in JOINTS:
@@ -101,7 +101,7 @@ def scene(case: TrussCase) -> dict[str, Any]:
 
 
 class _Section:
-    """Section of a link as the drawing wants it."""
+    """Section of a link for the drawing."""
 
     def __init__(self, truss: ResolvedTruss, place: int) -> None:
         for key in ("cross_section_area_m2", "stress_free_length_m", "young_modulus_Pa", "thermal_expansion_per_K"):
@@ -123,7 +123,7 @@ def _run(
     events: Callable[[], list[Event]], summary: Mapping[str, float], warnings: tuple[str, ...] = (),
     dense: tuple[np.ndarray, np.ndarray] | None = None, **more: Any,
 ) -> Run:
-    """Return a run. ``dense``: times and displacements, where there are more of them than samples."""
+    """Return a run. ``dense``: times and displacements, if there are more of them than samples."""
     truss, time = case.resolve(), plain["time_s"].values
     history = dict(plain)
     for key, (of, _) in ITEMS.items():
@@ -153,8 +153,8 @@ def _run(
 
 
 def _jumps(case: TrussCase, time_s: np.ndarray, displacement_m: np.ndarray) -> dict[str, float]:
-    """Return the largest jump of a node, NaN where the program does not return, and the largest displacement where its
-    rows end, from the start."""
+    """Return the largest jump of a node and the largest displacement at the end of the program. The jump is NaN if the
+    program does not return."""
     moved = displacement_m - displacement_m[0]
     largest = float(np.linalg.norm(moved[-1], axis=1).max())
     found = {"largest_jump_m": largest if case.has_jump else nan}
@@ -168,7 +168,7 @@ def _jumps(case: TrussCase, time_s: np.ndarray, displacement_m: np.ndarray) -> d
 
 
 def _start_friction(truss: ResolvedTruss, items: Mapping[str, np.ndarray]) -> dict[str, float]:
-    """Return what the summary says of friction in the first of these states: forces, moments of hinges."""
+    """Return the friction in the first of these states for the summary: forces, moments of hinges."""
     forces: list[tuple[np.ndarray, np.ndarray]] = [(np.zeros(0), np.zeros(0))]
     moments: list[tuple[np.ndarray, np.ndarray]] = []
     for joint in JOINTS:
@@ -185,7 +185,7 @@ def _start_friction(truss: ResolvedTruss, items: Mapping[str, np.ndarray]) -> di
 
 
 def _cable_events(truss: ResolvedTruss, time: np.ndarray, change: np.ndarray, tension_N: np.ndarray) -> list[Event]:
-    """Return when cables go slack and become taut, each half-way between two samples."""
+    """Return the events at which cables become slack or taut, each at the middle between two samples."""
     cables = np.flatnonzero(truss.springs.cable)
     others = set(every_joint_name(truss).values())
     found = []
@@ -224,7 +224,7 @@ def _contacts(
 
 
 def _states(states: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return the states of contacts by the names of their columns, of the engine's statuses."""
+    """Return the states of contacts by the names of their columns, from the engine's statuses."""
     return {joint.state_column: STATES[states[f"{joint.section}_status"].astype(int)] for joint in TOUCHING}
 
 
@@ -264,7 +264,7 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
         share = share.reshape(-1, *(1,) * (values.ndim - 1))
         return (1 - share) * values[place] + share * values[place + 1]
 
-    # The status of a state is that of the increment which ends there.
+    # The status of a state belongs to the increment that ends there.
     ending = np.clip(np.searchsorted(at, times_s, side="left"), 0, len(at) - 1)
     items = {key: sampled(states[key]) for key in ITEMS}
     items |= {key: values[ending] for key, values in _states(states).items()}
@@ -292,9 +292,9 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
 
 
 def _taken_together(case: TrussCase, path: TrussPath) -> tuple[str, ...]:
-    """What a path without location of events may have missed: of two joints that change within one increment it is not
-    known which came first, nor whether a third slid to and fro between them."""
-    # Changes that are located all the same are so within 1.5 tolerances of a branch.
+    """Warnings of a path without location of events. If two joints change within one increment, the path does not know
+    their order, nor whether a third joint slipped to and fro between them."""
+    # Some changes are located nevertheless, within 1.5 tolerances of a branch.
     located = 2 * case.reduced_settings.event_tolerance * float(path.states["time_s"][-1])
     found = path.events
     within = found.interval_s > located
@@ -343,7 +343,7 @@ def _events(case: TrussCase, path: TrussPath | TrussMotion) -> list[Event]:
     for event in path.events:
         name = joints[event.joint_kind, event.name]
         before, after = STATE_OF[event.before], STATE_OF[event.after]
-        # A path that does not locate all events has some of them somewhere within an increment.
+        # A path that does not locate all events knows some of them to an increment only.
         half = event.interval_s / 2 if event.interval_s > LOCATED * case.period_s else 0.0
         if before != after:
             change = float(np.interp(event.time_s - half, at, path.states["temperature_change_K"])) if half else (
@@ -355,7 +355,7 @@ def _events(case: TrussCase, path: TrussPath | TrussMotion) -> list[Event]:
 
 
 def dem_run(case: TrussCase, columns: Columns, about: Mapping[str, Any]) -> Run:
-    """Return a DEM run: events between samples."""
+    """Return a DEM run; its events lie between samples."""
     samples = len(columns["time_s"])
     items, listed = {}, names(case)
     states = {joint.state_column: (joint.items, False) for joint in STICKING}
@@ -380,6 +380,6 @@ def dem_run(case: TrussCase, columns: Columns, about: Mapping[str, Any]) -> Run:
 
 
 def _beyond(case: TrussCase, plain: Mapping[str, Column], items: Mapping[str, np.ndarray]) -> tuple[str, ...]:
-    """What the links could not carry of the forces at the samples."""
+    """Warnings for links that cannot carry the forces at the samples."""
     return members.warnings(case.resolve().links, plain["time_s"].values, plain["temperature_change_K"].values,
                             items["axial_force_N"])

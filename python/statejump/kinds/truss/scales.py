@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scales of the motion of a truss, and below which share of them a number is rounding.
+"""Scales of the motion of a truss, and the fractions of them below which a number is rounding.
 
-They are of the truss and its whole program, so that none vanishes where a truss comes back to where it began.
+The scales depend on the truss and its whole program, so none vanishes when a truss returns to its first position.
 """
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from statejump.kinds.truss.resolved import ResolvedTruss
 ROUNDING = 1e-9
 # Of the coordinates: a length is a difference of coordinates, and a state is some hundred solutions with such lengths.
 COORDINATES = 1e3 * float(np.finfo(float).eps)
-# Of the scales: what a comparison measures by at least. With a tenth of the critical damping the DEM lags and swings by
+# Of the scales: least reference of a comparison. With a tenth of the critical damping the DEM lags and swings by
 # some 1e-5 of the motion, where the natural period is 1e-3 of that of the temperature. The usual tolerance, 1 % of it,
 # leaves ten times as much.
 COMPARED = 1e-2
@@ -28,7 +28,7 @@ LEAST_MOTION = 1e4
 
 @dataclass(frozen=True)
 class Scales:
-    """What differences are measured by.
+    """References for differences.
 
     :param motion_m: largest displacement or free expansion over the program, or deflection of the stiffest part under
         the largest load; at least that of LEAST_MOTION

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Elements that hang slack in the play of their joints: which nodes have no position that a model could compute."""
+"""Nodes of elements that hang slack in the play of their joints: no model determines their positions."""
 from __future__ import annotations
 
 import numpy as np
@@ -18,7 +18,7 @@ NO_FORCE = 1e-6
 
 
 def sentence(case: TrussCase, hung: np.ndarray) -> tuple[str, ...]:
-    """Return which nodes hang slack at some sample (samples, nodes)."""
+    """Return the nodes that hang slack at some sample (samples, nodes)."""
     names = [repr(case.node[node].name) for node in np.flatnonzero(hung.any(axis=0))]
     if not names:
         return ()
@@ -56,8 +56,8 @@ def hanging(case: TrussCase, run: Run, least_force_N: float) -> np.ndarray:
 
 
 def _pins_hold(truss: ResolvedTruss, run: Run, none_N: float, holding: np.ndarray) -> bool:
-    """Add the directions that joints with clearance hold at nodes (samples, nodes); return whether one carries nothing
-    at some sample."""
+    """Add the directions that joints with clearance constrain at nodes (samples, nodes). Return whether a joint carries
+    nothing at some sample."""
     place, idle = 0, False
     for joint in JOINTS:
         if not joint.has_contacts:
@@ -74,8 +74,8 @@ def _pins_hold(truss: ResolvedTruss, run: Run, none_N: float, holding: np.ndarra
 
 
 def _others_hold(truss: ResolvedTruss) -> np.ndarray:
-    """Return how many directions of nodes supports, springs, what turns links and joints without clearance hold, which
-    count as all directions."""
+    """Return the number of directions of nodes that supports, springs, rotational items and joints without clearance
+    constrain. Each of the last three counts as all directions."""
     d = truss.dimension
     found = truss.nodes.fixed[:, :d].sum(axis=1) + truss.nodes.guide_normal.any(axis=1)
     turned = [truss.torsion_springs.links, *(joint.torsion(truss.joints[joint.section]).links for joint in JOINTS)]

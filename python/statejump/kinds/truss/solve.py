@@ -41,7 +41,7 @@ class TrussEvent:
 
 @dataclass(frozen=True, eq=False)
 class TrussEvents(Sequence[TrussEvent]):
-    """The events of a path in the order of their times, kept as columns and made one by one."""
+    """The events of a path in the order of their times. They are columns; an event is made when it is read."""
 
     truss: ResolvedTruss
     time_s: np.ndarray
@@ -76,7 +76,7 @@ class TrussEvents(Sequence[TrussEvent]):
 
 @dataclass(frozen=True)
 class TrussPath:
-    """What the solver found. ``states`` and ``cycle_ends`` map a name with unit to an array whose first
+    """Result of the solver. ``states`` and ``cycle_ends`` map a name with unit to an array whose first
     axis is the state: (states, nodes, 3), (states, links), ... Axial force is positive in compression."""
 
     truss: ResolvedTruss
@@ -87,10 +87,10 @@ class TrussPath:
     solves: int
     factorizations: int
     unknowns: int
-    problems: list[dict[str, Any]]  # frictional contact problems at the times that were asked for
+    problems: list[dict[str, Any]]  # frictional contact problems at the requested times
     largest_force_residual: float
     largest_closure_residual_m: float
-    notes: list[dict[str, Any]]  # what is to be known of it and is no failure, as the engine's Path::notes
+    notes: list[dict[str, Any]]  # warnings, as the engine's Path::notes
 
     @property
     def energy_residue_J(self) -> float:
@@ -112,7 +112,7 @@ def engine_program(program: Thermal | MemberProgram) -> _engine.ThermalProgram:
 
 
 def engine_programs(truss: ResolvedTruss) -> list[_engine.ThermalProgram]:
-    """Return all programs of a truss, which never changes, so that they are made once."""
+    """Return all programs of a truss. They are made once, because a truss is immutable."""
     kept = vars(truss)
     if "_engine_programs" not in kept:
         kept["_engine_programs"] = [engine_program(program) for program in truss.programs]
@@ -156,18 +156,20 @@ def path(
     cycle_ends_only: bool = False,
     problem_times: Sequence[float] = (),
     progress: Callable[[float], bool | None] | None = None,
+    trace: Callable[[tuple[Any, ...]], object] | None = None,
 ) -> TrussPath:
     """Return the quasi-static path of a truss.
 
     :param increments_per_branch: points of the path per monotone branch of the temperature
     :param locate_events: locate every change of a joint's status, else only those that matter
-    :param event_tolerance: share of a branch within which a change is located
-    :param energy_tolerance: share of the work of the temperature by which energies may fail to balance where events are
-        located: increments that lose more are cut; 1: none is
+    :param event_tolerance: fraction of a branch within which a change is located
+    :param energy_tolerance: allowed energy error, as a fraction of the work of the temperature. If events are located,
+        increments with a larger error are divided; 1: none is
     :param cycle_ends_only: keep the states at the ends of cycles only
     :param problem_times: when the frictional contact problem of a step is kept, in order [s]
-    :param progress: called with the share that is done; returning False ends the path
-    :raises FailedRun: for a mechanism, an unloaded joint, no equilibrium: with names and temperature
+    :param progress: called with the finished fraction; returning False ends the path
+    :param trace: called with each Newton iteration, see :data:`statejump.kinds.truss.trace.COLUMNS`
+    :raises FailedRun: mechanism, unloaded joint or no equilibrium; with names and temperature
     :raises StatejumpError: a link is driven
     """
     refused = refused_at_rest(truss)
@@ -178,6 +180,7 @@ def path(
             **engine_items(truss), increments_per_branch=increments_per_branch, locate_events=locate_events,
             event_tolerance=event_tolerance, energy_tolerance=energy_tolerance, cycle_ends_only=cycle_ends_only,
             problem_times=problem_times, start_friction=truss.start_friction, progress=progress,
+            trace=trace,
         )
     except _engine.EngineFailure as failure:
         raise _failed(truss, failure, locate_events) from None
@@ -188,7 +191,7 @@ def path(
 def whole_path(truss: ResolvedTruss, tell: Tell = lambda share: None, **options: Any) -> TrussPath:
     """Return the path up to its end; see :func:`path`.
 
-    :param tell: takes the finished share, 0 to 1
+    :param tell: receives the finished fraction, 0 to 1
     :raises Interrupted: Ctrl-C
     """
     def going_on(share: float) -> bool:
@@ -202,7 +205,7 @@ def whole_path(truss: ResolvedTruss, tell: Tell = lambda share: None, **options:
 
 
 def _failed(truss: ResolvedTruss, failure: _engine.EngineFailure, locate_events: bool) -> EngineFailed:
-    """Return what the engine's failure says, and what helps where events are what does not settle."""
+    """Return the engine's failure with a remedy, if one is known."""
     remedy = None
     if failure.kind == "unsettled_joint" and locate_events:
         remedy = "set reduced.locate_events to false, which takes such changes together"
@@ -211,30 +214,32 @@ def _failed(truss: ResolvedTruss, failure: _engine.EngineFailure, locate_events:
     return EngineFailed(failure, remedy=remedy, case=truss.name, place=truss.name)
 
 
-def solve(case: TrussCase, tell: Tell = lambda share: None) -> TrussPath:
+def solve(case: TrussCase, tell: Tell = lambda fraction: None,
+          trace: Callable[[tuple[Any, ...]], object] | None = None) -> TrussPath:
     """Return the path of a case, with the settings of its [reduced]. A case is immutable, so its path is found once:
-    the DEM begins where the reduced model does.
+    the DEM begins where the reduced model does. A trace needs a new solution.
 
-    :param tell: takes the finished share, 0 to 1
+    :param tell: takes the finished fraction, 0 to 1
+    :param trace: as of :func:`path`
     :raises FailedRun: for a mechanism, an unloaded joint, no equilibrium: with names and temperature
     :raises Interrupted: Ctrl-C
     """
     kept = vars(case)
-    if "_path" not in kept:
-        kept["_path"] = _solved(case, tell)
+    if trace is not None or "_path" not in kept:
+        kept["_path"] = _solved(case, tell, trace)
     found: TrussPath = kept["_path"]
     return found
 
 
-def _solved(case: TrussCase, tell: Tell) -> TrussPath:
+def _solved(case: TrussCase, tell: Tell, trace: Callable[[tuple[Any, ...]], object] | None) -> TrussPath:
     truss = case.resolve()
     items = 3 * len(truss.nodes.names) + len(truss.links.names) + 8 * len(truss.revolutes.names)
     branches = max(2, *(len(program.table_time_s or ()) for program in (case.thermal, *case.program)))
     states = branches * case.thermal.cycles * case.reduced_settings.increments_per_branch
-    return whole_path(truss, tell, cycle_ends_only=8 * items * states > LARGEST_PATH, **settings(case))
+    return whole_path(truss, tell, cycle_ends_only=8 * items * states > LARGEST_PATH, trace=trace, **settings(case))
 
 
 def settings(case: TrussCase) -> dict[str, Any]:
-    """Return how the [reduced] of a case says that :func:`path` follows it."""
+    """Return the settings in [reduced] of a case as arguments of :func:`path`."""
     keys = "increments_per_branch", "locate_events", "event_tolerance", "energy_tolerance"
     return {key: getattr(case.reduced_settings, key) for key in keys}

@@ -29,7 +29,7 @@ def _moves_along(truss: ResolvedTruss, node: int, axis: np.ndarray) -> bool:
 
 
 def least_steps_per_cycle(case: TrussCase) -> int:
-    """Return how many steps of a cycle are stable, by the bound that the DEM takes its own steps from.
+    """Return the number of stable steps of a cycle, by the bound of the DEM.
 
     It is that of a leapfrog, 2/ω; steps of Runge and Kutta's method may be √2 times as long where nothing is damped,
     and no longer where dashpots are stiff.

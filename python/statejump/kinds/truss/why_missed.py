@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Why both models of a truss may have missed a tolerance; its slowest natural period."""
+"""Possible reasons for a missed tolerance of a truss; its slowest natural period."""
 from __future__ import annotations
 
 from math import inf, pi, sqrt
@@ -27,7 +27,7 @@ LEAST_STIFFNESS = 1e-12
 def why_missed(case: TrussCase, exact: Run, dem: Run, jump_scale_m: float) -> list[str]:
     """Return sentences.
 
-    :param jump_scale_m: what differences of jumps are measured by
+    :param jump_scale_m: reference of differences of jumps
     """
     if "kinetic_energy_J" in exact.energy:  # in motion, as the DEM
         return []
@@ -54,8 +54,8 @@ def why_missed(case: TrussCase, exact: Run, dem: Run, jump_scale_m: float) -> li
 def slowest_natural_period_s(path: TrussPath) -> float:
     """Return the longest natural period [s] of a truss whose joints all stick, at the start of its path.
 
-    Masses are lumped as in the DEM; links, springs, torsion springs and contacts are springs, and what is tensioned
-    holds sideways. inf: something is held by nothing.
+    Masses are lumped as in the DEM. Links, springs, torsion springs and contacts act as springs, and tension adds
+    lateral stiffness. inf: a part has no stiffness.
     """
     truss = path.truss
     mass = np.repeat(lumped_mass_kg(truss), 3)

@@ -30,7 +30,7 @@ def is_guided(case: TrussCase, node: Node) -> bool:
 
 
 def describe(case: TrussCase) -> list[str]:
-    """Return the case in sentences; its temperature program is told for all kinds alike."""
+    """Return the case in sentences, without its temperature program, whose sentences are the same for all kinds."""
     kind = {2: "plane", 3: "spatial"}[case.truss.dimension]
     held = [node for node in case.node if is_held(case, node)]
     guided = [node for node in case.node if is_guided(case, node)]
@@ -79,7 +79,7 @@ def _tied(case: TrussCase) -> list[str]:
 
 
 def _what(case: TrussCase) -> str:
-    """What the end of a run less its start is."""
+    """Name of the difference between the end and the start of a run."""
     if case.ending is None:
         return f"state jump after {case.thermal.cycles} cycle(s)"
     if case.ending.returns:
@@ -88,7 +88,7 @@ def _what(case: TrussCase) -> str:
 
 
 def told(case: TrussCase, runs: Mapping[str, Run]) -> list[Shown | str]:
-    """Return what a command prints of the runs: the nodes that jump most, events, energy residue."""
+    """Return the printed summary of runs: the nodes that jump most, events, energy residue."""
     first, *others = runs.values()
     axes = "xyz"[: case.truss.dimension]
     header = ["node", *(f"along {axis} [m]" for axis in axes), "length [m]", *("DEM, length [m]" for _ in others)]
