@@ -20,8 +20,8 @@ OPTIONS = {"model": "--model", "start": "--start", "confidence": "--confidence",
 @click.argument("loop_file", metavar="LOOP.csv", type=click.Path(path_type=Path))
 @click.option("--model", default="auto", show_default=True, metavar="NAME",
               help="Joint that is fitted: linear, clearance, coulomb, coulomb_clearance, coulomb_soft_stops, "
-                   "coulomb_play, mindlin, iwan, the last six also with _spring at the end; auto: all, the best by "
-                   "BIC.")
+                   "coulomb_play, mindlin, iwan, the last six also with _spring at the end, coulomb_soft_play; auto: "
+                   "all, the best by BIC.")
 @click.option("--start", default="unknown", show_default=True, metavar="HOW",
               help="Friction before the first row: fresh (carries nothing), cycled (the path was gone before), unknown "
                    "(what fits best).")

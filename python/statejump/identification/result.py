@@ -127,7 +127,8 @@ class Identification:
     def _laws(self) -> list[str]:
         """What the section has no key for."""
         if self.target in ("slider", "spring_slider"):
-            return []
+            return ["the play of a case carries no force: play_m is play (1 - play_ratio)"] \
+                if self.fit.values.get("play_ratio") else []
         return [f"{name} has no key in {paste.TARGETS[self.target][0]}: the section leaves it out"
                 for name in ("play", "stop_stiffness") if name in self.fit.values]
 
