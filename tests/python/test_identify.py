@@ -92,6 +92,19 @@ def test_play_and_soft_stops_are_those_of_small_steps(model: str, start: float) 
     np.testing.assert_allclose(found, resting(path, values, -start * width), rtol=0, atol=1e-9)
 
 
+def test_columns_of_other_sensors_are_left_out_by_name(tmp_path: Path, statejump: Callable[..., Any]) -> None:
+    loop = measured("coulomb", JOINT)
+    write_columns({"Strain 1 [-]": loop["force_N"], **loop}, tmp_path / "rig.csv")
+    refused = statejump("identify", "rig.csv", "--model", "coulomb")
+    assert refused.status == 2 and "column 'Strain 1 [-]' is unknown" in refused.errors
+    assert "--ignore 'Strain 1 [-]' leaves it out" in refused.errors
+    taken = statejump("identify", "rig.csv", "--model", "coulomb", "--ignore", "Strain 1 [-]")
+    assert taken.status == 0, taken.errors
+    assert sj.identify(tmp_path / "rig.csv", model="coulomb", ignored=["Strain 1 [-]"]).values == sj.identify(
+        loop, model="coulomb").values
+    assert "--ignore = 'Strain 2'" in statejump("identify", "rig.csv", "--ignore", "Strain 2").errors
+
+
 def test_a_slide_may_slip_before_its_play_is_used_up() -> None:
     """Friction of 150 N holds 0.3 mm of a play of 1 mm with 0.5 kN/mm."""
     path = 1e-3 * np.sin(np.linspace(0, 4 * np.pi, 400))

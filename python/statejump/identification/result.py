@@ -250,7 +250,7 @@ def _end(value: float) -> str:
 def identified(
     source: str | Path | Mapping[str, Any], *, model: str | Sequence[str] = AUTO, start: str = "unknown",
     confidence: float = 0.95, target: str | None = None, normal_force_N: float | None = None,
-    journal_radius_m: float | None = None,
+    journal_radius_m: float | None = None, ignored: Sequence[str] = (),
 ) -> Identification:
     """Identify a joint; see :func:`statejump.identify`."""
     for key, given in (("normal_force_N", normal_force_N), ("journal_radius_m", journal_radius_m)):
@@ -264,7 +264,7 @@ def identified(
             raise NotAllowed("model", name, f"must be {AUTO} or of {', '.join(MODELS)}", allowed=(AUTO, *MODELS))
     if not names:
         raise NotAllowed("model", model, "names no joint")
-    loop = read_loop(source, start)
+    loop = read_loop(source, start, ignored)
     chosen_target = target or ("umbrella" if loop.angular else "spring_slider")
     paste.check(chosen_target, loop.angular)
     try:
