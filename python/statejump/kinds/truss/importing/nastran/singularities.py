@@ -41,7 +41,7 @@ def hold_singular(reader: Reader) -> None:
         for free in _left_free(deck, node, axes):
             if free @ block @ free > EPZERO * largest:
                 continue
-            deck.hold(node, free)
+            deck.hold(node, [float(part) for part in free])
             deck.take("AUTOSPC", "directions of nodes without stiffness, held as in Nastran")
 
 
