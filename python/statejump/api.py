@@ -95,7 +95,7 @@ def bore(
 def identify(
     source: str | Path | Mapping[str, Any], *, model: str | Sequence[str] = "auto", start: str = "unknown",
     confidence: float = 0.95, target: str | None = None, normal_force_N: float | None = None,
-    journal_radius_m: float | None = None,
+    journal_radius_m: float | None = None, ignored: Sequence[str] = (),
 ) -> Identification:
     """Return what a measured loop says of a joint: parameters by least squares, noise of the force may be correlated,
     intervals by profile likelihood, the choice among joints by BIC, and what the loop does not say.
@@ -110,11 +110,12 @@ def identify(
         rotations), ``torsion_spring``, ``iwan_joint``
     :param normal_force_N: in the test [N]: friction becomes a coefficient
     :param journal_radius_m: of a moment of friction [m], likewise
+    :param ignored: names of columns of a table that are left out
     :raises StatejumpError: the file is no loop, or there is no such joint
     """
     found: Identification = _IDENTIFIED(
         source, model=model, start=start, confidence=confidence, target=target, normal_force_N=normal_force_N,
-        journal_radius_m=journal_radius_m)
+        journal_radius_m=journal_radius_m, ignored=ignored)
     return found
 
 

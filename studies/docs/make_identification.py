@@ -6,7 +6,7 @@
 
 Each loop is computed once, by the contact kernel, the closed form, the truss solver or YADE; every repetition adds
 noise of its own to the force. ``--random`` draws joints with play and with soft stops, and paths of constant, growing
-or shrinking cycles, instead. 500 repetitions take some half an hour of one core, 200 random loops ten minutes.
+or shrinking cycles, instead. 500 repetitions take some half an hour of one core, 300 random loops fifteen minutes.
 """
 from __future__ import annotations
 
@@ -156,9 +156,11 @@ def random_loop(model: str, correlation: float, rng: np.random.Generator) -> tup
     stiffness, friction = 10 ** rng.uniform(5.5, 6.5), rng.uniform(50, 300)
     true = {"stiffness": stiffness, "friction": friction, "preload": rng.uniform(-20, 20)}
     amplitude = rng.uniform(4, 8) * friction / stiffness
-    if model == "coulomb_play":
+    if model in ("coulomb_play", "coulomb_soft_play"):
         true["play"] = rng.uniform(0.3, 1.5) * friction / stiffness
         amplitude += true["play"]
+        if model == "coulomb_soft_play":
+            true["play_ratio"] = rng.uniform(0.05, 0.3)
     else:
         true["clearance_minus"], true["clearance_plus"] = (amplitude * rng.uniform(0.3, 0.6) for _ in range(2))
         true["stop_stiffness"] = stiffness * rng.uniform(0.3, 3)
@@ -172,18 +174,18 @@ def random_loop(model: str, correlation: float, rng: np.random.Generator) -> tup
 
 
 def random_joints(loops: int) -> None:
-    """Print the coverage of random loops, a sixth of each joint with each noise."""
+    """Print the coverage of random loops, a ninth of each joint with each noise."""
     rows = []
-    for model in ("coulomb_play", "coulomb_soft_stops"):
+    for model in ("coulomb_play", "coulomb_soft_play", "coulomb_soft_stops"):
         for correlation in (0.0, 0.5, 0.9):
             inside: dict[str, int] = {}
             rng = np.random.default_rng(5)
-            for _ in range(loops // 6):
+            for _ in range(loops // 9):
                 true, columns = random_loop(model, correlation, rng)
                 count(inside, true, columns, model)
-            share = 100 * sum(inside.values()) / (len(inside) * (loops // 6))
-            each = ", ".join(f"{name} {100 * number / (loops // 6):.0f}" for name, number in inside.items())
-            rows.append((model, f"{correlation:g}", f"{loops // 6}", f"{share:.1f}", each))
+            share = 100 * sum(inside.values()) / (len(inside) * (loops // 9))
+            each = ", ".join(f"{name} {100 * number / (loops // 9):.0f}" for name, number in inside.items())
+            rows.append((model, f"{correlation:g}", f"{loops // 9}", f"{share:.1f}", each))
             print(*rows[-1], sep=" | ", file=sys.stderr, flush=True)
     print(*markdown(("joint", "correlation of rows", "loops", "coverage [%]", "by parameter [%]"), rows, (1, 2, 3)),
           sep="\n")

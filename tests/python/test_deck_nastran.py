@@ -75,6 +75,8 @@ def test_parameters_and_the_card_of_mystran_change_nothing(tmp_path: Path) -> No
     ("marks", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.,,+M1\n+M1,1.+8,1.+8"),
     ("marks out of order", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.\nSPC1,1,123,1\n",
      "MAT1,1,7.+10,,.3,2700.,2.3-5,20.,,+M1\nSPC1,1,123,1\n+M1,1.+8,1.+8\n"),
+    ("marks whose first letter is free", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.",
+     f"{'MAT1    1       7.+10           .3      2700.   2.3-5   20.':72}ELIMITS\n+LIMITS 1.+8    1.+8"),
     ("long free line", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.,,1.+8,1.+8"),
     ("a number in field 10", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.", "MAT1,1,7.+10,,.3,2700.,2.3-5,20.,,1.+8"),
     ("cards in any order", "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCROD,1,1,1,2\n",
@@ -282,6 +284,63 @@ def test_initial_temperatures_hold_where_a_material_has_none(tmp_path: Path) -> 
     assert moved(made(tmp_path, bulk.replace(",20.\nSPC", "\nSPC"), control, None)) == pytest.approx(1.15e-3, rel=1e-12)
 
 
+def test_a_card_of_two_rods_is_two_cards(tmp_path: Path) -> None:
+    nodes = "GRID,3,,2.,0.,0.,,23\n"
+    one = made(tmp_path, ROD + nodes + "CROD,7,1,2,3\n")
+    two = made(tmp_path, ROD.replace("CROD,1,1,1,2\n", "CROD,1,1,1,2,7,1,2,3\n") + nodes)
+    assert [link["name"] for link in two["link"]] == ["L1", "L7"]
+    assert two == one
+
+
+def test_properties_of_different_elements_have_one_number(tmp_path: Path) -> None:
+    found = made(tmp_path, ROD + "PTUBE,1,1,.02,.001\nGRID,3,,2.,0.,0.,,23\nCTUBE,2,1,2,3\n")
+    assert [link["cross_section_area_m2"] for link in found["link"]] == pytest.approx([A, pi * .019 * .001], rel=1e-12)
+
+
+@pytest.mark.parametrize("rule", ["=,*(1),=,*(1),*(1)\n=(2)\n", "=(3),*(1),=,*(1),*(1)\n"])
+def test_cards_repeat_by_a_rule(rule: str, tmp_path: Path) -> None:
+    grids = "GRID,3,,2.,0.,0.,,23\nGRID,4,,3.,0.,0.,,23\nGRID,5,,4.,0.,0.,,23\n"
+    document = made(tmp_path, ROD.replace("CROD,1,1,1,2\n", "CROD,1,1,1,2\n" + rule) + grids)
+    assert [link["nodes"] for link in document["link"]] == [["N1", "N2"], ["N2", "N3"], ["N3", "N4"], ["N4", "N5"]]
+
+
+def test_a_repeated_card_has_its_own_continuation(tmp_path: Path) -> None:
+    text = ROD + "PBAR,8,1,1.-4,,,,,,+P1\n=,9,=,2.-4,,,,,,+P2\n+P1,1.,1.\n+P2,==\nGRID,3,,2.,0.,0.,,23\nCBAR,2,9,2,3,0.,1.,0.\n"
+    assert made(tmp_path, text, beams_as_bars=True)["link"][1]["cross_section_area_m2"] == 2e-4
+
+
+def test_an_equation_of_one_node_is_a_support_in_its_direction(tmp_path: Path) -> None:
+    # The end slides along (1, 1): of a force along x the bar carries all, and half of it goes on along y.
+    bulk = ROD.replace("SPC1,1,23,2", "SPC1,1,3,2") + "MPC,9,2,1,1.,2,2,-1.\n"
+    document = made(tmp_path, bulk, CONTROL.replace("SPC = 1", "SPC = 1\nMPC = 9"))
+    assert document["node"][1]["guide_normal"] == pytest.approx([.5**.5, -.5**.5], rel=1e-12)
+    document["node"][1]["force_N"] = [7.0, 0.0]
+    assert moved(document, axis=1) == pytest.approx(1e-6, rel=1e-5)  # strain 1e-6: what is not linear is as small
+    assert moved(document, axis=0) == pytest.approx(1e-6, rel=1e-5)
+
+
+def test_masses_of_rotations_have_no_influence(tmp_path: Path) -> None:
+    assert made(tmp_path, ROD + "PARAM,ART_MASS,Y,0.,1.-6\n") == made(tmp_path, ROD)
+
+
+def test_an_expansion_that_no_case_has_is_left_out_where_nothing_is_heated(tmp_path: Path) -> None:
+    bulk = ROD.replace("2.3-5", "1.")
+    assert moved(made(tmp_path, bulk)) == pytest.approx(1e-3, rel=1e-12)
+    with pytest.raises(sj.StatejumpError, match="thermal_expansion_per_K = 1.0 is not allowed"):
+        sj.load(made(tmp_path, bulk, change=50.0))
+
+
+def test_a_density_that_no_case_has_is_left_out_where_nothing_is_weighed(tmp_path: Path) -> None:
+    bulk = ROD.replace("2700.", "1.+7")
+    assert moved(made(tmp_path, bulk)) == pytest.approx(1e-3, rel=1e-12)
+    with pytest.raises(sj.StatejumpError, match="density_kg_per_m3 = 10000000.0 is not allowed"):
+        sj.load(made(tmp_path, bulk + "GRAV,5,,9.81,1.,0.,0.\n"))
+
+
+def test_heat_transfer_of_cosmic_is_refused(tmp_path: Path) -> None:
+    assert "line 1: APP HEAT is not supported: heat transfer" in refusal(tmp_path, ROD, "APP HEAT\n" + CONTROL)
+
+
 def test_sets_of_supports_are_combined(tmp_path: Path) -> None:
     bulk = ROD.replace("SPC1,1,123,1", "SPC1,11,123,1").replace("SPC1,1,23,2", "SPC1,12,23,2") + "SPCADD,1,11,12\n"
     assert moved(made(tmp_path, bulk)) == pytest.approx(1e-3, rel=1e-12)
@@ -299,10 +358,15 @@ REFUSED = {  # cards beside the rod and what the refusal says
     "support of a free body": ("SUPORT,2,1\n", "SUPORT is not supported"),
     "load elsewhere": ("GRID,3,,5.,5.,5.\nFORCE,5,3,,1.,1.,0.,0.\n", "FORCE is not supported: a force on node 3, where no bar ends"),
     "parameter": ("PARAM,NEWONE,1\n", "PARAM.NEWONE is not supported: the parameter is unknown"),
-    "artificial masses": ("PARAM,ART_MASS,Y,1.E-6\n", "PARAM.ART_MASS is not supported: mass or stiffness that is added"),
+    "artificial masses": ("PARAM,ART_MASS,Y,1.E-6\n", "PARAM.ART_MASS is not supported: a mass that is added"),
     "inertia relief": ("PARAM,INREL,-2\n", "PARAM.INREL is not supported"),
     "temperature-dependent": ("MATT1,1,7\n", "MATT1 is not supported"),
     "field": ("CONM1,3,2,,4.,1.,4.\n,4.\n", "CONM1.M21 is not supported: it couples directions"),
+    "two rods of one name": ("CROD,2,1,1,2,2,1,1,2\n", "line 14: element 2 is there twice"),
+    "two properties of one kind": ("PROD,1,1,2.-4\n", "PROD: property 1 is there twice"),
+    "shell of COSMIC": ("CQDMEM2,2,1,1,2,2,1\n", "CQDMEM2 is not supported: shells are no part of a truss"),
+    "rigid of COSMIC": ("CRIGD1,9,1,2\n", "CRIGD1 is not supported: rigid elements"),
+    "sector": ("PARAM,NSEGS,6\n", "PARAM.NSEGS is not supported: cyclic symmetry"),
     "several": ("CQUAD4,2,1\nMATT1,1,7\nSUPORT,2,1\n", "also MATT1 (line 15), SUPORT (line 16)"),
 }
 

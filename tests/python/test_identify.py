@@ -21,7 +21,7 @@ from statejump.identification.models import MODELS, parts_of
 
 SINE = 1e-3 * np.sin(np.linspace(0, 4 * np.pi, 401))
 JOINT = {"stiffness": 1e6, "friction": 150.0, "preload": 20.0, "clearance_minus": 3e-4, "clearance_plus": 5e-4,
-         "preload_stiffness": 2e5, "play": 4e-4, "stop_stiffness": 2e6}
+         "preload_stiffness": 2e5, "play": 4e-4, "play_ratio": 0.2, "stop_stiffness": 2e6}
 SIGMA = 5.0
 
 
@@ -57,11 +57,11 @@ def test_slide_between_stops_is_that_of_small_steps() -> None:
 def resting(path: np.ndarray, joint: dict[str, float], block: float) -> np.ndarray:
     """Return the force of a slide behind a spring with play, between stops that give, step by step: at every row the
     block moves, found by halving, until friction holds it."""
-    gap = joint.get("play", 0.0) / 2
+    gap, slack = joint.get("play", 0.0) / 2, 1 - joint.get("play_ratio", 0.0)
 
     def forces(there: float, at: float) -> tuple[float, float]:
         stretch = there - at
-        pull = joint["stiffness"] * (stretch - np.clip(stretch, -gap, gap))
+        pull = joint["stiffness"] * (stretch - slack * np.clip(stretch, -gap, gap))
         stop = joint.get("stop_stiffness", 0.0) * (at - np.clip(at, -joint.get("clearance_minus", 1), joint.get(
             "clearance_plus", 1)))
         return pull, pull - joint["preload"] - stop
@@ -79,17 +79,51 @@ def resting(path: np.ndarray, joint: dict[str, float], block: float) -> np.ndarr
     return np.array(found)
 
 
-@pytest.mark.parametrize("model", ["coulomb_play", "coulomb_soft_stops"])
+@pytest.mark.parametrize("model", ["coulomb_play", "coulomb_soft_play", "coulomb_soft_stops"])
 @pytest.mark.parametrize("start", [-1.0, 0.0, 0.4])
 def test_play_and_soft_stops_are_those_of_small_steps(model: str, start: float) -> None:
     """From any friction in the first row; the preload needs one more row to be taken up, where there is no play."""
     path = np.interp(np.linspace(0, 9, 400), np.arange(10), 1e-3 * np.array([0, .2, -.1, .5, -.6, 1, -1, .3, -.2, 1]))
     values = {name: JOINT[name] for name in MODELS[model].parameters} | {"preload": 0.0}
     loop = read_loop({"displacement_m": path, "force_N": path})
-    width = values["friction"] / values["stiffness"] + values.get("play", 0.0) / 2
+    width = values["friction"] / values["stiffness"] + (1 - values.get("play_ratio", 0.0)) * values.get("play", 0.0) / 2
     found = MODELS[model].answer({**values, "initial_friction": start}, path, loop.memory)
     # Halving to 1 m/2^60 leaves 1e-12 N; 1e6 N/m times rounding of the path 1e-10 N.
     np.testing.assert_allclose(found, resting(path, values, -start * width), rtol=0, atol=1e-9)
+
+
+def test_columns_of_other_sensors_are_left_out_by_name(tmp_path: Path, statejump: Callable[..., Any]) -> None:
+    loop = measured("coulomb", JOINT)
+    write_columns({"Strain 1 [-]": loop["force_N"], **loop}, tmp_path / "rig.csv")
+    refused = statejump("identify", "rig.csv", "--model", "coulomb")
+    assert refused.status == 2 and "column 'Strain 1 [-]' is unknown" in refused.errors
+    assert "--ignore 'Strain 1 [-]' leaves it out" in refused.errors
+    taken = statejump("identify", "rig.csv", "--model", "coulomb", "--ignore", "Strain 1 [-]")
+    assert taken.status == 0, taken.errors
+    assert sj.identify(tmp_path / "rig.csv", model="coulomb", ignored=["Strain 1 [-]"]).values == sj.identify(
+        loop, model="coulomb").values
+    assert "--ignore = 'Strain 2'" in statejump("identify", "rig.csv", "--ignore", "Strain 2").errors
+
+
+def test_a_slide_may_slip_before_its_play_is_used_up() -> None:
+    """Friction of 150 N holds 0.3 mm of a play of 1 mm with 0.5 kN/mm."""
+    path = 1e-3 * np.sin(np.linspace(0, 4 * np.pi, 400))
+    values = {"stiffness": 1e6, "friction": 150.0, "preload": 0.0, "play": 1e-3, "play_ratio": 0.5}
+    found = MODELS["coulomb_soft_play"].answer(values, path, remembered(path, fresh=True))
+    # Halving to 1 m/2^60 leaves 1e-12 N; 1e6 N/m times rounding of the path 1e-10 N.
+    np.testing.assert_allclose(found, resting(path, values, 0.0), rtol=0, atol=1e-9)
+
+
+def test_a_play_that_is_not_empty_is_wider_than_an_empty_one() -> None:
+    """With 0.2 of the stiffness in it, an empty play of 0.8 of its width has as long a path between sliding forth and
+    back; a case has such a play."""
+    found = sj.identify(measured("coulomb_soft_play", JOINT), start="cycled")
+    assert found.model == "coulomb_soft_play"
+    play = found.intervals["play"]
+    # 3 standard deviations, which the interval has 1.96 of.
+    assert abs(found.values["play"] - 4e-4) < 1.5 * (play.high - play.low) / 2
+    assert found.changes()["joint.play_m"] == pytest.approx(found.values["play"] * (1 - found.values["play_ratio"]), rel=1e-12)
+    assert any(note.startswith("the play of a case carries no force") for note in found.notes)
 
 
 @pytest.mark.parametrize("fresh", [True, False])

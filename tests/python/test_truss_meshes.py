@@ -167,3 +167,10 @@ def test_damaged_meshes_are_refused_or_read(suffix: str, tmp_path: Path, capfd: 
             refused += 1
             assert path.name in str(failure) and "\n" not in str(failure)
     assert refused > numbers / 3 and capfd.readouterr() == ("", "")
+
+
+def test_addresses_of_objects_are_no_part_of_a_sentence(tmp_path: Path) -> None:
+    (tmp_path / "empty.vtk").write_text("")
+    with pytest.raises(StatejumpError, match="empty.vtk: not a mesh that VTK reads") as refused:
+        read(tmp_path / "empty.vtk")
+    assert "0x" not in str(refused.value)

@@ -30,6 +30,22 @@ def case_file(folder: Path, made: dict[str, Any]) -> Path:
     return path
 
 
+def test_a_truss_that_is_held_everywhere_carries_heat_and_does_not_move(statejump, tmp_path: Path) -> None:
+    made = chain()
+    del made["slider"]
+    made.update(node=[{**node, "fixed": ["x", "y", "z"][:made["truss"]["dimension"]]} for node in made["node"]])
+    run = sj.load(made).reduced()
+    assert not np.any(run.history["displacement_m"].values)
+    links, change = made["link"], run.history["temperature_change_K"].values.max()
+    at = int(np.argmax(run.history["temperature_change_K"].values))
+    strain = links[0]["thermal_expansion_per_K"] * change
+    # Of the length that is free of stress.
+    assert run.links["axial_force_N"].values[at, 0] == pytest.approx(
+        links[0]["young_modulus_Pa"] * links[0]["cross_section_area_m2"] * strain / (1 + strain), rel=1e-12)
+    refused = statejump("reduced", "--dynamic", case_file(tmp_path, made))
+    assert refused.status == 2 and "every node is held in all directions: nothing moves" in refused.errors
+
+
 def test_chain_in_motion_is_written_beside_the_quasi_static_run(statejump, tmp_path: Path) -> None:
     outcome = statejump("reduced", "--dynamic", case_file(tmp_path, chain()))
     assert outcome.status == 0, outcome.output + outcome.errors

@@ -231,6 +231,7 @@ SparseFactor::~SparseFactor() = default;
 bool SparseFactor::factorize(const Matrix& matrix, double most_growth) {
   Factors& f = *factors_;
   f.size = static_cast<int>(matrix.rows());
+  if (f.size == 0) return true;  // KLU takes no empty matrix
   if (f.size >= HalvedOrder::least_columns) {
     int* columns = const_cast<int*>(matrix.outerIndexPtr());
     int* rows = const_cast<int*>(matrix.innerIndexPtr());
@@ -274,6 +275,7 @@ void SparseFactor::release() {
 Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& right_side) const {
   Eigen::VectorXd result = right_side;
   Factors& f = *factors_;
+  if (f.size == 0) return result;
   if (f.halves.are_halved()) {
     f.halves.solve(*f.numeric, *f.order->symbolic, result.data());
   } else {
@@ -283,6 +285,7 @@ Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& right_side) const {
 }
 
 double SparseFactor::solutions_per_factorization() const {
+  if (factors_->size == 0) return 1.0;
   const double lower = factors_->numeric->lnz;
   const double upper = factors_->numeric->unz;
   return lower * upper / factors_->size / (lower + upper);
@@ -290,6 +293,7 @@ double SparseFactor::solutions_per_factorization() const {
 
 int SparseFactor::determinant_sign() const {
   Factors& f = *factors_;
+  if (f.size == 0) return 1;
   // Rows are divided by positive numbers; both permutations make the matrix block triangular.
   if (!f.odd_permutation) {
     f.odd_permutation = odd(f.numeric->Pnum, f.size) != odd(f.order->symbolic->Q, f.size);

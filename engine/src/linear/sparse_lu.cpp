@@ -37,12 +37,15 @@ struct Lu : Eigen::SparseLU<Eigen::SparseMatrix<double>> {
 struct SparseFactor::Factors {
   Lu lu;
   bool ordered = false;
+  bool empty = false;  // of a matrix without rows, which Eigen does not factor
 };
 
 SparseFactor::SparseFactor() : factors_(std::make_unique<Factors>()) {}
 SparseFactor::~SparseFactor() = default;
 
 bool SparseFactor::factorize(const Matrix& matrix, double /*most_growth*/) {
+  factors_->empty = matrix.rows() == 0;
+  if (factors_->empty) return true;
   if (!factors_->ordered) factors_->lu.analyzePattern(matrix);
   factors_->ordered = true;
   factors_->lu.factorize(matrix);
@@ -56,17 +59,19 @@ void SparseFactor::release() {
 }
 
 Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& right_side) const {
+  if (factors_->empty) return right_side;
   return factors_->lu.solve(right_side);
 }
 
 double SparseFactor::solutions_per_factorization() const {
+  if (factors_->empty) return 1.0;
   const auto lower = static_cast<double>(factors_->lu.nnzL());
   const auto upper = static_cast<double>(factors_->lu.nnzU());
   return lower * upper / static_cast<double>(factors_->lu.rows()) / (lower + upper);
 }
 
 int SparseFactor::determinant_sign() const {
-  return factors_->lu.signDeterminant() < 0.0 ? -1 : 1;
+  return !factors_->empty && factors_->lu.signDeterminant() < 0.0 ? -1 : 1;
 }
 
 const char* SparseFactor::library() {

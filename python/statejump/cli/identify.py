@@ -3,25 +3,27 @@
 from __future__ import annotations
 
 from pathlib import Path
+from shlex import quote
 
 import click
 
 from statejump.cli.terminal import QUIET, RESULTS, make_console, print_shown
-from statejump.core.errors import NotAllowed, StatejumpError
+from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey
 from statejump.core.results_folder import Results
 from statejump.identification import identified
 
 # The arguments of the library as options of the command.
 OPTIONS = {"model": "--model", "start": "--start", "confidence": "--confidence", "target": "--for",
-           "normal_force_N": "--normal-force", "journal_radius_m": "--journal-radius"}
+           "normal_force_N": "--normal-force", "journal_radius_m": "--journal-radius",
+           "ignored": "--ignore"}
 
 
 @click.command("identify")
 @click.argument("loop_file", metavar="LOOP.csv", type=click.Path(path_type=Path))
 @click.option("--model", default="auto", show_default=True, metavar="NAME",
               help="Joint that is fitted: linear, clearance, coulomb, coulomb_clearance, coulomb_soft_stops, "
-                   "coulomb_play, mindlin, iwan, the last six also with _spring at the end; auto: all, the best by "
-                   "BIC.")
+                   "coulomb_play, mindlin, iwan, the last six also with _spring at the end, coulomb_soft_play; auto: "
+                   "all, the best by BIC.")
 @click.option("--start", default="unknown", show_default=True, metavar="HOW",
               help="Friction before the first row: fresh (carries nothing), cycled (the path was gone before), unknown "
                    "(what fits best).")
@@ -33,11 +35,12 @@ OPTIONS = {"model": "--model", "start": "--start", "confidence": "--confidence",
               help="Normal force in the test [N]: friction becomes a coefficient.")
 @click.option("--journal-radius", type=float, default=None, metavar="M",
               help="Radius of the journal [m], of a moment of friction likewise.")
+@click.option("--ignore", "ignored", multiple=True, metavar="COLUMN", help="Leave out a column of the table.")
 @RESULTS
 @QUIET
 def identify_command(
     loop_file: Path, model: str, start: str, confidence: float, target: str | None, normal_force: float | None,
-    journal_radius: float | None, results: Results, quiet: bool,
+    journal_radius: float | None, ignored: tuple[str, ...], results: Results, quiet: bool,
 ) -> None:
     """Clearance, stiffness, friction and preload of a joint from the measured loop in LOOP.csv, with intervals.
 
@@ -52,10 +55,12 @@ def identify_command(
     with results.folder(f"identify_{loop_file.stem}") as folder:
         try:
             found = identified(loop_file, model=model, start=start, confidence=confidence, target=target,
-                               normal_force_N=normal_force, journal_radius_m=journal_radius)
+                               normal_force_N=normal_force, journal_radius_m=journal_radius, ignored=ignored)
         except StatejumpError as refused:
             if isinstance(refused, NotAllowed) and refused.key in OPTIONS:
                 refused.key = OPTIONS[refused.key]
+            if isinstance(refused, UnknownKey) and not refused.remedy:
+                refused.remedy = f"--ignore {quote(str(refused.key))} leaves it out"
             raise
         written = folder.publish(found.write(folder.staged))
     print_shown(found.told(), console)

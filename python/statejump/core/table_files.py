@@ -21,7 +21,7 @@ from typing import Any, TextIO
 import numpy as np
 
 from statejump.core.column_units import NO_UNIT, Column, accepted, matched
-from statejump.core.errors import StatejumpError, Unreadable, printable
+from statejump.core.errors import NotAllowed, StatejumpError, Unreadable, printable
 from statejump.core.iso_times import is_iso, seconds
 from statejump.core.reading import check_size, finite_number, is_file, open_csv
 from statejump.core.units import split_unit
@@ -401,23 +401,28 @@ def _all(table: Table) -> tuple[list[int], list[tuple[str, ...]]]:
 
 
 def read_known(
-    path: Path, known: Sequence[str], words: Mapping[str, Sequence[str]] | None = None, texts: Collection[str] = ()
+    path: Path, known: Sequence[str], words: Mapping[str, Sequence[str]] | None = None, texts: Collection[str] = (),
+    ignored: Collection[str] = (),
 ) -> dict[str, np.ndarray]:
     """Return the columns of a table by keys that end in their units, in these units.
 
     :param known: keys
     :param words: by key: what else its quantity is called
     :param texts: keys whose cells are texts
+    :param ignored: names of columns that are left out
     :raises StatejumpError: one sentence with the file, and line or column
     """
     with open_table(path) as table:
+        kept = [place for place, name in enumerate(table.header) if name not in ignored]
         try:
-            columns = matched(table.header, known, words)
+            for name in sorted(set(ignored) - set(table.header)):
+                raise NotAllowed("ignored", name, "the table has no such column")
+            columns = matched([table.header[place] for place in kept], known, words)
         except StatejumpError as failure:
             raise failure.located(file=path) from None
         lines, cells = _all(table)
         return {column.key: np.array(part) if column.key in texts else numbers_of(table, column, part, lines)
-                for column, part in zip(columns, cells)}
+                for column, part in zip(columns, (cells[place] for place in kept))}
 
 
 def numbers_of(table: Table, column: Column, cells: Sequence[str], lines: Sequence[int], empty: bool = False

@@ -2,7 +2,7 @@
 """A measured loop: force over displacement, or moment over rotation, row by row as it was measured."""
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -103,11 +103,12 @@ class Loop:
         return UNITS[dimension][self.angular]
 
 
-def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown") -> Loop:
+def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown", ignored: Sequence[str] = ()) -> Loop:
     """Return a loop of a table, or of columns.
 
     :param source: columns ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``; ``time_s`` may be
         there and is not used
+    :param ignored: names of columns of a table that are left out
     :raises StatejumpError: no such file, a column that is missing or unknown, a value that is no finite number, a path
         that does not move or has too few rows
     """
@@ -116,7 +117,7 @@ def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown") ->
     if isinstance(source, Mapping):
         return _loop("loop", _named(source), start)
     file = Path(source)
-    columns = read_known(file, COLUMNS, WORDS)
+    columns = read_known(file, COLUMNS, WORDS, ignored=ignored)
     try:
         return _loop(file.stem, columns, start)
     except StatejumpError as failure:

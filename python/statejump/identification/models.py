@@ -53,6 +53,7 @@ PARAMETERS = {each.name: each for each in (
     Parameter("stop_stiffness", "stiffness", POSITIVE, 1 / FAR, FAR, (1.0, 10.0), "of a stop itself"),
     Parameter("play", "displacement", POSITIVE, 1 / FAR, 2.0, (0.1, 0.5, 1.0),
               "lost motion at each reversal, which moves with the slide"),
+    Parameter("play_ratio", "-", LINEAR, 0.0, 0.5, (0.05, 0.2), "stiffness within the play, over that beyond it"),
     Parameter("preload", "force", LINEAR, -FAR, FAR, (0.0,), "force at displacement 0, without friction"),
     Parameter("preload_stiffness", "stiffness", POSITIVE, 1 / FAR, FAR, (0.03, 0.3), "spring beside the slide"),
     Parameter("iwan_exponent", "-", LINEAR, -0.999, 0.0, (-0.7, -0.3), "χ of the distribution of sliders"),
@@ -90,16 +91,20 @@ def _coulomb(values: Values, displacement: np.ndarray, memory: Memory) -> np.nda
     """A slide with friction f, preload P, spring k_p and play p behind a spring k, between stops of stiffness k_s.
 
     Its block rests at x while |k (u - x) - g(x)| <= f, g the force of preload, spring and stops: g(x) is a play of
-    half width f in k u, and g rises with x. The play p widens the play in u, and within it the spring k is slack.
+    half width f in k u, and g rises with x. The play p widens the play in u, and within it the spring k is slack, or
+    has the fraction r of its stiffness.
     """
     stiffness, friction = values["stiffness"], values.get("friction", 0.0)
     preload, spring = values.get("preload", 0.0), values.get("preload_stiffness", 0.0)
-    gap = values.get("play", 0.0) / 2
+    gap, ratio = values.get("play", 0.0) / 2, values.get("play_ratio", 0.0)
     pulled: np.ndarray = stiffness * displacement
     if friction > 0 or gap > 0:
-        stretch = memory.stretch(friction / stiffness + gap, values.get(START, 0.0))
+        width = friction / stiffness + (1 - ratio) * gap
+        if friction < ratio * stiffness * gap:  # it slides before the play is used up
+            width = friction / (ratio * stiffness)
+        stretch = memory.stretch(width, values.get(START, 0.0))
         if gap > 0:
-            stretch = stretch - np.clip(stretch, -gap, gap)
+            stretch = stretch - (1 - ratio) * np.clip(stretch, -gap, gap)
         pulled = stiffness * (displacement - stretch)
     block = (pulled - preload) / (stiffness + spring)
     if "clearance_plus" in values:
@@ -180,6 +185,8 @@ MODELS = {model.name: model for model in (
           "as coulomb_clearance_spring, stops of stiffness ks", ("coulomb_soft_stops", "coulomb_clearance_spring")),
     Model("coulomb_play", _SLIDE + _PLAY, _coulomb, "as coulomb, the spring k is slack over a play p that moves with x",
           ("coulomb",)),
+    Model("coulomb_soft_play", _SLIDE + _PLAY + ("play_ratio",), _coulomb,
+          "as coulomb_play, within the play the spring has the stiffness r k", ("coulomb_play",)),
     Model("coulomb_play_spring", _SLIDE + _PLAY + _SPRING, _coulomb, "as coulomb_spring, with the play p",
           ("coulomb_play", "coulomb_spring")),
     Model("mindlin", _SLIDE, _mindlin, "F = P + f (1 − (1 − 2 k u/(3 f))^1.5) and Masing's rule", ("linear",)),

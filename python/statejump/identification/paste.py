@@ -99,7 +99,8 @@ def entries(
         if "stop_stiffness" in values:
             stops.append(known("stop_stiffness_N_per_m", "stop_stiffness", ""))
         if "play" in values:
-            stops.append(known("play_m", "play", ""))
+            # The play of a case carries no force: as long a path lies between sliding forth and back.
+            stops.append(known("play_m", "play", "", 1 - values.get("play_ratio", 0.0)))
         return friction() + stops + (spring if target == "spring_slider" else [])
     if target == "iwan_joint":
         none = "the loop is not of an Iwan joint: --model iwan fits one"

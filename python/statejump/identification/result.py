@@ -127,7 +127,8 @@ class Identification:
     def _laws(self) -> list[str]:
         """What the section has no key for."""
         if self.target in ("slider", "spring_slider"):
-            return []
+            return ["the play of a case carries no force: play_m is play (1 - play_ratio)"] \
+                if self.fit.values.get("play_ratio") else []
         return [f"{name} has no key in {paste.TARGETS[self.target][0]}: the section leaves it out"
                 for name in ("play", "stop_stiffness") if name in self.fit.values]
 
@@ -249,7 +250,7 @@ def _end(value: float) -> str:
 def identified(
     source: str | Path | Mapping[str, Any], *, model: str | Sequence[str] = AUTO, start: str = "unknown",
     confidence: float = 0.95, target: str | None = None, normal_force_N: float | None = None,
-    journal_radius_m: float | None = None,
+    journal_radius_m: float | None = None, ignored: Sequence[str] = (),
 ) -> Identification:
     """Identify a joint; see :func:`statejump.identify`."""
     for key, given in (("normal_force_N", normal_force_N), ("journal_radius_m", journal_radius_m)):
@@ -263,7 +264,7 @@ def identified(
             raise NotAllowed("model", name, f"must be {AUTO} or of {', '.join(MODELS)}", allowed=(AUTO, *MODELS))
     if not names:
         raise NotAllowed("model", model, "names no joint")
-    loop = read_loop(source, start)
+    loop = read_loop(source, start, ignored)
     chosen_target = target or ("umbrella" if loop.angular else "spring_slider")
     paste.check(chosen_target, loop.angular)
     try:

@@ -25,6 +25,14 @@ TEST(SparseFactor, SolvesWhatItFactors) {
   EXPECT_LT((dense * factor.solve(right) - right).norm(), 1e-14);
 }
 
+TEST(SparseFactor, FactorsAnEmptyMatrix) {
+  SparseFactor factor;
+  ASSERT_TRUE(factor.factorize(Eigen::SparseMatrix<double>(0, 0)));
+  EXPECT_EQ(factor.solve(Eigen::VectorXd(0)).size(), 0);
+  EXPECT_EQ(factor.determinant_sign(), 1);
+  EXPECT_EQ(factor.solutions_per_factorization(), 1.0);
+}
+
 TEST(SparseFactor, NamesAMatrixThatIsSingularToRounding) {
   // The third row is twice the second less the first. None of the entries is a binary fraction, so
   // that elimination leaves 1e-17 instead of zero.

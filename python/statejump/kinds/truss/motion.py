@@ -11,7 +11,7 @@ import numpy as np
 from statejump import _engine
 from statejump.core import physics
 from statejump.core.engine_failures import EngineFailed
-from statejump.core.errors import Interrupted, NotAllowed
+from statejump.core.errors import Interrupted, NotAllowed, StatejumpError
 from statejump.core.start import FRICTIONLESS
 from statejump.core.progress import Tell
 from statejump.kinds.truss.case import TrussCase
@@ -136,6 +136,9 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
         return True
 
     truss, samples = case.resolve(), case.samples_per_cycle
+    if truss.nodes.fixed[:, :truss.dimension].all():
+        raise StatejumpError("every node is held in all directions", cause="nothing moves",
+                             remedy="leave a direction of a node free, or run without --dynamic", case=case.name)
     for name in BALL_JOINT.rigid_ones(truss.joints[BALL_JOINT.section])[:1]:
         if case.motion.start != "drawn":
             raise NotAllowed("motion.start", case.motion.start, f"must be 'drawn' with ball_joint {name!r}, whose "

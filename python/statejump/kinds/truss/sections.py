@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 
 AXES = ("x", "y", "z")
 LARGEST_LENGTH_M = 1e6
+MOST_EXPANSION_PER_K = 1e-3
+MOST_DENSITY_KG_PER_M3 = 1e5
 
 
 @definition
@@ -64,12 +66,14 @@ class Link(Item):
     nodes: list[str] = texts(..., "its two nodes")
     young_modulus_Pa: float = parameter(..., "Pa", 0, 1e13, USER, above=True)
     cross_section_area_m2: float = parameter(..., "m2", 0, 1e2, USER, above=True)
-    thermal_expansion_per_K: float | None = parameter(None, "1/K", -1e-3, 1e-3, "this or expansion")
+    thermal_expansion_per_K: float | None = parameter(None, "1/K", -MOST_EXPANSION_PER_K, MOST_EXPANSION_PER_K,
+                                                      "this or expansion")
     expansion: str | None = text(None, "name of an [[expansion]]: a coefficient that follows the temperature")
     stress_free_length_m: float | None = parameter(
         None, "m", 0, LARGEST_LENGTH_M, "at ΔT = 0; the distance of its nodes", above=True
     )
-    density_kg_per_m3: float | None = parameter(None, "kg/m3", 0, 1e5, "this or mass_kg; DEM and motion", above=True)
+    density_kg_per_m3: float | None = parameter(None, "kg/m3", 0, MOST_DENSITY_KG_PER_M3,
+                                                "this or mass_kg; DEM and motion", above=True)
     mass_kg: float | None = parameter(None, "kg", 0, 1e6, "this or density_kg_per_m3; DEM and motion", above=True)
     centre_of_mass_m: list[float] | None = numbers(
         None, "m", -LARGEST_LENGTH_M, LARGEST_LENGTH_M,

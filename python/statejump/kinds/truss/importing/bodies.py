@@ -172,11 +172,12 @@ def _take_equations(deck: Deck, near: Callable[[str, str], bool]) -> None:
 
 
 def _held_by(deck: Deck, equations: list[Equation]) -> list[Equation]:
-    """Take equations of one term, a support, and of none."""
-    found = [one for one in equations if len(one.terms) < 2]
+    """Take equations of one node, a support in the direction of its terms, and of none."""
+    found = [one for one in equations if len({term[0] for term in one.terms}) < 2]
     for one in found:
-        for node, direction, _ in one.terms:
-            deck.hold(node, [float(part) for part in direction])
+        normal = sum((direction * factor for _, direction, factor in one.terms), start=np.zeros(3))
+        if np.any(normal):
+            deck.hold(one.terms[0][0], [float(part) for part in normal / np.linalg.norm(normal)])
     return found
 
 

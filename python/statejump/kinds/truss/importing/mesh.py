@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import re
 import subprocess
 import sys
 import warnings
@@ -26,6 +27,7 @@ from statejump.kinds.truss.importing.model import LARGEST_BYTES, Bar, Deck, quot
 
 FORMATS = {".vtk": "vtk", ".vtu": "vtu", ".vtp": "vtp", ".msh": "gmsh", ".med": "med", ".mesh": "medit"}
 BY_VTK = (".vtk", ".vtu", ".vtp")
+ADDRESS = re.compile(r"\(0x[0-9a-f]+\)")  # of an object, in sentences of VTK
 LINES = ("line", "polyline", "line3")  # of two nodes, in straight parts, or with a node between that is left out
 # Data of cells that are taken, and the number of a bar that they are.
 DATA = {"young_modulus_Pa": "young_modulus", "cross_section_area_m2": "area", "thermal_expansion_per_K": "expansion",
@@ -101,7 +103,7 @@ def _by_vtk(path: Path) -> Any:
             found = dict(archive)
         points = found["points"]
     except (ValueError, EOFError, OSError, KeyError, zipfile.BadZipFile):
-        cause = said.rsplit("): ", 1)[-1] or f"VTK ends with status {done.returncode}"
+        cause = ADDRESS.sub("", said.rsplit("): ", 1)[-1]) or f"VTK ends with status {done.returncode}"
         raise Unreadable("not a mesh that VTK reads", cause=" ".join(cause.split())[:200], file=path) from None
     named: dict[str, dict[str, np.ndarray]] = {"cells": {}, "ends": {}, "point data": {}, "cell data": {}}
     for key, values in found.items():

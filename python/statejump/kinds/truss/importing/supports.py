@@ -22,7 +22,7 @@ def supports(deck: Deck, node: str, dimension: int) -> dict[str, Any]:
     held = held_directions(deck, node)
     if dimension == 2:  # the plane holds the third direction
         held = np.vstack([held, axes[2]])
-    basis = _basis(held)
+    basis = basis_of(held)
     along = [axis for axis in range(3) if np.linalg.norm(axes[axis] - basis.T @ (basis @ axes[axis])) <= SAME]
     rest = basis - basis[:, along] @ axes[along] if along else basis
     _, sizes, spanned = np.linalg.svd(rest)
@@ -50,12 +50,12 @@ def is_held(deck: Deck, node: str, direction: np.ndarray) -> bool:
     held = held_directions(deck, node)
     if not len(held):
         return False
-    basis = _basis(held)
+    basis = basis_of(held)
     rest = direction - basis.T @ (basis @ direction)
     return bool(np.linalg.norm(rest) <= SAME * np.linalg.norm(direction))
 
 
-def _basis(directions: np.ndarray) -> np.ndarray:
+def basis_of(directions: np.ndarray) -> np.ndarray:
     """Return orthogonal directions that span the given rows."""
     _, sizes, spanned = np.linalg.svd(directions)
     return np.asarray(spanned[:int(np.sum(sizes > SAME))])

@@ -14,6 +14,7 @@ from statejump.kinds.truss.importing.joints import matching, put_in
 from statejump.kinds.truss.importing.model import Bar, Deck, Spring
 from statejump.kinds.truss.importing.supports import supports
 from statejump.kinds.truss.importing.units import Units, in_units
+from statejump.kinds.truss.sections import MOST_DENSITY_KG_PER_M3, MOST_EXPANSION_PER_K
 
 # A coordinate that differs by less, over the size of the truss, is the same: decks have eight digits.
 FLAT = 1e-9
@@ -70,6 +71,7 @@ def case_document(
     }
     _springs(deck, made, units, dimension)
     _expansions(deck, made)
+    _leave_impossible(deck, made, heated=any(changes) or "thermal" in more, weighed=any(gravity))
     deck.settle()
     if check_ignored:
         deck.check_waived()
@@ -143,6 +145,23 @@ def _expansions(deck: Deck, made: Document) -> None:
             made["expansion"].append(expansions.item(names[key], *key))
         link["expansion"] = names[key]
         del link["thermal_expansion_per_K"]
+
+
+def _leave_impossible(deck: Deck, made: Document, *, heated: bool, weighed: bool) -> None:
+    """Leave out numbers that no case has and that have no influence.
+
+    These are expansions of a truss that nothing heats, and densities where no gravity acts. Decks of tests have 1 of
+    both, others a weight for a mass.
+    """
+    for bar, link in zip(deck.bars, made["link"]):
+        expansion, density = link.get("thermal_expansion_per_K", 0.0), link.get("density_kg_per_m3", 0.0)
+        if not heated and abs(expansion) > MOST_EXPANSION_PER_K:
+            deck.leave(bar.kind, f"a thermal expansion of {expansion:g} 1/K: no temperature acts on it", 0)
+            link["thermal_expansion_per_K"] = 0.0
+        if not weighed and density > MOST_DENSITY_KG_PER_M3:
+            deck.leave(bar.kind, f"a density of {density:g} kg/m3: no gravity acts on it; the DEM and --dynamic need "
+                       "one, see --density", 0)
+            del link["density_kg_per_m3"]
 
 
 def _free(deck: Deck, bar: Bar) -> float:

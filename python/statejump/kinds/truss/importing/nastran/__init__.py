@@ -19,7 +19,8 @@ from statejump.kinds.truss.importing.nastran.table import CARDS, PARAMS
 READERS: dict[str, Callable[[Reader, Card], None]] = {
     "MAT1": properties.mat1, "PROD": properties.simple, "PBAR": properties.simple, "PTUBE": properties.ptube,
     "PBARL": properties.pbarl, "PBEAM": properties.pbeam, "PBEAML": properties.pbeaml, "PELAS": properties.pelas,
-    "CROD": elements.bar, "CTUBE": elements.bar, "CBAR": elements.bar, "CBEAM": elements.bar, "CONROD": elements.conrod,
+    "CROD": elements.rods, "CTUBE": elements.rods, "CBAR": elements.bar, "CBEAM": elements.bar,
+    "CONROD": elements.conrod,
     "SPC": nodes.spc, "SPC1": nodes.spc1, "CELAS1": elements.celas, "CELAS2": elements.celas, "CBUSH": elements.cbush,
     "PMASS": properties.pmass, "CMASS1": masses.cmass, "CMASS2": masses.cmass, "CONM1": elements.conm1,
     "CONM2": elements.conm2, "FORCE": loads.force, "FORCE1": loads.force, "FORCE2": loads.force, "MOMENT": loads.moment,
@@ -117,6 +118,11 @@ def _param(reader: Reader, card: Card, given: control.Control) -> None:
         reader.deck.mass_scale = reader.number(card, 1)
     elif name == "AUTOSPC":
         given.autospc = card[1].upper() != "NO"
+    elif name == "ART_MASS":  # Y or N, mass of translations, of rotations
+        if card[1].upper() == "Y" and reader.number(card, 2, 1.0) != 0:
+            reader.deck.refuse(f"PARAM.{name}", "a mass that is added at every node", card.line)
+        else:
+            reader.deck.leave(f"PARAM {name}", "it adds no mass to translations", card.line)
     elif known is None:
         reader.deck.refuse(f"PARAM.{name}", "the parameter is unknown", card.line)
     elif known.use == REFUSED:

@@ -71,9 +71,9 @@ def split(deck: Deck) -> tuple[list[tuple[int, str]], list[Card]]:
 def _cards(deck: Deck, lines: Iterable[tuple[int, str]]) -> list[Card]:
     """Return the cards. A continuation belongs to the card whose last mark it repeats, else to the card before it."""
     cards: list[Card] = []
-    marks: dict[str, Card] = {}
+    marks = _Marks()
     orphans: list[tuple[int, str, list[str]]] = []
-    last_mark = ""
+    last_mark, last_fields = "", [""] * 8
     for number, raw in lines:
         line = raw.split("$")[0].rstrip().expandtabs(SMALL)
         if not line.strip():
@@ -83,15 +83,18 @@ def _cards(deck: Deck, lines: Iterable[tuple[int, str]]) -> list[Card]:
         if line.upper().split()[0] == "BEGIN":
             raise deck.fail(number, "superelements and further models are not read")
         head, fields, mark = _fields(deck, number, line)
-        if head.startswith("=") and cards:
-            _repeat(deck, number, head, fields, cards)
-            continue
         if head.upper().startswith("ENDDATA"):
             break
-        if not head or head[0] in "+*":
+        if head.startswith("=") and cards:
+            _repeat(deck, number, head, fields, cards)
+            card = cards[-1]
+        elif not head or head[0] in "+*":
             own = head[1:].strip(" +*")
-            if own and own in marks:
-                card = marks.pop(own)
+            if {"=", "=="} & set(fields):
+                fields = _repeated(deck, number, fields, Card(number, head, last_fields))
+            last_fields = fields
+            if marked := marks.take(own):
+                card = marked
             elif cards and not (own and last_mark):
                 card = cards[-1]
             elif own and last_mark and own != last_mark:
@@ -108,20 +111,45 @@ def _cards(deck: Deck, lines: Iterable[tuple[int, str]]) -> list[Card]:
             cards.append(card)
             deck.room(number, len(cards))
         if mark:
-            marks[mark] = card
+            marks.add(mark, card)
         last_mark = mark
     for number, own, fields in orphans:  # whose card stands below them
-        if own not in marks:
+        marked = marks.take(own)
+        if marked is None:
             raise deck.fail(number, f"no card has the continuation mark {quoted(own)}")
-        _extend(deck, number, marks.pop(own), fields)
+        _extend(deck, number, marked, fields)
     return cards
+
+
+class _Marks:
+    """Cards by the mark at the end of their last line.
+
+    A continuation repeats columns 2 to 8 of the mark; its first column may be any letter: PEG goes on as +EG.
+    """
+
+    def __init__(self) -> None:
+        self._cards: dict[str, Card] = {}
+        self._whole: dict[str, str] = {}
+
+    def add(self, mark: str, card: Card) -> None:
+        """Note the mark of a card."""
+        self._cards[mark] = card
+        self._whole[mark[1:]] = mark
+
+    def take(self, own: str) -> Card | None:
+        """Return the card that a continuation belongs to; None: no card has its mark."""
+        if not own:
+            return None
+        return self._cards.pop(own, None) or self._cards.pop(self._whole.get(own, ""), None)
 
 
 def _repeat(deck: Deck, number: int, head: str, fields: list[str], cards: list[Card]) -> None:
     """Add cards that repeat the last one: ``=`` is its field, ``*(x)`` adds x to it, ``==`` takes all further ones,
-    ``=(n)`` repeats the last line of this kind n times."""
+    ``=(n)`` does so n times, by the fields behind it or by those of the last line of this kind."""
     last = cards[-1]
     count = REPEAT.match(head)
+    if count and any(fields):
+        last.rule = fields
     if count is None:
         last = Card(number, last.name, _repeated(deck, number, fields, last))
         last.rule = fields

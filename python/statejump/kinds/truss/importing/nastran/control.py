@@ -62,6 +62,8 @@ def read(deck: Deck, lines: list[tuple[int, str]]) -> Control:
             control.solution = words[1].strip(",")
             if control.solution in HEAT:
                 deck.refuse(f"SOL {control.solution}", "heat transfer: its supports are temperatures", line, "SOL")
+        elif words[:2] == ["APP", "HEAT"]:  # of COSMIC
+            deck.refuse("APP HEAT", "heat transfer: its supports are temperatures", line, "APP")
     common = _Subcase(0, 0, "")
     subcases: list[_Subcase] = []
     continued = False

@@ -6,7 +6,7 @@ import numpy as np
 
 from statejump.kinds.truss.importing.model import Bar, quoted
 from statejump.kinds.truss.importing.nastran.cards import Card
-from statejump.kinds.truss.importing.nastran.reader import Reader
+from statejump.kinds.truss.importing.nastran.reader import Property, Reader
 from statejump.kinds.truss.importing.springs import add_spring
 
 SAME = 1e-6  # of offsets, over their size: cards have seven digits
@@ -22,8 +22,15 @@ def element(reader: Reader, card: Card, kind: str = "") -> str:
     return name
 
 
+def rods(reader: Reader, card: Card) -> None:
+    """CROD and CTUBE: one element, or two in COSMIC's Nastran."""
+    for fields in (card.fields[:4], card.fields[4:]):
+        if any(fields):
+            bar(reader, Card(card.line, card.name, fields))
+
+
 def bar(reader: Reader, card: Card) -> None:
-    """CROD, CTUBE, CBAR, CBEAM."""
+    """CBAR, CBEAM, and one CROD or CTUBE."""
     name = element(reader, card)
     beam = card.name in ("CBAR", "CBEAM")
     default = name
@@ -164,14 +171,22 @@ def weigh(reader: Reader, card: Card, node: str, mass: float) -> None:
         reader.deck.leave(card.name, "its mass is 0", card.line)
 
 
+def _section(reader: Reader, line: int, of: Bar, name: str) -> Property:
+    """Return the property of a bar: that of its kind of element, or the only one of the number."""
+    found = reader.properties.get(name, {})
+    if of.kind in found:
+        return found[of.kind]
+    if len(found) != 1:
+        raise reader.deck.fail(line, f"{of.kind} {of.name}: there is no property {quoted(name)} that is read")
+    return next(iter(found.values()))
+
+
 def finish_bars(reader: Reader) -> None:
     """Give bars what properties and materials say."""
     deck = reader.deck
     ready: list[tuple[int, Bar, str, float]] = []
     for line, made, name in reader.bars.values():
-        if name not in reader.properties:
-            raise deck.fail(line, f"{made.kind} {made.name}: there is no property {quoted(name)} that is read")
-        section = reader.properties[name]
+        section = _section(reader, line, made, name)
         if section.area is None:
             made.why_no_area = section.why
         made.area, made.more_mass = section.area, section.more

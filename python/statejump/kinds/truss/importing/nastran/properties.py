@@ -11,6 +11,8 @@ from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.reader import Material, Property, Reader
 
 STATIONS = ("YES", "YESA", "NO")
+# Elements that a property is of: properties of different elements may have one number.
+ELEMENTS = {"PROD": "CROD", "PTUBE": "CTUBE", "PBAR": "CBAR", "PBARL": "CBAR", "PBEAM": "CBEAM", "PBEAML": "CBEAM"}
 
 
 def mat1(reader: Reader, card: Card) -> None:
@@ -129,10 +131,10 @@ def _tapered(reader: Reader, card: Card, stations: list[tuple[float, float | Non
 
 
 def _add(reader: Reader, card: Card, made: Property) -> None:
-    name = reader.whole(card, 0)
-    if name in reader.properties and reader.properties[name] != made:
+    name, elements = reader.whole(card, 0), ELEMENTS[card.name]
+    of_number = reader.properties.setdefault(name, {})
+    if of_number.setdefault(elements, made) != made:
         raise reader.fail(card, f"property {name} is there twice")
-    reader.properties[name] = made
     reader.deck.take(card.name, "cross-section area of links")
 
 

@@ -51,7 +51,7 @@ class Reader:
     frames: dict[str, Frame] = field(default_factory=dict)
     displacement_frame: dict[str, str] = field(default_factory=dict)  # CD of nodes
     materials: dict[str, Material] = field(default_factory=dict)
-    properties: dict[str, Property] = field(default_factory=dict)
+    properties: dict[str, dict[str, Property]] = field(default_factory=dict)  # by number and element
     springs: dict[str, float] = field(default_factory=dict)  # PELAS
     masses: dict[str, float] = field(default_factory=dict)  # PMASS
     component_masses: dict[str, list[float]] = field(default_factory=dict)  # CMASS1, CMASS2 by node: directions 1 to 3

@@ -2,9 +2,13 @@
 """AUTOSPC of Nastran: a component of a node in which no element is stiff is held."""
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
+from statejump.kinds.truss.importing.model import Deck
 from statejump.kinds.truss.importing.nastran.reader import Reader
+from statejump.kinds.truss.importing.supports import SAME, basis_of, held_directions
 
 # EPZERO of Nastran: a smaller share of the node's largest stiffness is none.
 EPZERO = 1e-8
@@ -33,7 +37,19 @@ def hold_singular(reader: Reader) -> None:
         if node in bent:
             continue
         axes = reader.frames[reader.displacement_frame[node]].directions(deck.nodes[node])
-        diagonal = np.einsum("ij,jk,ik->i", axes, block, axes)
-        for at in np.flatnonzero(diagonal <= EPZERO * diagonal.max()):
-            deck.hold(node, axes[at])
+        largest = np.einsum("ij,jk,ik->i", axes, block, axes).max()
+        for free in _left_free(deck, node, axes):
+            if free @ block @ free > EPZERO * largest:
+                continue
+            deck.hold(node, [float(part) for part in free])
             deck.take("AUTOSPC", "directions of nodes without stiffness, held as in Nastran")
+
+
+def _left_free(deck: Deck, node: str, axes: np.ndarray) -> Iterator[np.ndarray]:
+    """Yield the directions of axes, without what supports and equations hold of them."""
+    basis = basis_of(held_directions(deck, node))
+    for axis in axes:
+        free = axis - basis.T @ (basis @ axis)
+        size = np.linalg.norm(free)
+        if size > SAME:
+            yield axis if size > 1 - SAME else free / size

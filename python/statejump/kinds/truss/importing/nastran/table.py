@@ -30,8 +30,8 @@ CARDS: dict[str, Card] = table(
     *(used(f"CORD1{kind}", "coordinate system", "CIDA G1A G2A G3A CIDB G1B G2B G3B") for kind in "RCS"),
     *(used(f"CORD2{kind}", "coordinate system", "CID RID A1 A2 A3 B1 B2 B3 C1 C2 C3") for kind in "RCS"),
     # Elements and their sections.
-    used("CROD", "link", "EID PID G1 G2"),
-    used("CTUBE", "link", "EID PID G1 G2"),
+    used("CROD", "link, two on a card of COSMIC", "EID PID G1 G2 EID2 PID2 G3 G4"),
+    used("CTUBE", "link, two on a card of COSMIC", "EID PID G1 G2 EID2 PID2 G3 G4"),
     used("CONROD", "link", "EID G1 G2 MID A J C NSM", idle={"J C": TURNS}),
     *(used(name, "pin-jointed bar; offsets must be equal at both ends, pin flags of 4 to 6",
            f"EID PID GA GB X1 X2 X3 OFFT PA PB W1A W2A W3A W1B W2B W3B{more}",
@@ -99,23 +99,26 @@ CARDS: dict[str, Card] = table(
     used("TEMPD", "temperature of links", "SID1 T1 SID2 T2 SID3 T3 SID4 T4"),
     used("PARAM", "WTMASS: factor of all masses; AUTOSPC", "N V1 V2", own=True),
     # Not supported.
-    refused("RBE1 RBE2GS RROD RJOINT RTRPLT RTRPLT1 RSPLINE RSSCON", RIGID),
+    refused("RBE1 RBE2GS RROD RJOINT RTRPLT RTRPLT1 RSPLINE RSSCON CRIGD1 CRIGD2 CRIGD3 CRIGDR CRBAR CRBE1 CRBE2 CRBE3 "
+            "CRROD CRTRPLT", RIGID),
     refused("SUPORT", SUPORTED), refused("SUPORT1", SUPORTED, sets="suport"),
     refused("SPCD", "given displacement, but of SOL 108 to 112, which RLOAD or TLOAD multiplies", sets="load"),
-    refused("PLOAD PLOAD2 PLOAD4 PLOADX PLOADX1 PLOADB3", "pressure on an element", sets="load"),
+    refused("PLOAD PLOAD2 PLOAD3 PLOAD4 PLOADX PLOADX1 PLOADB3", "pressure on an element", sets="load"),
     refused("RFORCE RFORCE1 ACCEL ACCEL1", "loads of a field of accelerations", sets="load"),
     refused("SLOAD", "load on a scalar point", sets="load"),
     refused("DEFORM", "a bar that is too long", sets="deform"),
-    refused("TEMPRB TEMPP1 TEMPP2 TEMPP3 TEMPB3 TEMPF TEMPN1 TEMPBC", "temperatures of elements", sets="temperature"),
+    refused("TEMPRB TEMPP1 TEMPP2 TEMPP3 TEMPB3 TEMPF TEMPN1 TEMPBC TEMPAX", "temperatures of elements",
+            sets="temperature"),
     refused("MATT1 MATT2 MATT3 MATT5 MATT8 MATT9", "properties that depend on temperature"),
     refused("MATS1 CREEP", "material that is not linear"),
     refused("CELAS3 CELAS4 CMASS3 CMASS4", "it joins scalar points"),
     refused("CBUSH1D CBUSH2D CGAP CWELD CFAST CSEAM CINTC GENEL", "element that is no straight bar of two nodes"),
-    refused("CBEND CBEAM3", "curved beam"),
+    refused("CBEND CBEAM3 CELBOW", "curved beam"),
     refused("PBCOMP PBRSECT PBMSECT", "section whose area is not known from one number"),
     refused("CSHEAR CQUAD CQUAD4 CQUAD8 CQUADR CQUADX CQUADX4 CQUADX8 CTRIA3 CTRIA6 CTRIAR CTRIAX CTRIAX6 CTRAX3 "
-            "CTRAX6 CPLSTN3 CPLSTN4 CPLSTS3 CPLSTS4", SHELL),
-    refused("CHEXA CPENTA CPYRAM CTETRA", SOLID),
+            "CTRAX6 CPLSTN3 CPLSTN4 CPLSTS3 CPLSTS4 CQUAD1 CQUAD2 CTRIA1 CTRIA2 CTRMEM CQDMEM CQDMEM1 CQDMEM2 CTRPLT "
+            "CTRPLT1 CQDPLT CTRBSC CTWIST CTRIM6 CTRSHL CIS2D8 CCONEAX CTRIARG CTRAPRG CTORDRG CTRIAAX CTRAPAX", SHELL),
+    refused("CHEXA CPENTA CPYRAM CTETRA CHEXA1 CHEXA2 CWEDGE CIHEX1 CIHEX2 CIHEX3", SOLID),
     refused("CAABSF CHACAB CHACBR ACMODL", "acoustics"),
     refused("NSM NSM1 NSML NSML1 NSMADD", "non-structural mass", sets="nsm"),
     refused("BCONP BCTABLE BCTSET BSURFS BGSET BLSEG", "contact"),
@@ -123,7 +126,8 @@ CARDS: dict[str, Card] = table(
     idle("ENDDATA ECHOON ECHOOFF CBARAO PLOTEL PLOTEL3 PLOTEL4 SET1 SET2 SET3 GRIDG", OUTPUT),
     idle("PSHELL PCOMP PCOMPG PSHEAR PSOLID PLSOLID PBEND PBEAM3 PGAP PBUSH1D PBUSHT PELAST PQUAD PPLANE PLPLANE "
          "PAABSF PACABS MAT2 MAT3 MAT4 MAT5 MAT8 MAT9 MAT10 MAT11 MATHP MATHE MATT4 TABLEM1 TABLEM2 TABLEM3 TABLEM4 "
-         "TABLES1 SPOINT EPOINT PSEAM PWELD PFAST", THROUGH),
+         "TABLES1 SPOINT EPOINT PSEAM PWELD PFAST PQUAD1 PQUAD2 PTRIA1 PTRIA2 PTRMEM PQDMEM PQDMEM1 PQDMEM2 PTRPLT "
+         "PTRPLT1 PQDPLT PTRBSC PTWIST PTRIM6 PTRSHL PIS2D8 PIHEX PCONEAX PTRIAAX PTRAPAX PTORDRG PELBOW", THROUGH),
     idle("CDAMP1 CDAMP2 CDAMP3 CDAMP4 CDAMP5 PDAMP PDAMPT CVISC PVISC", MATERIAL_DAMPING),
     idle("EIGB EIGC EIGP EIGR EIGRL FREQ FREQ1 FREQ2 FREQ3 FREQ4 FREQ5 TSTEP TSTEPNL NLPARM NLPCI NLSTEP DLOAD RLOAD1 "
          "RLOAD2 TLOAD1 TLOAD2 DAREA DELAY DPHASE LSEQ LOADCYN ACSRCE RANDPS RANDT1 TABLED1 TABLED2 TABLED3 TABLED4 "
@@ -134,13 +138,13 @@ CARDS: dict[str, Card] = table(
          "PAERO1 PAERO2 PAERO3 PAERO4 PAERO5 PAFOIL7 SPLINE1 SPLINE2 SPLINE3 SPLINE4 SPLINE5 PANLST1 PANLST2 PANLST3 "
          "FLFACT FLUTTER GUST MKAERO1 MKAERO2 MKAEROZ TRIM TRIMFLT TRIMVAR TRIMFNC LOADMOD CSSCHD MONPNT1 MONPNT3 "
          "MLOADS EXTINP EXTOUT FLUTTF FIXHATM ACOORD ATTACH CELLBOX CELLWNG INPCFD BODY7 SEGMESH DMIS", AERO),
-    idle("CHBDYE CHBDYG CHBDYP PHBDY PCONV PCONVM CONV CONVM RADM RADMT RADBC RADLST RADCAV RADSET RADMTX VIEW VIEW3D "
-         "QBDY1 QBDY2 QBDY3 QHBDY QVECT QVOL", HEAT),
+    idle("CHBDY CHBDYE CHBDYG CHBDYP PHBDY PCONV PCONVM CONV CONVM RADM RADMT RADBC RADLST RADCAV RADSET RADMTX VIEW "
+         "VIEW3D QBDY1 QBDY2 QBDY3 QHBDY QVECT QVOL", HEAT),
     idle("ASET ASET1 BSET BSET1 CSET CSET1 OMIT OMIT1 QSET QSET1 USET USET1 SEQSET SEQSET1 SEBSET SEBSET1 SECSET "
          "SECSET1 SESET CSUPEXT SEELT RELEASE DYNRED CYJOIN", EXACT),
     idle("DMI DMIG DMIJ DMIJI DMIK DTI", "matrix: acts through K2GG, M2GG or P2G, which are not supported"),
     idle("CLOAD", "acts through the command CLOAD, which is not supported"),
-    idle("MDLPRM ITER INTS FLOATS SEQGP DEBUG", "how a program solves"),
+    idle("MDLPRM ITER INTS FLOATS SEQGP DEBUG CNGRNT", "how a program solves"),
 )
 
 # Names of PARAM. Of what is not listed the influence is not known.
@@ -151,7 +155,9 @@ PARAMS: dict[str, Card] = table(
     refused("HEATSTAT", "temperatures that another subcase computes"),
     refused("CK1 CK2 CK3 CM1 CM2 CP1 CP2", "factor of matrices"),
     refused("PREMASS SUPAERO", "changes of the model"),
-    refused("ART_MASS ART_KED", "mass or stiffness that is added at every node"),
+    used("ART_MASS", "of rotations: nothing; a mass that is added at every node is refused"),
+    refused("ART_KED", "stiffness that is added at every node"),
+    refused("CTYPE NSEGS NLOAD KINDEX KMIN KMAX", "cyclic symmetry: the deck is one sector of a structure"),
     idle("POST PRTMAXIM GRDPNT PRGPST PRTRESLT USETPRT USETSEL AUTOSPCR EPZERO MAXRATIO BAILOUT TINY NOFISR OGEOM "
          "OUGCORD OUNIT1 OUNIT2 PATVER PRINT OMID OLDSEQ NEWSEQ SNORM SEP1XOVR K6ROT LGDISP LMODES G W3 W4 GFL W3FL "
          "W4FL COUPMASS RESVEC RESVINER DDRMM HFREQ LFREQ LMODESFL KDAMP VREF MACH Q AUNITS FACTOR NASPRT CURVPLOT "
@@ -163,7 +169,7 @@ PARAMS: dict[str, Card] = table(
          "AUTOQSET RMXPANEL F56 RESLTOPT SOLADJC SDRPOPT SDRDENS SERST SECOMB SUBCASID MPCX EXTUNIT EXTDROUT OELMSET "
          "OGRDSET ISAVE NEWSET HDF5 CONM2 PEDGE MNLEMPRT FLUIDMP STRUCTMP FREQDEP OMACHPR GYROAVG WR3 WR4 ROTCSV "
          "ROTGPF ENFMETH ENFMOTN NQMAX CYCIO CYCSEQ OIBULK POSTEXT UNITSYS DBCDIAG DMIGNRG LSTRN COMPARE PNCHDB EPSHT "
-         "MAXIT SUPER TINY2 OMSGLVL",
+         "MAXIT SUPER TINY2 OMSGLVL BETAD EPSIO GRDEQ",
          "output, damping, or how a program solves"),
     idle("ARP_TOL CBMIN3 CBMIN4 CBMIN4T CHKGRDS CRS_CCS CUSERIN DARPACK DELBAN EIGESTL EIGNORM2 ELFORCEN EPSERR EPSIL "
          "EQCHECK GRIDSEQ LANCMETH MXITERI PRTBASIC PRTCGLTM PRTCORD PRTCSTM PRTDLR PRTDOF PRTFOR PRTGMN PRTGOA "
