@@ -243,16 +243,16 @@ bool BoreContacts::find(const stepper::BoreProbe& probe, const MeshBore& bore,
     return false;
   }
   switch (step.found) {
-    case stepper::InBore::nowhere:
+    case stepper::BoreSearch::undefined:
       record_failure("no place of the parts against each other", scene, *contact);
       return false;
-    case stepper::InBore::conforms:
-      fail_curvature(probe.is_ball ? "ball" : "journal", probe.radius, step.wall_radius, step.place,
-                     scene, *contact);
+    case stepper::BoreSearch::conforming:
+      fail_curvature(probe.is_ball ? "ball" : "journal", probe.radius, step.wall_radius,
+                     step.position, scene, *contact);
       return false;
-    case stepper::InBore::apart:
+    case stepper::BoreSearch::apart:
       return false;
-    case stepper::InBore::contact:
+    case stepper::BoreSearch::contact:
       break;
   }
   return true;

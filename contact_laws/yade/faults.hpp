@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers of a scene that no step may use: which one it is, as a failure that names it. What is
-// asked of links and contacts is in statejump/stepper/numbers.hpp. Off the path of every step.
+// asked of links and contacts is in statejump/stepper/checks.hpp. Off the path of every step.
 #pragma once
 
 #include <optional>

@@ -7,7 +7,7 @@
 #include "failure.hpp"
 #include "faults.hpp"
 #include "ranges.hpp"
-#include "statejump/stepper/numbers.hpp"
+#include "statejump/stepper/checks.hpp"
 #include "thermal.hpp"
 
 namespace statejump::dem {
@@ -29,7 +29,7 @@ void GuidePlanes::action() {
     yade::State& state = *body_of(*scene, ids[i], "GuidePlanes.ids").state;
     const Vector3r& force = scene->forces.getForce(ids[i]);
     held[i] = force.dot(normals[i]) * normals[i];
-    if (!stepper::is_plain(held[i])) fail_force(*scene, ids[i], force);
+    if (!stepper::is_finite_fast(held[i])) fail_force(*scene, ids[i], force);
     state.vel -= state.vel.dot(normals[i]) * normals[i];
   }
   for (std::size_t i = 0; i < ids.size(); ++i) scene->forces.addForce(ids[i], -held[i]);

@@ -299,11 +299,11 @@ class NamedJointLaw {
   std::string dissipationLaw = kernel::laws::NoDissipation::info.name;
   std::string frictionLaw = kernel::laws::MindlinFriction::info.name;
   std::string tangentialVelocity = kernel::laws::MaterialVelocity::info.name;
-  Real restitution = kernel::laws::parameter::restitution.standard;
-  Real smallestImpactSpeed = kernel::laws::parameter::smallest_impact_speed.standard;
-  Real contactLength = kernel::laws::parameter::contact_length.standard;
-  Real v0 = kernel::laws::parameter::v0.standard;
-  Real v1 = kernel::laws::parameter::v1.standard;
+  Real restitution = kernel::laws::parameter::restitution.default_value;
+  Real smallestImpactSpeed = kernel::laws::parameter::smallest_impact_speed.default_value;
+  Real contactLength = kernel::laws::parameter::contact_length.default_value;
+  Real v0 = kernel::laws::parameter::v0.default_value;
+  Real v1 = kernel::laws::parameter::v1.default_value;
   Real firstContactTime = std::numeric_limits<Real>::quiet_NaN();
   int contacts = 0;
 

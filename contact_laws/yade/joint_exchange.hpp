@@ -24,22 +24,23 @@ struct ContactHost {
   Real time_step() const { return scene.dt; }
   bool tracks_energy() const { return scene.trackEnergy; }
   void add(const stepper::ContactEnergy& energy) const { energies.add(scene, energy); }
-  void exert(const kernel::Wrench& wrench) const {
+  void apply(const kernel::Wrench& wrench) const {
     scene.forces.addForce(contact.id1, wrench.force_1);
     scene.forces.addTorque(contact.id1, wrench.torque_1);
     scene.forces.addForce(contact.id2, wrench.force_2);
     scene.forces.addTorque(contact.id2, wrench.torque_2);
   }
-  static constexpr bool judges = true;
+  static constexpr bool checks_response = true;
   [[gnu::cold, gnu::noinline]] bool accepts(Real stiffness, const Vector3r& force,
                                             const JointPhys& physics) const {
-    const stepper::Answer answer = stepper::judge(stiffness, force, physics, scene.dt);
-    if (answer == stepper::Answer::step_is_too_long) {
+    const stepper::ResponseCheck answer =
+        stepper::check_response(stiffness, force, physics, scene.dt);
+    if (answer == stepper::ResponseCheck::step_is_too_long) {
       fail_unstable(physics.effectiveMass, stiffness, scene, contact);
-    } else if (answer == stepper::Answer::no_number) {
+    } else if (answer == stepper::ResponseCheck::not_finite) {
       fail_answer(stiffness, force, scene, contact);
     }
-    return answer == stepper::Answer::good;
+    return answer == stepper::ResponseCheck::valid;
   }
 };
 

@@ -108,7 +108,7 @@ void NamedJointLaw::build(const char* class_name) {
   law.friction = law_by_name(laws::friction_law, class_name, "frictionLaw", frictionLaw);
   law.tangential_velocity = law_by_name(laws::tangential_velocity_law, class_name,
                                         "tangentialVelocity", tangentialVelocity);
-  if (!laws::go_together(law.normal, law.friction)) {
+  if (!laws::are_compatible(law.normal, law.friction)) {
     dem::refuse(class_name, "normalLaw", normalLaw,
                 laws::names_with<laws::NormalLaw>(laws::Trait::point_contact) +
                     " with frictionLaw '" + frictionLaw + "'");
@@ -159,7 +159,7 @@ bool NamedJointLaw::step(const JointGeom& geometry, JointPhys& physics,
   if (geometry.penetrationDepth > 0 && !physics.begun) {
     const Real touched = stepper::begin(geometry, physics, scene.time, scene.dt);
     const std::lock_guard<std::mutex> lock(beginning_);
-    stepper::Begun begun{firstContactTime, contacts};
+    stepper::FirstTouch begun{firstContactTime, contacts};
     begun.add(touched);
     firstContactTime = begun.first;
     contacts = begun.count;

@@ -12,7 +12,7 @@
 #include "contact_parts.hpp"
 #include "faults.hpp"
 #include "ranges.hpp"
-#include "statejump/stepper/numbers.hpp"
+#include "statejump/stepper/checks.hpp"
 #include "thermal.hpp"
 
 namespace statejump::dem {
@@ -80,7 +80,7 @@ void PrismaticJoints::act(PrismaticJoint& joint) {
     fail(*scene, joint, "the time step " + text_of(scene->dt) + " s is above the stable one of ",
          ", " + text_of(step.largest_step) + " s", step.largest_step);
   }
-  if (!stepper::is_plain(step.force)) {
+  if (!stepper::is_finite_fast(step.force)) {
     fail(*scene, joint, "the force is not finite of ", "", no_step);
   }
   scene->forces.addForce(joint.id1, step.force);

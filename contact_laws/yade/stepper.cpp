@@ -8,7 +8,7 @@
 
 #include "interpreter.hpp"
 #include "ranges.hpp"
-#include "statejump/stepper/parts.hpp"
+#include "statejump/stepper/partition.hpp"
 #include "stepper_arrays.hpp"
 #include "stepper_energies.hpp"
 #include "stepper_engines.hpp"
@@ -30,16 +30,16 @@ long steps_ahead(const yade::Scene& scene, long substeps) {
   return ahead;
 }
 
-long run(stepper::Scene& arrays, long steps, const stepper::Scene::Make& make,
+long run(stepper::Scene& arrays, long steps, const stepper::Scene::CreatePhysics& make,
          const stepper::Scene::Observe& observe) {
   // Energies are sums over all contacts in their order, step by step.
   if (arrays.tracks_energy) return arrays.run(steps, make, observe);
-  stepper::Parts parts(arrays);
-  if (parts.size() == 1) return arrays.run(steps, make, observe);
+  stepper::Partition partition(arrays);
+  if (partition.size() == 1) return arrays.run(steps, make, observe);
   const long apart = observe ? steps - 1 : steps;  // who looks at a step sees all of it
-  const long done = parts.run(apart, make);
+  const long done = partition.run(apart, make);
   if (done < apart) return done;
-  parts.collect(arrays);
+  partition.collect(arrays);
   return observe ? done + arrays.run(1, make, observe) : done;
 }
 
@@ -116,17 +116,17 @@ class StepsAhead {
       return run(arrays_, some, make_, observe_last);
     };
     long done = attempt(steps, wanting.empty() ? stepper::Scene::Observe() : observe);
-    if (done == steps && arrays_.is_sound()) return done;
+    if (done == steps && arrays_.has_finite_state()) return done;
     for (const auto& [recorder, size] : wanting) recorder->forget(size);
     if (done < steps) {
       arrays_ = start_;
       if (done > 0) attempt(done, {});
     }
-    if (!arrays_.is_sound()) {
+    if (!arrays_.has_finite_state()) {
       // The step that leaves a number that is none is for the ordinary loop to tell: those before.
       arrays_ = start_;
       done = 0;
-      while (arrays_.run(1, make_) == 1 && arrays_.is_sound()) ++done;
+      while (arrays_.run(1, make_) == 1 && arrays_.has_finite_state()) ++done;
       arrays_ = start_;
       if (done > 0) attempt(done, {});
     }
@@ -138,7 +138,7 @@ class StepsAhead {
   const stepper::Energies& before_;
   JointArrays exchange_;
   stepper::Scene arrays_, start_;
-  const stepper::Scene::Make make_ = [this](std::size_t contact) {
+  const stepper::Scene::CreatePhysics make_ = [this](std::size_t contact) {
     return exchange_.physics(contact);
   };
   bool sampled_ = false;

@@ -38,14 +38,14 @@ void as_stage(yade::Engine& engine, Act&& act) {
 }
 
 void scatter_stage(const ThermalLinks& to, const stepper::Stage& from) {
-  const auto& places = std::get<stepper::Links>(from).places;
+  const auto& places = std::get<stepper::Links>(from).links;
   for (std::size_t i = 0; i < places.size(); ++i) {
     static_cast<stepper::Link&>(*to.links[i]) = places[i].link;
   }
 }
 
 void scatter_stage(const TorsionSprings& to, const stepper::Stage& from) {
-  const auto& places = std::get<std::vector<stepper::TorsionPlace>>(from);
+  const auto& places = std::get<std::vector<stepper::TorsionEntry>>(from);
   for (std::size_t i = 0; i < places.size(); ++i) {
     static_cast<stepper::Torsion&>(*to.springs[i]) = places[i].spring;
   }
@@ -209,7 +209,7 @@ bool JointArrays::gather_body(std::size_t id, stepper::Scene& arrays) {
   if (!one.bounded) return true;
   one.bound_position = body.bound->refPos;
   one.bound_reach = body.bound->sweepLength;
-  return !stepper::left_its_bound(one);  // else the collider is about to look again
+  return !stepper::left_bound(one);  // else the collider is about to look again
 }
 
 std::size_t JointArrays::program_of(const ThermalProgram& program, stepper::Scene& arrays) {
@@ -364,10 +364,10 @@ bool JointArrays::gather_contact(std::size_t place, stepper::Scene& arrays) {
 
 bool JointArrays::gather_stage(const ThermalLinks& group, stepper::Scene& arrays) {
   stepper::Links links;
-  links.places.reserve(group.links.size());
+  links.links.reserve(group.links.size());
   for (const auto& link : group.links) {
     if (!link || !link->program || !exists(link->id1) || !exists(link->id2)) return false;
-    links.places.push_back({*link, program_of(*link->program, arrays)});
+    links.links.push_back({*link, program_of(*link->program, arrays)});
     links.needs_moments = links.needs_moments || link->tipTurnsWithLink;
   }
   arrays.stages.emplace_back(std::move(links));
@@ -375,7 +375,7 @@ bool JointArrays::gather_stage(const ThermalLinks& group, stepper::Scene& arrays
 }
 
 bool JointArrays::gather_stage(const TorsionSprings& group, stepper::Scene& arrays) {
-  std::vector<stepper::TorsionPlace> places;
+  std::vector<stepper::TorsionEntry> places;
   places.reserve(group.springs.size());
   for (const auto& spring : group.springs) {
     if (!spring || !spring->link1 || !spring->link2) return false;

@@ -7,7 +7,7 @@
 #include "bore.hpp"
 #include "joint.hpp"
 #include "state_recorder.hpp"
-#include "statejump/stepper/motion.hpp"
+#include "statejump/stepper/body.hpp"
 #include "thermal.hpp"
 
 namespace statejump::dem {

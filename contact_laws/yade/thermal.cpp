@@ -19,7 +19,7 @@
 #include "ranges.hpp"
 #include "shapes.hpp"
 #include "statejump/kernel/stable_step.hpp"
-#include "statejump/stepper/numbers.hpp"
+#include "statejump/stepper/checks.hpp"
 #include "torsion.hpp"
 
 namespace statejump::dem {
@@ -161,7 +161,7 @@ void ThermalExpansionEngine::action() {
   for (const Target& target : targets()) {
     if (target.is_shared) continue;
     const Real strain = target.material->thermalExpansion * temperatureChange;
-    if (!stepper::is_plain_strain(strain) && !stepper::is_strain(strain)) {
+    if (!stepper::is_small_strain(strain) && !stepper::is_strain(strain)) {
       fail_strain(*scene, static_cast<int>(target.id), strain, target.material->thermalExpansion);
     }
     target.shape->thermalStrainRate = (strain - target.shape->thermalStrain) / scene->dt;
@@ -206,14 +206,14 @@ void ThermalLinks::act(ThermalLink& link, const Vector3r& moment) {
     if (!(scene->dt <= stable)) refuse_time_step(*scene, link, stable);
   }
   Vector3r force_on_tip = stepper::force_on_tip(step);
-  if (!stepper::is_plain(step, force_on_tip)) fail_force(*scene, link, step);
+  if (!stepper::is_finite_fast(step, force_on_tip)) fail_force(*scene, link, step);
   if (link.tipTurnsWithLink) {
     yade::State& tip = ends.tip;
     if ((tip.blockedDOFs & all_rotations_blocked) != all_rotations_blocked) {
       throw std::invalid_argument("ThermalLink.tipTurnsWithLink: block the rotations of body " +
                                   std::to_string(link.id2) + " (blockedDOFs containing 'XYZ')");
     }
-    force_on_tip += stepper::turn_tip(link, step, moment, tip.se3.orientation, tip.angVel);
+    force_on_tip += stepper::rotate_tip(link, step, moment, tip.se3.orientation, tip.angVel);
   }
   scene->forces.addForce(link.id2, force_on_tip);
   scene->forces.addForce(link.id1, -force_on_tip);

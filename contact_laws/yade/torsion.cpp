@@ -12,7 +12,7 @@
 #include "faults.hpp"
 #include "ranges.hpp"
 #include "statejump/kernel/stable_step.hpp"
-#include "statejump/stepper/numbers.hpp"
+#include "statejump/stepper/checks.hpp"
 
 namespace statejump::dem {
 namespace {

@@ -387,7 +387,7 @@ linkage::State loaded_state(const linkage::Linkage& model, double contact_angle)
   state.journal_centre =
       Vector2d(model.frame_length, 0.0) + (at.p.l2.value + at.z[e2]) * direction(at.z[th4]);
   const kernel::Vector3 friction(at.z[ft], 0.0, 0.0);
-  state.contact = kernel::laws::loaded_history(
+  state.contact = kernel::laws::preloaded_history(
       model.law.friction, model.law.friction_parameters, friction,
       {at.normal(), at.stiffness(), kernel::Vector3::Zero(), 1.0, kernel::Vector3::UnitY()});
   state.impact_speed = model.law.smallest_impact_speed;
