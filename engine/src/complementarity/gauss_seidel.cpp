@@ -9,10 +9,9 @@ namespace statejump::complementarity {
 
 namespace {
 
-/// A contact whose own normal compliance is less than rounding of the mean one cannot be solved
-/// alone.
+/// A contact whose normal compliance is below the rounding of the mean one cannot be solved alone.
 constexpr double least_compliance = 1e-15;
-/// Sweeps between two looks at the merit, which costs as much as a sweep.
+/// Sweeps between two evaluations of the merit, each of which costs a sweep.
 constexpr int sweeps_per_look = 5;
 
 }  // namespace
@@ -38,7 +37,7 @@ Iterate gauss_seidel(const ScaledProblem& problem, Iterate from, int sweeps, dou
       if (problem.merit(r, u) <= tolerance) break;
     }
   }
-  // Anew, without the rounding of many updates.
+  // Recomputed, to remove the rounding of many updates.
   return Iterate(problem, std::move(r));
 }
 

@@ -13,18 +13,19 @@ namespace statejump::complementarity {
 
 namespace {
 
-/// Share of the way to the cone's boundary that a step goes.
+/// Fraction of the distance to the cone's boundary that a step covers.
 constexpr double share_of_way = 0.995;
-/// Least share of the present gap that a corrector aims at.
+/// Smallest fraction of the current gap that a corrector aims at.
 constexpr double least_centring = 1e-3;
-/// A shorter step is taken for a sign of contacts that are off the centre.
+/// A shorter step indicates contacts far from the central path.
 constexpr double short_step = 0.1;
-/// Share of the present gap that is then aimed at.
+/// Fraction of the current gap that the centring step then aims at.
 constexpr double centring_after_short_step = 0.5;
-/// Steps with lagged friction after the first short step; twice as many after the next.
+/// Number of steps with lagged friction after the first short step; it doubles after each further
+/// one.
 constexpr int first_lag = 5;
-/// Largest residual of a contact's velocity times its reaction, over the gap, at which a lagged
-/// step lowers the gap.
+/// Largest ratio of a contact's velocity residual times its reaction to the gap, at which a lagged
+/// step reduces the gap.
 constexpr double residual_per_gap = 10.0;
 
 /// Determinant of Lorentz' cone, without cancellation of squares.
@@ -33,7 +34,7 @@ double determinant(const Block& x) {
   return (x[0] - size) * (x[0] + size);
 }
 
-/// x, with x_n a few roundings larger where rounding has put it on the boundary.
+/// x with x_n increased by a few roundings if rounding put x on the boundary.
 Block kept_inside(Block x) {
   constexpr double roundings = 8.0 * std::numeric_limits<double>::epsilon();
   x[0] = std::max(x[0], x.tail<2>().norm() * (1.0 + roundings));
@@ -47,7 +48,7 @@ Block product(const Block& x, const Block& y) {
   return result;
 }
 
-/// y with x∘y = right.
+/// The y with x∘y = right.
 Block quotient(const Block& right, const Block& x) {
   Block result;
   const double along = x.tail<2>().dot(right.tail<2>());
@@ -156,7 +157,7 @@ double InteriorPoint::advance() {
   gap /= static_cast<double>(count);
   const BlockSystem system = factored(scalings, a);
 
-  // Predictor: straight to the boundary.
+  // Predictor: direction to the boundary.
   std::vector<Block> aims(count);
   for (std::size_t i = 0; i < count; ++i) aims[i] = -squares[i];
   Direction direction;
@@ -169,23 +170,23 @@ double InteriorPoint::advance() {
   }
   affine_gap /= static_cast<double>(count);
 
-  // Corrector: centred the more, the less of the way the predictor went.
+  // Corrector: the shorter the predictor step, the more centring.
   const double ratio = std::clamp(affine_gap / gap, 0.0, 1.0);
   double sigma = std::max(ratio * ratio * ratio, least_centring);
-  // Lagged friction moves on only as fast as the gap lets it.
+  // The gap limits the progress of lagged friction.
   const double size = std::sqrt(reaction_squares / static_cast<double>(count));
   const double error = std::sqrt(residual_squares / static_cast<double>(count));
   if (lagged && error * size > residual_per_gap * gap) sigma = 1.0;
   for (std::size_t i = 0; i < count; ++i) {
     const Block scaled_dx = scalings[i].p * direction.dx[i];
-    // P^-1 dz = v - P dx, with v of the predictor -lambda.
+    // P^-1 dz = v - P dx, with v = -lambda of the predictor.
     aims[i] -= product(scaled_dx, -scalings[i].lambda - scaled_dx);
     aims[i][0] += sigma * gap;
   }
   if (!solve(system, scalings, a, residuals, aims, direction)) return 0.0;
   double step = std::min(1.0, share_of_way * longest_step(direction));
   if (step < short_step) {
-    // Some contacts have come too close to the boundary: back to the centre, without second order.
+    // Some contacts are too close to the boundary: recentre without second-order terms.
     for (std::size_t i = 0; i < count; ++i) {
       aims[i] = -squares[i];
       aims[i][0] += centring_after_short_step * gap;

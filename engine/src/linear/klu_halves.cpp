@@ -17,7 +17,8 @@ namespace statejump::linear {
 
 namespace {
 
-/// Of so many columns one may be in the separator, whose columns are long and wait for both halves.
+/// One column per this many may be in the separator, whose columns are long and wait for both
+/// halves.
 constexpr int columns_of_one = 1000;
 
 std::size_t index(int i) {
@@ -26,8 +27,8 @@ std::size_t index(int i) {
 
 enum Part : unsigned char { first_half, second_half, separator };
 
-/// Which part every column is in: those of the second half that share a row with the first separate
-/// them.
+/// Part of every column: columns of the second half that share a row with the first form the
+/// separator.
 std::vector<Part> cut(int size, const int* columns, const int* rows) {
   const numerics::Lists rows_of({columns, columns + size + 1}, {rows, rows + columns[size]});
   const numerics::Lists columns_of = rows_of.inverted(index(size));
@@ -69,7 +70,7 @@ int* order_columns(const std::vector<int>& which, int size, const int* columns, 
   return order + count;
 }
 
-/// The factors of a matrix of one block.
+/// The factors of a matrix with one block.
 struct Factored {
   explicit Factored(klu_numeric& of)
       : numeric(of),
@@ -106,7 +107,7 @@ int order_in_halves(int size, int* columns, int* rows, int* order, klu_common* c
   for (const std::vector<int>& part : parts) {
     order = order_columns(part, size, columns, rows, order);
   }
-  return -1;  // it is not known how many entries the factors will have
+  return -1;  // the number of entries of the factors is unknown
 }
 
 void HalvedFactors::begin(klu_numeric& numeric, const klu_symbolic& symbolic,

@@ -19,14 +19,14 @@ namespace {
 namespace odeint = boost::numeric::odeint;
 using Vector = Rich::Vector;
 
-/// Components in units of what matters, so that one tolerance serves all: the play, the play times
-/// the angular frequency of the stiffer link, E A times the play.
+/// Scales of the components, so that one tolerance serves all: the play, the play times the angular
+/// frequency of the stiffer link, E A times the play.
 Vector scales(const Constants& k, double clearance, double angular_frequency) {
   Vector result;
   result.fill(k.ab.rigidity * clearance);
   for (std::size_t i = 0; i < 4; ++i) result[i] = clearance;
   for (std::size_t i = 4; i < 8; ++i) result[i] = clearance * angular_frequency;
-  result[slide] = 1.0;  // not integrated: no law here remembers
+  result[slide] = 1.0;  // not integrated: no law here has a memory
   return result;
 }
 
@@ -50,7 +50,7 @@ class AdaptiveRun {
       memory_.impact_speed = std::max(memory_.impact_speed, k_.law.smallest_impact_speed);
     }
     for (const Branch& branch : thermal::monotone_branches(program)) integrate(branch);
-    // The last of evenly spaced samples may lie a rounding before the end, or beyond it.
+    // The last of evenly spaced samples may be one rounding before or after the end.
     if (run_.samples.back().time < time_ * (1.0 - 1e-12)) record(time_, heat_, y_);
     run_.energy_residue = energy_residue(model_, run_.samples.front(), run_.samples.back());
     return std::move(run_);
@@ -90,7 +90,7 @@ class AdaptiveRun {
       }
       bool touches = beyond(end, y) > 0.0;
       const bool changes = touches != touching_;
-      if (changes) {  // the step ends at the edge of contact, where the law's memory changes
+      if (changes) {  // the step ends at the edge of contact, where the law's state changes
         const auto changed = [&](double time) { return (beyond(time, at(time)) > 0.0) == touches; };
         end = numerics::change_between(begin, end, changed, numerics::fine * (end - begin)).after;
         y = at(end);
@@ -144,7 +144,7 @@ class AdaptiveRun {
 
   const Linkage& model_;
   Constants k_;
-  State memory_;  // its impact speed counts
+  State memory_;  // its impact speed is used
   double tolerance_;
   Vector scales_, y_;
   double largest_step_ = 0.0;

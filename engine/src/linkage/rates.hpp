@@ -25,16 +25,16 @@ enum Component : std::size_t {
   pin_heat = 10,
   friction_heat = 11,  ///< of a friction law without memory
   impact_heat = 12,
-  slide = 13,  ///< of journal against bearing in this step; for a friction law that remembers
+  slide = 13,  ///< of journal relative to bearing in this step; for a friction law with memory
 };
 
-/// Links and elastic contact alone, no couple on a link: the case that runs most often.
+/// Links and elastic contact only, no couple on a link: the most frequent case.
 struct Plain {
   static constexpr bool rich = false;
   using Vector = std::array<double, 10>;
 };
 
-/// Everything.
+/// All terms.
 struct Rich {
   static constexpr bool rich = true;
   using Vector = std::array<double, 14>;
@@ -44,12 +44,12 @@ struct LinkConstants {
   double pin_x, length, expansion, rigidity, inverse_rigidity, inverse_mass, damping;
 };
 
-/// Of the axial motion at ΔT = 0 [rad/s].
+/// Angular frequency of the axial motion at ΔT = 0 [rad/s].
 inline double angular_frequency(const LinkConstants& link) {
   return std::sqrt(link.rigidity / link.length * link.inverse_mass);
 }
 
-/// A Linkage with everything computed that does not change during a run.
+/// A Linkage with its constants over a run precomputed.
 struct Constants {
   LinkConstants ab, bc;
   kernel::ElasticPair pair;
@@ -60,17 +60,17 @@ struct Constants {
   bool rich() const { return couples || dissipation; }
 };
 
-/// Checks nothing.
+/// Does not check the model.
 Constants constants(const Linkage& model);
 
 struct Temperature {
   double change, rate;
 };
 
-/// A branch of the program with its slope at hand.
+/// A branch of the temperature program with its slope precomputed.
 struct Course {
   const thermal::Branch& branch;
-  double slope;  // [K/s] of a straight branch
+  double slope;  // [K/s], if the branch is straight
 
   explicit Course(const thermal::Branch& b)
       : branch(b), slope((b.end - b.start) / (b.end_time - b.start_time)) {}
@@ -138,7 +138,7 @@ struct NormalForce {
   double force;  ///< with dissipation
 };
 
-/// @param impact_speed 0: the contact begins here, at its present approach speed
+/// @param impact_speed 0: the contact begins here, at its current approach speed
 inline NormalForce normal_force(const Constants& k, const ContactPoint& at, const Radii& radii,
                                 double impact_speed) {
   const kernel::laws::NormalState elastic = normal_state(k, at.depth, radii);
@@ -159,7 +159,7 @@ TurnRates turn_rates(const Constants& k, const typename Kind::Vector& y) {
           (bx * y[7] - y[3] * y[6]) / (bx * bx + y[3] * y[3])};
 }
 
-/// The contact in the plane as the kernel's tangential velocity laws want it.
+/// The contact in the plane, in the form of the kernel's tangential velocity laws.
 template <class Kind>
 struct SpatialContact {
   kernel::JointContact contact;
@@ -176,7 +176,7 @@ struct SpatialContact {
     contact.arm_2 = (radii.bearing + 0.5 * at.depth) * normal;
     contact.relative_velocity =
         material_velocity(journal, contact.arm_1) - material_velocity(bearing, contact.arm_2);
-    contact.effective_radius = 0.0;  // the normal laws take the two radii
+    contact.effective_radius = 0.0;  // the normal laws use the two radii
     contact.eccentricity = at.depth + radii.clearance();
   }
 };
@@ -186,7 +186,7 @@ inline const kernel::Vector3& joint_axis() {
   return z;
 }
 
-/// Speed [m/s] of journal against bearing along (−n_y, n_x), as the tangential velocity law has it.
+/// Speed [m/s] of journal relative to bearing along (−n_y, n_x), by the tangential velocity law.
 template <class Kind>
 double sliding_speed(const Constants& k, const SpatialContact<Kind>& spatial,
                      const ContactPoint& at) {
@@ -198,8 +198,8 @@ double sliding_speed(const Constants& k, const SpatialContact<Kind>& spatial,
   return -at.ny * v.x() + at.nx * v.y();
 }
 
-/// Friction along (−n_y, n_x), first component. @param motion slide of the step [m] for a law that
-/// remembers (dissipation in J), else speed [m/s] (dissipation in W)
+/// Friction along (−n_y, n_x), first component. @param motion slide of the step [m] for a law with
+/// memory (dissipation in J), else speed [m/s] (dissipation in W)
 inline kernel::laws::FrictionResponse friction(const Constants& k, const NormalForce& normal,
                                                double motion, kernel::ContactHistory& history) {
   return kernel::laws::evaluate(
@@ -234,16 +234,16 @@ LinkForces link_forces(const LinkConstants& k, double x, double y, double vx, do
 }
 
 /// ∂V/∂ΔT [J/K] of the normal law at fixed depth, through the radii: central difference over a
-/// hundredth of a kelvin. Its error, 1e-9 of V per kelvin, enters the energy account alone.
+/// hundredth of a kelvin. Its error, 1e-9 of V per kelvin, affects only the energy balance.
 double radii_energy_rate(const Constants& k, double depth, double temperature_change);
 
-/// What the contact does to the two links.
+/// Forces and couples of the contact on the two links.
 struct ContactEffect {
   double fx = 0.0, fy = 0.0;                ///< on the bearing [N]; the journal gets the opposite
   double couple_ab = 0.0, couple_bc = 0.0;  ///< [N m]
 };
 
-/// Apart from rates(), which is short while the joint is open. Adds to the account's rates.
+/// Separate from rates(), which is short while the joint is open. Adds to the energy rates.
 template <class Kind>
 [[gnu::noinline]] ContactEffect contact_effect(const Constants& k, const typename Kind::Vector& y,
                                                const Temperature& heat, const State& memory,
@@ -342,7 +342,7 @@ typename Kind::Vector pack(const State& state) {
   return y;
 }
 
-/// Positions and velocities; what friction remembers stays.
+/// Copies positions and velocities; the friction history stays.
 template <class Vector>
 void unpack(const Vector& y, State& state) {
   state.bearing_centre = {y[0], y[1]};
@@ -362,7 +362,7 @@ Account account(const typename Kind::Vector& y, double remembered_friction_heat)
   return result;
 }
 
-/// The message with the instant of a run appended.
+/// The failure with time and temperature appended to the message.
 Failure failure(const std::domain_error& error, double time, double temperature_change);
 
 /// Thermal work − dissipation − change of energy [J].

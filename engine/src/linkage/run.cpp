@@ -36,7 +36,7 @@ typename Kind::Vector step(const Constants& k, const Course& course, double t, d
   return stage;
 }
 
-/// Root of |d| = c within a step that starts out of contact, by bisection on its length.
+/// Root of |d| = c within a step that starts without contact, by bisection on its length.
 template <class Kind>
 FirstContact locate(const Constants& k, const Course& course, double t, double h,
                     const typename Kind::Vector& y) {
@@ -135,14 +135,14 @@ class FixedStepRun {
   Run run_;
   double time_ = 0.0;
   double heat_ = 0.0;
-  double friction_heat_ = 0.0;  // of a law that remembers
+  double friction_heat_ = 0.0;  // for a law with memory
   bool touching_ = false;
 };
 
 }  // namespace
 
-/// Largest step [s] at which the method does not amplify the links' axial motion: |λ| h <= 2.78, a
-/// little inside its bounds on the real (2.785) and the imaginary axis (2.828).
+/// Largest step [s] for which the method does not amplify the links' axial motion: |λ| h <= 2.78,
+/// slightly inside its bounds on the real (2.785) and the imaginary axis (2.828).
 double stable_step(const Linkage& model) {
   const Constants k = constants(model);
   const double zeta = model.axial_damping_ratio;

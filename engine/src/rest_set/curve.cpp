@@ -36,7 +36,7 @@ Vector3d lifted(const Vector2d& p) {
 
 // Implicit curves.
 
-/// Γ with its checks.
+/// Γ with checks.
 struct Implicit {
   PlaneFunction gamma;
   PlaneGradient gradient;
@@ -86,7 +86,7 @@ struct Implicit {
   }
 };
 
-/// A grid line's piece: its lower end (i, j), along x (0) or y (1).
+/// A segment of a grid line: its lower end (i, j), along x (0) or y (1).
 using GridEdge = std::array<int, 3>;
 
 // Rest sets.
@@ -108,7 +108,7 @@ Intervals rest_on_curve(const Curve& curve, const Vector2d& force, double alpha)
   for (std::size_t i = 0; i < n; ++i) {
     const double start = angle[i];
     const double stop = start + wrapped(angle[(i + 1) % angle.size()] - start);
-    // Levels of the angle between both nodes, in the order in which they are met.
+    // Levels of the angle between both nodes, in order.
     std::vector<double> levels;
     for (int turn = -1; turn <= 1; ++turn) {
       for (const double level : {2.0 * pi * turn - alpha, 2.0 * pi * turn + alpha}) {
@@ -144,7 +144,7 @@ Vector2d position(const Curve& curve, double t) {
   return curve.at(t).position;
 }
 
-/// A position with where it came from.
+/// A position with its curve and parameter.
 struct Mark {
   std::size_t curve;
   Interval allowed;
@@ -213,7 +213,7 @@ RestSet described(const std::vector<Curve>& curves, const std::vector<Intervals>
     for (const Interval& i : sets[c].list()) {
       Part part;
       std::vector<Mark> own;
-      // A set that is one point but for rounding.
+      // A set that is a point up to rounding.
       const bool point = i.width() <= 1e-9;
       walk(curves[c], c, point ? Interval{i.a, i.a} : i, part, own);
       std::array<Vector3d, 2> pair;
@@ -253,7 +253,7 @@ std::vector<Curve> implicit_curves(const PlaneFunction& gamma, const PlaneGradie
       free[static_cast<std::size_t>(j) * (nx + 1) + i] = surface.value(node(i, j)) < 0.0;
     }
   }
-  // Each cell joins the roots on its sides in pairs; every root then has at most two neighbours.
+  // Each cell joins the roots on its sides in pairs, so every root has at most two neighbours.
   std::map<GridEdge, std::vector<GridEdge>> neighbours;
   for (int j = 0; j < ny; ++j) {
     for (int i = 0; i < nx; ++i) {
@@ -267,7 +267,7 @@ std::vector<Curve> implicit_curves(const PlaneFunction& gamma, const PlaneGradie
       }
       if (crossed.size() == 4 &&
           (surface.value(0.5 * (node(i, j) + node(i + 1, j + 1))) < 0.0) == corner[0]) {
-        // The middle belongs to corners 0 and 2: cut corners 1 and 3 off, as listed; else rotate.
+        // The middle belongs to corners 0 and 2: separate corners 1 and 3, as listed; else rotate.
       } else if (crossed.size() == 4) {
         crossed = {3, 0, 1, 2};
       }
@@ -377,7 +377,7 @@ Curve journal_in_profile(const std::function<double(double)>& rho, double journa
   const double step = 2.0 * pi / samples;
   return by_angle(
       [=](double phi) {
-        // The wall point most in the way, then a golden section around it.
+        // The wall point that limits the position most, refined by golden section.
         double contact = phi, least = first_touch(phi, phi);
         for (int i = -samples / 4; i <= samples / 4; ++i) {
           const double r = first_touch(phi + i * step, phi);
@@ -408,8 +408,9 @@ Curve journal_in_profile(const std::function<double(double)>& rho, double journa
         contact = 0.5 * (low + high);
         const double r = std::min(first_touch(contact, phi), least);
         const Vector2d centre = r * Vector2d(std::cos(phi), std::sin(phi));
-        // A minimum is known to the root of rounding only; the normal needs more: the direction
-        // from wall to centre is that of the wall's normal. Newton on the tangent of the wall.
+        // A minimum is known only to the square root of rounding, which is too coarse for the
+        // normal. The direction from wall to centre is the wall's normal, so Newton's method on the
+        // tangency condition refines it.
         const auto tangency = [&](double theta) {
           const double h = 1e-4;
           const double value = wall(theta);

@@ -37,7 +37,7 @@ Mesh welded(const Mesh& mesh, double tolerance) {
   Mesh result;
   result.project = mesh.project;
   result.normal = mesh.normal;
-  // Buckets as large as the tolerance; a neighbour may lie in the next one.
+  // Buckets as large as the tolerance; a neighbour may be in an adjacent one.
   const double bucket = tolerance > 0.0 ? tolerance : 1.0;
   std::map<std::array<double, 3>, std::vector<int>> known;
   std::vector<int> index;

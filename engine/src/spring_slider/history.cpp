@@ -11,9 +11,9 @@ namespace statejump::spring_slider {
 
 namespace {
 
-/// Segment that holds `time`: the one with start_time <= time < end_time, after the end of all the
-/// last. Tried first is `hint`, the answer for the time before, because times usually ascend.
-/// Throws std::invalid_argument for a time in a cycle that the path has left out.
+/// Segment that contains `time`: start_time <= time < end_time, or the last one after the end.
+/// `hint`, the result for the previous time, is tried first because times usually ascend. Throws
+/// std::invalid_argument for a time in an omitted cycle.
 const Segment& segment_at(const std::vector<Segment>& segments, double time, std::size_t& hint) {
   const auto holds = [&](std::size_t i) {
     return segments[i].start_time <= time && time < segments[i].end_time;

@@ -20,8 +20,8 @@ int sign(double value) {
   return (value > 0.0) - (value < 0.0);
 }
 
-/// Follows the program branch by branch and writes the path. The state between two branches is the
-/// open segment, the last event and the sense of the last slide.
+/// Follows the program branch by branch and writes the path. Its state is the open segment, the
+/// last event and the direction of the last slide.
 class Follower {
  public:
   /// `kept`: the cycles to keep, ascending.
@@ -72,21 +72,21 @@ class Follower {
     ++open_.cycle;
   }
 
-  /// The last segment ends where nothing starts.
+  /// Includes the force at the end of the last segment, after which no segment starts.
   void end() {
     const Segment& last = path_.segments.back();
     note_force(last, last.end_time);
   }
 
  private:
-  /// Carries the open segment on to ΔT at `time`.
+  /// Extends the open segment to ΔT at `time`.
   void move_to(double temperature_change, double time) {
     open_.end_temperature_change = temperature_change;
     open_.end_time = std::max(open_.start_time, time);
     open_.end_displacement = displacement(model_, open_, temperature_change);
   }
 
-  /// Ends the open segment where it is and opens the next one there in the same stage.
+  /// Ends the open segment and starts the next one in the same stage.
   void close() {
     const double end = open_.end_temperature_change;
     const double work = thermal_work(model_, open_, end);
@@ -108,7 +108,7 @@ class Follower {
     }
   }
 
-  /// Is the present cycle kept?
+  /// Whether the current cycle is kept.
   bool keeps() const { return next_kept_ < kept_.size() && kept_[next_kept_] == open_.cycle; }
 
   void note_force(const Segment& segment, double time) {
@@ -161,15 +161,15 @@ class Follower {
     enter(kind, drive_ == first_slide_ ? Stage::S2 : Stage::S5, Motion::slide, drive_);
   }
 
-  /// @param rubs sense in which friction is at its limit there; 0: the play is open
+  /// @param rubs direction in which friction is at its limit there; 0: the play is open
   void load_stop(int rubs) {
-    // Snapped, so that x is the clearance itself and leaving the stop can be told by equality.
+    // Set exactly, so that x is the clearance itself and leaving the stop is an exact comparison.
     open_.end_displacement = drive_ * model_.clearance(drive_);
     enter(EventKind::stop_reached, stage_at_stop(drive_), Motion::stop, drive_);
     open_.rubs = rubs;
   }
 
-  /// Where the play of a block that moves in it ends [m].
+  /// End of the play in which the block moves [m].
   double end_of_play() const { return open_.middle + drive_ * 0.5 * model_.play; }
 
   void open_play(EventKind kind) {
@@ -180,7 +180,7 @@ class Follower {
   void close_play() {
     open_.end_displacement = end_of_play();
     held_ = drive_;
-    // There D = 0: the link balances the springs alone.
+    // D = 0 there: only the link balances the springs.
     const SpringSlider pressed = in_region(model_, open_.region);
     const double force = pressed.preload_force + pressed.preload_stiffness * open_.end_displacement;
     const int side = force == 0.0 ? drive_ : sign(force);
@@ -188,7 +188,7 @@ class Follower {
     enter(EventKind::play_closed, stage, Motion::stick, 0);
   }
 
-  /// Comes to touch a soft stop, or loses touch of it, and moves on.
+  /// Touches a soft stop, or separates from it, and moves on.
   void pass_soft_stop(int side) {
     open_.end_displacement = side * model_.clearance(side);
     enter(open_.region == 0 ? EventKind::stop_reached : EventKind::stop_left, open_.stage,
@@ -196,7 +196,7 @@ class Follower {
     open_.region = open_.region == 0 ? side : 0;
   }
 
-  /// ΔT at which the block starts to slide from x, or to press less than that on a stop.
+  /// ΔT at which the block starts to slide from x, or its force on a stop falls below that value.
   double onset_from(double x, int direction) const {
     return sliding_temperature(in_region(model_, open_.region), x, direction);
   }
@@ -210,20 +210,20 @@ class Follower {
     return side > 0 ? Stage::at_stop_plus : Stage::at_stop_minus;
   }
 
-  /// Stage of a stick that begins where the open segment ends.
+  /// Stage of a stick that starts at the end of the open segment.
   Stage stage_of_stick() const {
     if (last_slide_ == 0) return Stage::S1;
     const double force = axial_force(model_, open_.end_temperature_change, open_.end_displacement);
     return last_slide_ * force >= 0.0 ? Stage::S3 : Stage::S4;
   }
 
-  /// Is ΔT before the end of the branch, or already passed? False for NaN: no such event.
+  /// Whether ΔT is before the end of the branch or already passed. False for NaN: no such event.
   bool is_due(double temperature_change) const {
     return heating_ * (branch_->end - temperature_change) > 0.0;
   }
 
-  /// Carries the segment to the event's ΔT; one that rounding or a kink of the program puts behind
-  /// the present ΔT happens now.
+  /// Extends the segment to the event's ΔT. An event that rounding or a corner of the program puts
+  /// before the current ΔT happens now.
   void move_to_event(double temperature_change) {
     const double now = open_.end_temperature_change;
     if (heating_ * (temperature_change - now) > 0.0) {
@@ -231,8 +231,8 @@ class Follower {
     }
   }
 
-  /// Passes the next event of the branch. False if there is none left. Under one drive the motion
-  /// only ever goes loaded stop → stick → play → stick → slide → stop, so this ends.
+  /// Processes the next event of the branch. False if there is none. In one branch the motion only
+  /// passes through loaded stop → stick → play → stick → slide → stop, so the loop ends.
   bool pass_next_event() {
     if (open_.motion == Motion::stop) return pass_end_of_stop();
     return open_.moves() ? pass_end_of_motion() : pass_end_of_stick();
@@ -254,7 +254,7 @@ class Follower {
     return true;
   }
 
-  /// ΔT at which a block that moves comes to the next stop, or loses touch of a soft one.
+  /// ΔT at which a moving block arrives at the next stop, or separates from a soft one.
   double arrival_at(int side) const {
     const double clearance = model_.clearance(side);
     if (open_.region == drive_ || std::isinf(clearance)) return never;
@@ -282,9 +282,9 @@ class Follower {
 
   bool pass_end_of_stick() {
     const double x = open_.end_displacement;
-    // A play opens where friction has fallen to zero.
+    // A play opens when friction reaches zero.
     const int limit = has_play() && held_ != drive_ ? 0 : drive_;
-    // Without friction every force moves the block: no rounded onset, no sliver of stick.
+    // Without friction every force moves the block: no rounded onset and no tiny stick segment.
     const double onset =
         model_.friction_force == 0.0 ? open_.end_temperature_change : onset_from(x, limit);
     const double zero = force_zero();
@@ -306,8 +306,8 @@ class Follower {
     return true;
   }
 
-  /// ΔT at which the axial force of a stick after a slide will pass zero, x_T = x; NaN if the drive
-  /// takes it away from zero.
+  /// ΔT at which the axial force of a stick after a slide passes zero, x_T = x; NaN if it moves
+  /// away from zero.
   double force_zero() const {
     const Stage towards_zero = drive_ == last_slide_ ? Stage::S4 : Stage::S3;
     if (open_.stage != towards_zero) return never;
@@ -324,7 +324,7 @@ class Follower {
   int drive_ = 0;
   int first_slide_ = 0;
   int last_slide_ = 0;
-  int held_ = 0;  ///< Side of the play at which friction holds the block; 0: without play.
+  int held_ = 0;  ///< Side of the play at which friction acts; 0: without play.
 };
 
 /// Throws unless l_T stays positive over the program.
@@ -363,7 +363,7 @@ double Path::jump_after_cycle(int cycle) const {
 
 namespace {
 
-/// Follows the program and keeps these cycles. Model and program are in range.
+/// Follows the program and keeps these cycles. Does not check model and program.
 void follow(const SpringSlider& model, const thermal::Program& program,
             const std::vector<int>& kept, Path& path) {
   require_positive_length(model, program);
@@ -375,8 +375,8 @@ void follow(const SpringSlider& model, const thermal::Program& program,
   path.largest_compression = path.largest_compression_temperature_change = 0.0;
   path.largest_axial_force = path.largest_compression_time = 0.0;
   path.told.reset();
-  // A cycle that touches both stops has 12 events, with a play 16; more only in a table with many
-  // turns.
+  // A cycle that touches both stops has 12 events, with a play 16; only tables with many reversals
+  // have more.
   path.segments.reserve(16 * kept.size());
   path.events.reserve(16 * kept.size());
   path.cycle_end_displacements.reserve(static_cast<std::size_t>(program.cycles));
@@ -389,8 +389,8 @@ void follow(const SpringSlider& model, const thermal::Program& program,
   follower.end();
 }
 
-/// Cycles that hold `times`, with their neighbours, because t/P is rounded; the first two, the
-/// last.
+/// Cycles that contain `times`, with their neighbours because t/P is rounded, and the first two and
+/// the last.
 std::vector<int> cycles_of(const thermal::Program& program,
                            const Eigen::Ref<const Eigen::VectorXd>& times) {
   const int last = program.cycles - 1;
@@ -441,7 +441,8 @@ Place place_at(const SpringSlider& model, const thermal::Program& program, const
       std::minmax(segment.start_temperature_change, segment.end_temperature_change);
   const double change = std::clamp(program.temperature_change(time), lowest, highest);
   const double x = displacement(model, segment, change);
-  // Sliding, the block carries exactly the friction limit; a difference of x and x_T would not.
+  // During sliding the block carries exactly the friction limit; the difference of x and x_T would
+  // not give that.
   if (segment.moves()) {
     const SpringSlider pressed = in_region(model, segment.region);
     return {change, x,
@@ -479,7 +480,8 @@ double thermal_work(const SpringSlider& model, const Segment& segment, double te
     const double length = free_length(model, at);
     double strain = 0.0;  // (x − x_T)/l_T
     if (segment.moves()) {
-      // Written out: the difference of x and x_T would lose the digits that the balance is about.
+      // Written out: the difference of x and x_T would lose the digits that the energy balance
+      // needs.
       strain = -(segment.rubs * model.friction_force + pressed.preload_force +
                  pressed.preload_stiffness * thermal_displacement(model, at)) /
                (model.axial_rigidity() + pressed.preload_stiffness * length);
