@@ -74,7 +74,7 @@ Fault fault_of_motion(const yade::Scene& scene, int id, const yade::State& state
   return std::nullopt;
 }
 
-// Zero where nothing moves, or turns, the body, above it where something may.
+// Zero if the body cannot move or rotate, else > 0.
 Fault fault_of_inertia(const yade::Scene& scene, int id, const yade::State& state) {
   constexpr unsigned translations = 7;
   const bool moves = (state.blockedDOFs & translations) != translations;
@@ -93,7 +93,7 @@ Fault fault_of_inertia(const yade::Scene& scene, int id, const yade::State& stat
   return std::nullopt;
 }
 
-// Permanent forces are known once the ForceResetter has run in this step.
+// Permanent forces are known after the ForceResetter has run in this step.
 Fault fault_of_forces(const yade::Scene& scene, int id) {
   auto& forces = const_cast<yade::ForceContainer&>(scene.forces);  // its readers are not const
   if (forces.lastReset != scene.iter || !forces.getPermForceUsed()) return std::nullopt;
@@ -113,7 +113,7 @@ Fault fault_of_body(const yade::Scene& scene, int id) {
   if (!scene.bodies->exists(id)) return std::nullopt;
   const yade::Body& body = *body_at(scene, static_cast<std::size_t>(id));
   const yade::State& state = *body.state;
-  // Causes before what they lead to.
+  // Causes come before their effects.
   if (Fault fault = fault_of_inertia(scene, id, state)) return fault;
   if (Fault fault = fault_of_forces(scene, id)) return fault;
   if (Fault fault = fault_of_motion(scene, id, state)) return fault;

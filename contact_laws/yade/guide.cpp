@@ -22,7 +22,8 @@ void GuidePlanes::action() {
     throw std::invalid_argument("GuidePlanes: " + std::to_string(ids.size()) + " ids, but " +
                                 std::to_string(normals.size()) + " normals");
   }
-  // All forces before the first is added: adding one makes YADE ask for another sum.
+  // All forces are read before the first is added, because adding one makes YADE require another
+  // sum.
   scene->forces.sync();
   std::vector<Vector3r> held(ids.size());
   for (std::size_t i = 0; i < ids.size(); ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the steps of a contact (statejump/stepper) put what they do, in YADE. On the path of every
-// step: inline.
+// Transfers the results of a contact step (statejump/stepper) to YADE. Called in every step, so
+// inline.
 #pragma once
 
 #include <algorithm>
@@ -45,7 +45,7 @@ struct ContactHost {
 };
 
 // Physics of a new contact of two materials.
-// @param inverse_mass 1/m1 + 1/m2 [1/kg]; @param fail is given a sentence
+// @param inverse_mass 1/m1 + 1/m2 [1/kg]; @param fail receives a sentence
 template <class Physics, class Fail>
 void fill_physics(const Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys& functor,
                   const ThermalFrictMat& first, const ThermalFrictMat& second, Real inverse_mass,
@@ -66,7 +66,7 @@ void fill_physics(const Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys& functor,
   physics.tangentialDampingRatio = functor.tangentialDampingRatio;
 }
 
-// What a contact is and keeps, between YADE's objects and plain values, either way.
+// Copies the state of a contact between YADE's objects and plain values, in either direction.
 template <class From, class To>
 void copy_geometry(const From& from, To& to) {
   to.normal = from.normal;

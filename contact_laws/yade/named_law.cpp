@@ -18,7 +18,7 @@ namespace {
 
 namespace laws = kernel::laws;
 
-// The name of a law of one kind, or a sentence that lists the known ones.
+// Returns the law of one kind by name, or throws a sentence that lists the known names.
 template <class Law>
 Law law_by_name(Law (*find)(const std::string&), const char* class_name, const char* attribute,
                 const std::string& name) {
@@ -37,7 +37,7 @@ Law law_by_name(Law (*find)(const std::string&), const char* class_name, const c
   return find(name);
 }
 
-// A sentence that lives as long as the program, as Python's documentation wants it.
+// A sentence that lives until the program ends, as Python's documentation requires.
 const char* kept(const std::string& sentence) {
   static std::mutex mutex;
   static std::set<std::string> sentences;

@@ -44,7 +44,7 @@ inline void require_not_negative(const char* class_name, const char* attribute, 
   require(stepper::ValueRange::not_negative, class_name, attribute, value, unit);
 }
 
-// Numbers that a script may set: those that may be used, and 0 for what is not set yet.
+// Numbers that a script may set: the allowed ones, and 0 for a value not yet set.
 template <class Object, std::size_t size>
 void require_settable(const char* class_name, const stepper::Quantities<Object, size>& quantities,
                       const Object& object) {
