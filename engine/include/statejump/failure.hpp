@@ -13,21 +13,22 @@ namespace statejump {
 
 /// Reason why a model with valid input has no result.
 enum class FailureKind : unsigned char {
-  mechanism,  ///< Truss: free modes without any slip.
-  held_mechanism,  ///< Truss: free modes in the reference configuration with every joint constrained.
+  mechanism,           ///< Truss: free modes without any slip.
+  held_mechanism,      ///< Truss: free modes in the reference configuration with every joint
+                       ///< constrained.
   friction_exhausted,  ///< Truss: free modes once the friction of joints is at its limit.
-  overloaded,  ///< Truss: at the start the loads exceed the friction of a joint.
-  buckled,  ///< Truss: unstable for every status of the joints.
+  overloaded,          ///< Truss: at the start the loads exceed the friction of a joint.
+  buckled,             ///< Truss: unstable for every status of the joints.
   unloaded_joint,  ///< Joint without force at the start: its position in the play is undetermined.
-  jump_across_play,  ///< Revolute whose contact force vanishes along the path.
-  singular,          ///< No equilibrium found: the equations are singular to rounding.
-  not_converged,  ///< No equilibrium found: the iteration does not converge.
-  no_continuation,  ///< Truss: no quasi-static continuation; unstable slip or snap-through.
+  jump_across_play,       ///< Revolute whose contact force vanishes along the path.
+  singular,               ///< No equilibrium found: the equations are singular to rounding.
+  not_converged,          ///< No equilibrium found: the iteration does not converge.
+  no_continuation,        ///< Truss: no quasi-static continuation; unstable slip or snap-through.
   several_continuations,  ///< Truss: statics allows several continuations.
-  unsettled_joint,  ///< Truss: the status of a joint cycles.
-  too_many_steps,  ///< Truss: the path needs too many steps.
-  law_left_range,  ///< Dynamics: a contact law is evaluated outside its range.
-  not_finite  ///< Dynamics: the time steps are too long.
+  unsettled_joint,        ///< Truss: the status of a joint cycles.
+  too_many_steps,         ///< Truss: the path needs too many steps.
+  law_left_range,         ///< Dynamics: a contact law is evaluated outside its range.
+  not_finite              ///< Dynamics: the time steps are too long.
 };
 
 /// "mechanism", "held_mechanism", …: the enumerator's name.
@@ -51,9 +52,9 @@ struct FailureJoint {
 /// A failure as fields. Fields that do not apply are empty.
 struct FailureFields {
   FailureKind kind;
-  std::vector<FailureJoint> joints = {};  ///< Joints that fail.
+  std::vector<FailureJoint> joints = {};          ///< Joints that fail.
   std::vector<FailureMode> modes = {};            ///< Of a mechanism or of buckling.
-  int mode_count = 0;  ///< May exceed the number described in `modes`.
+  int mode_count = 0;                             ///< May exceed the number described in `modes`.
   bool more_modes = false;                        ///< There may be more than `mode_count`.
   std::optional<double> time = {};                ///< [s]
   std::optional<double> temperature_change = {};  ///< ΔT [K]; for a truss that of its first program
@@ -63,7 +64,7 @@ struct FailureFields {
   /// Message of the law or part of the program that detected the failure.
   std::string cause = {};
   std::string before = {};  ///< Previous status of an unsettled joint.
-  std::string after = {};  ///< New status of an unsettled joint.
+  std::string after = {};   ///< New status of an unsettled joint.
   /// Further numbers: name with unit, value.
   std::vector<std::pair<std::string, double>> numbers = {};
 };

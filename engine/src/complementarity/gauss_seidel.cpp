@@ -12,7 +12,7 @@ namespace {
 /// A contact whose normal compliance is below the rounding of the mean one cannot be solved alone.
 constexpr double least_compliance = 1e-15;
 /// Sweeps between two evaluations of the merit, each of which costs a sweep.
-constexpr int sweeps_per_look = 5;
+constexpr int sweeps_per_check = 5;
 
 }  // namespace
 
@@ -33,7 +33,7 @@ Iterate gauss_seidel(const ScaledProblem& problem, Iterate from, int sweeps, dou
       problem.add_columns(i, after - before, u);
       set_block(r, i, d, after);
     }
-    if (sweep % sweeps_per_look == 0 || sweep == sweeps) {
+    if (sweep % sweeps_per_check == 0 || sweep == sweeps) {
       if (problem.merit(r, u) <= tolerance) break;
     }
   }

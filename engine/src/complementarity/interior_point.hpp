@@ -48,18 +48,33 @@ class InteriorPoint {
     std::vector<Block> dx;
     std::vector<Block> dz;
   };
+  /// The equations linearised at the current pairs.
+  struct Linearised {
+    std::vector<Scaling> scalings;
+    std::vector<BlockMatrix> a;    ///< A, with the friction term unless it lags.
+    std::vector<Block> residuals;  ///< Of z.
+    std::vector<Block> squares;    ///< lambda∘lambda
+    double gap;                    ///< Mean of x.z.
+    double reaction_squares;       ///< Sum of |x|^2.
+    double residual_squares;       ///< Sum of |residual|^2.
+  };
 
+  Linearised linearised(bool lagged) const;
   BlockSystem factored(const std::vector<Scaling>& scalings,
                        const std::vector<BlockMatrix>& a) const;
   /// Direction for given Jordan products x∘z + dx∘z + x∘dz; false if the equations are singular.
   bool solve(const BlockSystem& system, const std::vector<Scaling>& scalings,
              const std::vector<BlockMatrix>& a, const std::vector<Block>& residuals,
-             const std::vector<Block>& aims, Direction& direction) const;
+             const std::vector<Block>& targets, Direction& direction) const;
   double longest_step(const Direction& direction) const;
+  /// Mean of x.z after the longest step in a direction.
+  double gap_after_predictor(const Direction& direction) const;
+  /// Makes a step and updates the number of lagged steps.
+  void move(const Direction& direction, double step, bool lagged);
 
   const ScaledProblem& problem_;
   std::vector<Cone> cones_;
-  int lag_ = 0;  ///< Remaining steps with lagged friction.
+  int lag_ = 0;         ///< Remaining steps with lagged friction.
   int lag_length_ = 0;  ///< Their number when it was last set.
 };
 

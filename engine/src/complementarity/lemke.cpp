@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 /// Smallest pivot: larger than the rounding of some hundred eliminations of entries of order one.
 constexpr double least_pivot = 1e-11;
 /// Ratios and entries that differ by less are equal up to rounding.
-constexpr double same = 1e-12;
+constexpr double tie_tolerance = 1e-12;
 
 /// Matrix of the linear complementarity problem; z = (r_n, p, m, lambda) of each contact.
 MatrixXd lcp_matrix(const ScaledProblem& problem) {
@@ -118,11 +118,11 @@ class Table {
     const double a = rows_(i, entering);
     const double b = rows_(j, entering);
     const double difference = value(i) / a - value(j) / b;
-    if (std::abs(difference) > same) return difference < 0.0;
+    if (std::abs(difference) > tie_tolerance) return difference < 0.0;
     if (is_artificial(i) || is_artificial(j)) return is_artificial(i);
     for (Index k = 0; k < size_; ++k) {
       const double step = rows_(i, k) / a - rows_(j, k) / b;
-      if (std::abs(step) > same) return step < 0.0;
+      if (std::abs(step) > tie_tolerance) return step < 0.0;
     }
     return false;
   }

@@ -19,7 +19,7 @@ using kernel::require;
 
 /// Largest fraction of nonzero entries of a dense matrix that is factored as a sparse one, unless
 /// it is small. Measured on piles of bodies: at 0.05 both take the same time.
-constexpr double most_sparse_share = 0.05;
+constexpr double largest_sparse_fraction = 0.05;
 constexpr Eigen::Index least_sparse_size = 200;
 
 bool all_finite(const Delassus& delassus) {
@@ -103,7 +103,7 @@ ScaledProblem::ScaledProblem(const Problem& problem)
   if (const auto* dense = std::get_if<Eigen::MatrixXd>(&delassus_)) {
     const auto entries = static_cast<double>((dense->array() != 0.0).count());
     if (dense->rows() >= least_sparse_size &&
-        entries < most_sparse_share * static_cast<double>(dense->size())) {
+        entries < largest_sparse_fraction * static_cast<double>(dense->size())) {
       delassus_ = Eigen::SparseMatrix<double>(dense->sparseView());
     }
   }

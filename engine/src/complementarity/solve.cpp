@@ -116,7 +116,8 @@ class Driver {
     constexpr int sweeps_per_report = 500;
     while (sweeps > 0 && !ended()) {
       const int now = std::min(sweeps, sweeps_per_report);
-      Iterate next = gauss_seidel(scaled_, std::move(from), now, aim(), counted_.gauss_seidel);
+      Iterate next =
+          gauss_seidel(scaled_, std::move(from), now, scaled_tolerance(), counted_.gauss_seidel);
       from = next;
       judge(std::move(next), Method::gauss_seidel);
       sweeps -= now;
@@ -124,7 +125,8 @@ class Driver {
     return from;
   }
   void run_newton(Iterate from, int systems) {
-    judge(newton(scaled_, std::move(from), systems, aim(), counted_.newton), Method::newton);
+    judge(newton(scaled_, std::move(from), systems, scaled_tolerance(), counted_.newton),
+          Method::newton);
   }
   void run_lemke() {
     const int most = pivots_per_contact * static_cast<int>(problem_.contacts());
@@ -163,7 +165,7 @@ class Driver {
 
   /// Tolerance of the scaled merit; the factor leaves room for the natural map in the caller's
   /// units.
-  double aim() const { return 0.1 * options_.tolerance; }
+  double scaled_tolerance() const { return 0.1 * options_.tolerance; }
 
   void judge(Iterate iterate, Method method) {
     const Eigen::VectorXd r = iterate.r * scaled_.reaction_unit();

@@ -138,10 +138,10 @@ double root(double before, double value_before, double after, double value_after
 }
 
 /// Follows the path.
-class Walk {
+class PathFollower {
  public:
-  Walk(const linkage::Linkage& model, const ElasticLoopOptions& options, double contact_angle,
-       ElasticLoop& loop)
+  PathFollower(const linkage::Linkage& model, const ElasticLoopOptions& options,
+               double contact_angle, ElasticLoop& loop)
       : model_(model),
         equations_(model),
         compliance_(options.compliance),
@@ -407,19 +407,19 @@ ElasticLoop elastic_loop(const linkage::Linkage& model, const thermal::Program& 
             "> 0 m at every temperature of the program");
   }
   ElasticLoop loop;
-  Walk walk(model, options, contact_angle, loop);
+  PathFollower follower(model, options, contact_angle, loop);
   for (const thermal::Branch& branch : branches) {
     if (branch.end == branch.start) continue;
-    walk.turn(branch.end);
+    follower.turn(branch.end);
     for (int i = 1; i <= options.samples; ++i) {
       const double part = static_cast<double>(i) / options.samples;
       const double to =
           i == options.samples ? branch.end : branch.start + part * (branch.end - branch.start);
-      if (!walk.advance(to)) return loop;
-      walk.sample();
+      if (!follower.advance(to)) return loop;
+      follower.sample();
     }
   }
-  walk.event();
+  follower.event();
   return loop;
 }
 

@@ -130,7 +130,7 @@ void Equations::evaluate(const FrictionLine& line, const Parameters& p, const Ve
   const double arm2 = p.r2.value + 0.5 * z[dep];
   const double distance = p.clearance() + z[dep];
   const double normal = normal_force(p, z[dep]);
-  const double normal_slope = 1.5 * p.hertz.value * std::sqrt(std::abs(z[dep]));
+  const double normal_slope = normal_force_slope(p, z[dep]);
   const Vector2d force = normal * n - z[ft] * t;
   const Vector2d force_psi = normal * t + z[ft] * n;
   const double couple1 = moment(z) - arm2 * z[ft];
@@ -172,9 +172,14 @@ void Equations::evaluate(const FrictionLine& line, const Parameters& p, const Ve
   jacobian.block<2, 1>(closure_x, dep) = -n;
   jacobian.block<2, 1>(closure_x, psi) = -distance * t;
 
+  evaluate_friction(line, p, z, residual, jacobian);
+}
+
+void Equations::evaluate_friction(const FrictionLine& line, const Parameters& p, const Vector& z,
+                                  Vector& residual, Matrix& jacobian) const {
   if (!line.sticks) {
-    residual[friction] = z[ft] - line.ratio * normal;
-    jacobian(friction, dep) = -line.ratio * normal_slope;
+    residual[friction] = z[ft] - line.ratio * normal_force(p, z[dep]);
+    jacobian(friction, dep) = -line.ratio * normal_force_slope(p, z[dep]);
     jacobian(friction, ft) = 1.0;
     return;
   }

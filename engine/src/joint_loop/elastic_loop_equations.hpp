@@ -46,6 +46,10 @@ inline Eigen::Vector2d across(const Eigen::Vector2d& u) {
 inline double normal_force(const Parameters& p, double depth) {
   return p.hertz.value * depth * std::sqrt(std::abs(depth));
 }
+/// dF_N/dδ [N/m].
+inline double normal_force_slope(const Parameters& p, double depth) {
+  return 1.5 * p.hertz.value * std::sqrt(std::abs(depth));
+}
 inline double tangential_stiffness(const Parameters& p, double depth) {
   return p.shear.value * std::sqrt(std::abs(depth));
 }
@@ -132,7 +136,7 @@ struct FrictionLine {
   double ratio = 0.0;
   TangentialCompliance compliance = TangentialCompliance::rigid;
   const Equilibrium* from = nullptr;  ///< start of the step
-  double arc = 0.0;  ///< Slide::arc() without slide
+  double arc = 0.0;                   ///< Slide::arc() without slide
   double past = 0.0;                  ///< Slide::rest() since then, up to `from` [m]
   const PartialSlip* partial = nullptr;
 };
@@ -157,6 +161,9 @@ class Equations {
  private:
   void evaluate(const FrictionLine& line, const Parameters& p, const Vector& z, Vector& residual,
                 Matrix& jacobian) const;
+  /// The friction line alone; the other entries of its row must be 0.
+  void evaluate_friction(const FrictionLine& line, const Parameters& p, const Vector& z,
+                         Vector& residual, Matrix& jacobian) const;
   static void evaluate_partial(const FrictionLine& line, const Parameters& p, const Vector& z,
                                double slide, Vector& residual, Matrix& jacobian);
   bool judge(const FrictionLine& line, const Vector& residual, Equilibrium& at) const;

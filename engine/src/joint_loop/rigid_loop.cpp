@@ -16,9 +16,9 @@ using numerics::change_between;
 namespace {
 
 /// Follows the path; `arc` is the constant of the current roll.
-class Walk {
+class PathFollower {
  public:
-  Walk(const linkage::Linkage& model, int side, double contact_angle)
+  PathFollower(const linkage::Linkage& model, int side, double contact_angle)
       : model_(model), side_(side), limit_(std::atan(model.friction_coefficient())) {
     now_ = joint_point(model_, 0.0, side_, contact_angle);
     arc_ = rolling_arc(model_, now_);
@@ -148,42 +148,42 @@ RigidLoop rigid_loop(const linkage::Linkage& model, const thermal::Program& prog
   const int side = loaded_side(model, contact_angle);
 
   RigidLoop loop;
-  Walk walk(model, side, contact_angle);
-  loop.points.push_back(walk.now());
+  PathFollower follower(model, side, contact_angle);
+  loop.points.push_back(follower.now());
   bool first = true;
   const auto event = [&loop](const JointPoint& point) { loop.events.push_back(point); };
   for (const thermal::Branch& branch : thermal::monotone_branches(program)) {
     // Rolling resumes at every corner: a reversal brings φ back into the cone.
     bool fresh = true;
     for (int i = 1; i <= samples; ++i) {
-      const double from = walk.now().temperature_change;
+      const double from = follower.now().temperature_change;
       const double part = static_cast<double>(i) / samples;
       const double to =
           i == samples ? branch.end : branch.start + part * (branch.end - branch.start);
-      const JointMotion before = walk.now().motion;
-      const bool slips = walk.slips(to);
-      const JointPoint reached = walk.next(to);
-      if (!walk.loaded(reached)) {
+      const JointMotion before = follower.now().motion;
+      const bool slips = follower.slips(to);
+      const JointPoint reached = follower.next(to);
+      if (!follower.loaded(reached)) {
         const double at = change_between(from, to, [&](double heat) {
-                            return !walk.loaded(walk.next(heat));
+                            return !follower.loaded(follower.next(heat));
                           }).after;
-        walk.accept(walk.next(at), JointMotion::separated);
-        event(walk.now());
-        loop.points.push_back(walk.now());
+        follower.accept(follower.next(at), JointMotion::separated);
+        event(follower.now());
+        loop.points.push_back(follower.now());
         loop.separated = true;
         return loop;
       }
       const JointMotion motion = slips ? JointMotion::slip : JointMotion::roll;
       if (fresh || motion != before) {
-        JointPoint change = walk.now();
+        JointPoint change = follower.now();
         change.motion = motion;
-        if (slips && std::abs(walk.now().contact_angle) < limit) {
+        if (slips && std::abs(follower.now().contact_angle) < limit) {
           if (fresh) {
             change.motion = JointMotion::roll;
             event(change);
           }
-          const auto slips_at = [&](double heat) { return walk.slips(heat); };
-          change = walk.next(change_between(from, to, slips_at).after);
+          const auto slips_at = [&](double heat) { return follower.slips(heat); };
+          change = follower.next(change_between(from, to, slips_at).after);
           change.motion = JointMotion::slip;
           loop.points.push_back(change);
         }
@@ -191,11 +191,11 @@ RigidLoop rigid_loop(const linkage::Linkage& model, const thermal::Program& prog
         if (first) loop.points.front().motion = loop.events.front().motion;
       }
       first = fresh = false;
-      walk.accept(reached, motion);
-      loop.points.push_back(walk.now());
+      follower.accept(reached, motion);
+      loop.points.push_back(follower.now());
     }
   }
-  event(walk.now());
+  event(follower.now());
   return loop;
 }
 

@@ -13,7 +13,7 @@ namespace statejump::linear {
 /// compute them, unlike in KLU. The order of all sums depends only on the matrix, not on the number
 /// of threads.
 struct HalvedOrder {
-  int second = 0;  ///< First pivot of the second half.
+  int second = 0;     ///< First pivot of the second half.
   int separator = 0;  ///< First pivot of the separator; 0: the matrix is not divided.
 
   bool is_cut() const { return separator > 0; }
@@ -62,7 +62,7 @@ class HalvedFactors {
  private:
   HalvedOrder order_;
   std::vector<double> row_size_;  // the largest entry of every row
-  std::vector<double> work_;  // for the second half; KLU has its own
+  std::vector<double> work_;      // for the second half; KLU has its own
 };
 
 }  // namespace statejump::linear

@@ -29,14 +29,14 @@ enum Component : std::size_t {
 };
 
 /// Links and elastic contact only, no couple on a link: the most frequent case.
-struct Plain {
-  static constexpr bool rich = false;
+struct BasicTerms {
+  static constexpr bool all_terms = false;
   using Vector = std::array<double, 10>;
 };
 
 /// All terms.
-struct Rich {
-  static constexpr bool rich = true;
+struct AllTerms {
+  static constexpr bool all_terms = true;
   using Vector = std::array<double, 14>;
 };
 
@@ -57,7 +57,7 @@ struct Constants {
   kernel::laws::JointLaw law;
   double pin_damping, torsion, free_angle;
   bool friction, friction_has_memory, dissipation, couples, expanding;
-  bool rich() const { return couples || dissipation; }
+  bool all_terms() const { return couples || dissipation; }
 };
 
 /// Does not check the model.
@@ -68,11 +68,11 @@ struct Temperature {
 };
 
 /// A branch of the temperature program with its slope precomputed.
-struct Course {
+struct Trajectory {
   const thermal::Branch& branch;
   double slope;  // [K/s], if the branch is straight
 
-  explicit Course(const thermal::Branch& b)
+  explicit Trajectory(const thermal::Branch& b)
       : branch(b), slope((b.end - b.start) / (b.end_time - b.start_time)) {}
 
   Temperature operator()(double time) const {
@@ -112,16 +112,16 @@ struct ContactPoint {
 };
 
 /// |d|² − c², > 0 in contact; no square root.
-template <class Kind>
-double overlap(const Constants& k, const typename Kind::Vector& y, double temperature_change) {
+template <class Terms>
+double overlap(const Constants& k, const typename Terms::Vector& y, double temperature_change) {
   const double c = radii_at(k, temperature_change).clearance();
   const double dx = y[2] - y[0];
   const double dy = y[3] - y[1];
   return dx * dx + dy * dy - c * c;
 }
 
-template <class Kind>
-ContactPoint contact_point(const Constants& k, const typename Kind::Vector& y,
+template <class Terms>
+ContactPoint contact_point(const Constants& k, const typename Terms::Vector& y,
                            const Temperature& heat, const Radii& radii) {
   const double dx = y[2] - y[0];
   const double dy = y[3] - y[1];
@@ -152,20 +152,20 @@ struct TurnRates {
   double ab, bc;
 };
 
-template <class Kind>
-TurnRates turn_rates(const Constants& k, const typename Kind::Vector& y) {
+template <class Terms>
+TurnRates turn_rates(const Constants& k, const typename Terms::Vector& y) {
   const double bx = y[2] - k.bc.pin_x;
   return {(y[0] * y[5] - y[1] * y[4]) / (y[0] * y[0] + y[1] * y[1]),
           (bx * y[7] - y[3] * y[6]) / (bx * bx + y[3] * y[3])};
 }
 
 /// The contact in the plane, in the form of the kernel's tangential velocity laws.
-template <class Kind>
+template <class Terms>
 struct SpatialContact {
   kernel::JointContact contact;
   kernel::BodyMotion journal, bearing;
 
-  SpatialContact(const typename Kind::Vector& y, const ContactPoint& at, const Radii& radii,
+  SpatialContact(const typename Terms::Vector& y, const ContactPoint& at, const Radii& radii,
                  const TurnRates& turn) {
     const kernel::Vector3 normal(at.nx, at.ny, 0.0);
     journal = {{y[2], y[3], 0.0}, {y[6], y[7], 0.0}, {0.0, 0.0, turn.bc}};
@@ -187,8 +187,8 @@ inline const kernel::Vector3& joint_axis() {
 }
 
 /// Speed [m/s] of journal relative to bearing along (−n_y, n_x), by the tangential velocity law.
-template <class Kind>
-double sliding_speed(const Constants& k, const SpatialContact<Kind>& spatial,
+template <class Terms>
+double sliding_speed(const Constants& k, const SpatialContact<Terms>& spatial,
                      const ContactPoint& at) {
   const kernel::Vector3 v = std::visit(
       [&](const auto& law) {
@@ -244,12 +244,13 @@ struct ContactEffect {
 };
 
 /// Separate from rates(), which is short while the joint is open. Adds to the energy rates.
-template <class Kind>
-[[gnu::noinline]] ContactEffect contact_effect(const Constants& k, const typename Kind::Vector& y,
+template <class Terms>
+[[gnu::noinline]] ContactEffect contact_effect(const Constants& k, const typename Terms::Vector& y,
                                                const Temperature& heat, const State& memory,
-                                               const TurnRates& turn, typename Kind::Vector& rate) {
+                                               const TurnRates& turn,
+                                               typename Terms::Vector& rate) {
   const Radii radii = radii_at(k, heat.change);
-  const ContactPoint at = contact_point<Kind>(k, y, heat, radii);
+  const ContactPoint at = contact_point<Terms>(k, y, heat, radii);
   const NormalForce normal = normal_force(k, at, radii, memory.impact_speed);
   ContactEffect effect;
   effect.fx = normal.force * at.nx;
@@ -259,10 +260,10 @@ template <class Kind>
         (radii_energy_rate(k, at.depth, heat.change) - normal.force * (k.r2_rate - k.r1_rate)) *
         heat.rate;
   }
-  if constexpr (Kind::rich) {
+  if constexpr (Terms::all_terms) {
     rate[impact_heat] = (normal.force - normal.elastic.force) * at.approach_speed;
     if (k.friction) {
-      const SpatialContact<Kind> spatial(y, at, radii, turn);
+      const SpatialContact<Terms> spatial(y, at, radii, turn);
       const double speed = sliding_speed(k, spatial, at);
       rate[slide] = speed;
       kernel::ContactHistory trial = memory.contact;
@@ -283,26 +284,26 @@ template <class Kind>
   return effect;
 }
 
-template <class Kind>
-void rates(const Constants& k, const typename Kind::Vector& y, const Temperature& heat,
-           const State& memory, typename Kind::Vector& rate) {
+template <class Terms>
+void rates(const Constants& k, const typename Terms::Vector& y, const Temperature& heat,
+           const State& memory, typename Terms::Vector& rate) {
   for (std::size_t i = thermal_work; i < rate.size(); ++i) rate[i] = 0.0;
   LinkForces ab = link_forces(k.ab, y[0], y[1], y[4], y[5], heat, rate);
   LinkForces bc = link_forces(k.bc, y[2], y[3], y[6], y[7], heat, rate);
   TurnRates turn{};
-  if constexpr (Kind::rich) {
+  if constexpr (Terms::all_terms) {
     turn = {(ab.ux * y[5] - ab.uy * y[4]) * ab.inverse_length,
             (bc.ux * y[7] - bc.uy * y[6]) * bc.inverse_length};
   }
   ContactEffect joint;
-  if (overlap<Kind>(k, y, heat.change) > 0.0) {
-    joint = contact_effect<Kind>(k, y, heat, memory, turn, rate);
+  if (overlap<Terms>(k, y, heat.change) > 0.0) {
+    joint = contact_effect<Terms>(k, y, heat, memory, turn, rate);
     ab.fx += joint.fx;
     ab.fy += joint.fy;
     bc.fx -= joint.fx;
     bc.fy -= joint.fy;
   }
-  if constexpr (Kind::rich) {
+  if constexpr (Terms::all_terms) {
     double moment = 0.0;
     if (k.torsion > 0.0) {
       moment =
@@ -329,9 +330,9 @@ void rates(const Constants& k, const typename Kind::Vector& y, const Temperature
   rate[7] = bc.fy * k.bc.inverse_mass;
 }
 
-template <class Kind>
-typename Kind::Vector pack(const State& state) {
-  typename Kind::Vector y{};
+template <class Terms>
+typename Terms::Vector pack(const State& state) {
+  typename Terms::Vector y{};
   for (Eigen::Index i = 0; i < 2; ++i) {
     const auto j = static_cast<std::size_t>(i);
     y[j] = state.bearing_centre[i];
@@ -351,10 +352,10 @@ void unpack(const Vector& y, State& state) {
   state.journal_velocity = {y[6], y[7]};
 }
 
-template <class Kind>
-Account account(const typename Kind::Vector& y, double remembered_friction_heat) {
+template <class Terms>
+Account account(const typename Terms::Vector& y, double remembered_friction_heat) {
   Account result{y[thermal_work], y[axial_heat], 0.0, remembered_friction_heat, 0.0};
-  if constexpr (Kind::rich) {
+  if constexpr (Terms::all_terms) {
     result.pin_dissipation = y[pin_heat];
     result.friction_dissipation += y[friction_heat];
     result.impact_dissipation = y[impact_heat];

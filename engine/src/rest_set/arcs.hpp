@@ -15,7 +15,7 @@ inline Eigen::Vector3d on_circle(double radius, double angle, double z = 0.0) {
 
 /// Sums over the components; the caller has set diameter and farthest.
 inline void add_up(RestSet& set) {
-  for (const Part& part : set.parts) {
+  for (const RestComponent& part : set.parts) {
     set.area += part.area;
     set.length += part.length;
   }
@@ -23,9 +23,9 @@ inline void add_up(RestSet& set) {
 
 /// RestStudy of sets with union and intersection; `describe` converts one into a RestSet.
 template <class Set, class Describe, class Unite, class Intersect>
-Study study_of(const std::vector<Set>& sets, Describe&& describe, Unite&& unite,
-               Intersect&& intersect) {
-  Study study;
+RestStudy study_of(const std::vector<Set>& sets, Describe&& describe, Unite&& unite,
+                   Intersect&& intersect) {
+  RestStudy study;
   Set any = sets.front(), all = sets.front();
   for (const Set& set : sets) {
     study.each.push_back(describe(set));

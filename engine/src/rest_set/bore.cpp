@@ -129,7 +129,7 @@ RestSet can(const CanSet& set, double c, double b) {
   for (std::size_t root = 0; root < nodes.size(); ++root) {
     if (components.find(root) != root) continue;
     CanSet own;
-    Part part;
+    RestComponent part;
     part.angle = 0.0;
     const std::array<Intervals*, 3> own_rows = {&own.band, &own.low_rim, &own.high_rim};
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -188,8 +188,8 @@ RestSet can(const CanSet& set, double c, double b) {
 
 }  // namespace
 
-Study rest_in_bore(double clearance, double axial_play, const std::vector<Vector3d>& forces,
-                   double mu) {
+RestStudy rest_in_bore(double clearance, double axial_play, const std::vector<Vector3d>& forces,
+                       double mu) {
   check_length(clearance, "clearance");
   check_length(axial_play, "axial_play");
   check(forces, mu);

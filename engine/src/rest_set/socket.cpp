@@ -96,8 +96,8 @@ class Caps {
                          circles_[following.circle].axis.cross(point));
   }
 
-  Part cap(const Vector3d& axis) const {
-    Part part;
+  RestComponent cap(const Vector3d& axis) const {
+    RestComponent part;
     const double half = std::sin(0.5 * alpha_);
     part.area = 4.0 * pi * c_ * c_ * half * half;
     part.angle = 2.0 * alpha_;
@@ -109,7 +109,7 @@ class Caps {
   RestSet points() const {
     RestSet result;
     for (const CapCircle& circle : circles_) {
-      Part part = cap(circle.axis);
+      RestComponent part = cap(circle.axis);
       part.points = {part.representative};
       result.parts.push_back(part);
     }
@@ -154,7 +154,7 @@ RestSet Caps::any() const {
         k = following;
       }
     }
-    Part part = cap(circles_[root].axis);
+    RestComponent part = cap(circles_[root].axis);
     bool alone = true;
     for (std::size_t i = 0; i < n; ++i) {
       if (components.find(i) != root) continue;
@@ -208,7 +208,7 @@ RestSet Caps::all() const {
   }
   if (arcs.empty()) return result;
 
-  Part part;
+  RestComponent part;
   double area = 2.0 * pi;
   Vector3d middle = Vector3d::Zero();
   std::vector<Vector3d> candidates;
@@ -252,11 +252,11 @@ RestSet Caps::all() const {
 
 }  // namespace
 
-Study rest_in_socket(double clearance, const std::vector<Vector3d>& forces, double mu) {
+RestStudy rest_in_socket(double clearance, const std::vector<Vector3d>& forces, double mu) {
   check_length(clearance, "clearance");
   check(forces, mu);
   const double alpha = std::atan(mu);
-  Study study;
+  RestStudy study;
   for (const Vector3d& force : forces) {
     study.each.push_back(Caps({force}, alpha, clearance).any());
   }

@@ -247,7 +247,7 @@ class Cutter {
       }
     }
     struct Collected {
-      Part part;
+      RestComponent part;
       std::vector<Vector3d> points;
       double least = std::numeric_limits<double>::infinity();
     };
@@ -292,7 +292,7 @@ class Cutter {
     RestSet result;
     std::vector<Vector3d> all_points;
     for (auto& [root, collected] : parts) {
-      Part part = collected.part;
+      RestComponent part = collected.part;
       std::vector<Vector3d>& points = collected.points;
       if (mesh_.project) {
         part.representative = mesh_.project(part.representative);

@@ -11,8 +11,8 @@ namespace statejump::complementarity {
 
 /// Solution method.
 enum class Method : unsigned char {
-  automatic,  ///< The other methods in turn; see solve().
-  gauss_seidel,  ///< Contact by contact, each solved exactly. Slow but robust.
+  automatic,       ///< The other methods in turn; see solve().
+  gauss_seidel,    ///< Contact by contact, each solved exactly. Slow but robust.
   newton,          ///< Semismooth Newton on the Alart-Curnier equations.
   interior_point,  ///< Path-following on De Saxcé's second-order cones.
   lemke            ///< Pivoting; dimension 2 only.
@@ -24,7 +24,7 @@ const char* to_string(Method method);
 enum class Status : unsigned char {
   solved,         ///< Merit::largest() <= tolerance.
   not_converged,  ///< No method reached the tolerance. A solution may exist or not.
-  cancelled  ///< The progress callback returned false.
+  cancelled       ///< The progress callback returned false.
 };
 
 /// "solved", "not_converged", "cancelled": the enumerator's name.
@@ -44,11 +44,11 @@ struct Iterations {
   int gauss_seidel = 0;    ///< Sweeps over all contacts.
   int newton = 0;          ///< Linear systems solved.
   int interior_point = 0;  ///< Linear systems factored.
-  int pivots = 0;  ///< In Lemke's table.
+  int pivots = 0;          ///< In Lemke's table.
 };
 
 struct Solution {
-  Eigen::VectorXd reactions;  ///< Best reactions found.
+  Eigen::VectorXd reactions;   ///< Best reactions found.
   Eigen::VectorXd velocities;  ///< W reactions + q.
   Merit merit;
   Iterations iterations;

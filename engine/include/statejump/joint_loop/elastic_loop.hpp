@@ -49,7 +49,7 @@ struct ElasticLoop {
   bool separated = false;
   double largest_force_residual = 0.0;    ///< of all points, over the joint force there [-]
   double largest_closure_residual = 0.0;  ///< of all points, closure and friction's slide [m]
-  int most_iterations = 0;  ///< of one converged Newton solve
+  int most_iterations = 0;                ///< of one converged Newton solve
   double theta2_jump() const { return points.back().theta2 - points.front().theta2; }  ///< [rad]
   double theta4_jump() const { return points.back().theta4 - points.front().theta4; }  ///< [rad]
   Eigen::Vector2d bearing_jump() const {                                               ///< [m]

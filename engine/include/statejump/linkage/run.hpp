@@ -10,7 +10,7 @@ namespace statejump::linkage {
 
 /// Steps and samples of a run.
 struct RunOptions {
-  int steps = 100000;  ///< Steps over the whole program; default from the paper. See simulate()
+  int steps = 100000;    ///< Steps over the whole program; default from the paper. See simulate()
   int sample_every = 0;  ///< Steps between samples, >= 0; 0: only the start and the end
 };
 

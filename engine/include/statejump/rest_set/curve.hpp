@@ -67,7 +67,7 @@ Curve journal_in_profile(const std::function<double(double)>& rho, double journa
 /// rounding. Lengths have an error of fourth order in the node distance on smooth curves. Line
 /// searches along the curve improve the farthest pair of nodes. A component that N enters and
 /// leaves between two nodes is missed unless N passes −F there.
-Study rest_on_curves(const std::vector<Curve>& curves, const std::vector<Eigen::Vector2d>& forces,
-                     double mu);
+RestStudy rest_on_curves(const std::vector<Curve>& curves,
+                         const std::vector<Eigen::Vector2d>& forces, double mu);
 
 }  // namespace statejump::rest_set

@@ -9,7 +9,7 @@
 namespace statejump::rest_set {
 
 /// One connected component of a rest set. Positions [m] of the moving component's centre.
-struct Part {
+struct RestComponent {
   double area = 0.0;      ///< of its two-dimensional pieces [m²]
   double length = 0.0;    ///< of its one-dimensional pieces [m]; an isolated point has neither
   double diameter = 0.0;  ///< largest distance between two of its positions [m]
@@ -36,9 +36,9 @@ struct Part {
 /// This is balance of forces: at μ = 0 it contains crests of S as well as troughs. Moments are
 /// assumed to be carried elsewhere.
 struct RestSet {
-  std::vector<Part> parts;  ///< none: it rests nowhere
-  double area = 0.0;        ///< sum over the parts [m²]
-  double length = 0.0;      ///< sum over the parts [m]
+  std::vector<RestComponent> parts;  ///< none: it rests nowhere
+  double area = 0.0;                 ///< sum over the parts [m²]
+  double length = 0.0;               ///< sum over the parts [m]
   /// Largest distance between two positions [m], also of different components. No state jump of
   /// this joint under the same force is larger.
   double diameter = 0.0;
@@ -49,7 +49,7 @@ struct RestSet {
 };
 
 /// Rest sets of several forces, for example load cases or the temperatures of a cycle.
-struct Study {
+struct RestStudy {
   std::vector<RestSet> each;  ///< one per force
   RestSet any;                ///< positions that at least one force allows
   RestSet all;                ///< positions that every force allows: held through all load cases
@@ -64,21 +64,21 @@ struct Study {
 /// block rests everywhere, on a segment of length 2 c. Otherwise it moves to the stop in the
 /// direction of F_x. Friction on the face of the stop is ignored.
 /// @param clearance c [m], > 0
-Study rest_in_slot(double clearance, const std::vector<Eigen::Vector3d>& forces, double mu);
+RestStudy rest_in_slot(double clearance, const std::vector<Eigen::Vector3d>& forces, double mu);
 
 /// Two-dimensional joint: a journal in a bearing, its centre on the circle of radius c (z = 0).
 ///
 /// With the centre at c e the reaction has N = −e, so it rests if angle(F, e) <= φ = atan μ: an arc
 /// of half-angle φ about the direction of F, diameter 2 c sin φ.
 /// @param clearance c = R2 − R1 [m], > 0
-Study rest_in_bearing(double clearance, const std::vector<Eigen::Vector2d>& forces, double mu);
+RestStudy rest_in_bearing(double clearance, const std::vector<Eigen::Vector2d>& forces, double mu);
 
 /// Three-dimensional joint: a ball in a socket, its centre on the sphere of radius c.
 ///
 /// As rest_in_bearing(): a cap of half-angle φ = atan μ and area 4π c² sin²(φ/2). Unions and
 /// intersections of caps have areas by Gauss-Bonnet on their boundary arcs; diameters are exact.
 /// @param clearance c [m], > 0
-Study rest_in_socket(double clearance, const std::vector<Eigen::Vector3d>& forces, double mu);
+RestStudy rest_in_socket(double clearance, const std::vector<Eigen::Vector3d>& forces, double mu);
 
 /// A cylinder in a bore (axis z) between two shoulders: the centre is on the can of radius c and
 /// height 2 b. The cylinder does not tilt.
@@ -95,7 +95,7 @@ Study rest_in_socket(double clearance, const std::vector<Eigen::Vector3d>& force
 /// points of that lens. Bisection finds the arc. For μ >= 1 wall and shoulder can clamp the
 /// cylinder under any force, and the whole rim is included.
 /// @param clearance c [m], > 0  @param axial_play b: from the middle to either shoulder [m], > 0
-Study rest_in_bore(double clearance, double axial_play, const std::vector<Eigen::Vector3d>& forces,
-                   double mu);
+RestStudy rest_in_bore(double clearance, double axial_play,
+                       const std::vector<Eigen::Vector3d>& forces, double mu);
 
 }  // namespace statejump::rest_set

@@ -27,14 +27,14 @@ struct Mesh {
 /// A convex polygon of a triangle with one set of allowed forces.
 struct Piece {
   std::vector<Eigen::Vector3d> polygon;  ///< in order, at least 3 [m]
-  int triangle = 0;  ///< triangle that contains it
-  int forces = 0;  ///< number of forces under which it allows rest
+  int triangle = 0;                      ///< triangle that contains it
+  int forces = 0;                        ///< number of forces under which it allows rest
 };
 
 /// Rest sets and the surface cut into pieces.
 struct SurfaceStudy {
-  Study study;
-  std::vector<Piece> pieces;  ///< together the whole mesh
+  RestStudy study;
+  std::vector<Piece> pieces;        ///< together the whole mesh
   std::vector<double> cone_angles;  ///< smallest angle(−F, N) over the forces at each vertex [rad]
 };
 

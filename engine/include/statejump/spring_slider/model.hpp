@@ -115,8 +115,8 @@ int region_of(const SpringSlider& model, double displacement);
 /// Start of the block, ΔT = 0.
 struct Start {
   double displacement = 0.0;  ///< x [m], where D = load, or at the stop if it is reached before
-  double load = 0.0;  ///< D0 [N] balanced by friction, without stops
-  double middle = 0.0;  ///< p [m], middle of the play
+  double load = 0.0;          ///< D0 [N] balanced by friction, without stops
+  double middle = 0.0;        ///< p [m], middle of the play
 };
 Start start_of(const SpringSlider& model);
 

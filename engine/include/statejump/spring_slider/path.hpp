@@ -29,16 +29,16 @@ enum class Stage : unsigned char { S1, S2, S3, S4, S5, at_stop_plus, at_stop_min
 
 /// Motion of the block, independent of the stage. `stop`: it rests at a loaded stop. `play`: it
 /// moves in its play.
-enum class Motion : unsigned char { stick, slide, stop, play };
+enum class BlockMotion : unsigned char { stick, slide, stop, play };
 
 /// Instants at which the stage changes or ends.
 enum class EventKind : unsigned char {
   first_slip,     ///< The block starts to slide for the first time.
   slip,           ///< It starts to slide again, away from the stops.
-  stop_reached,  ///< A stop begins to carry force: the block arrives, or the stop is loaded again.
+  stop_reached,   ///< A stop begins to carry force: the block arrives, or the stop is loaded again.
   stop_unloaded,  ///< The stop's force falls to zero; friction keeps the block in place.
-  stop_left,  ///< The block starts to slide away from a stop, or separates from a soft one.
-  reversal,  ///< The temperature rate changes sign while the block slides; the block sticks.
+  stop_left,      ///< The block starts to slide away from a stop, or separates from a soft one.
+  reversal,       ///< The temperature rate changes sign while the block slides; the block sticks.
   force_sign_change,  ///< The axial force passes zero during a stick after a slide.
   cycle_end,          ///< A cycle of the thermal program ends.
   play_opened,        ///< Friction falls to zero; the block moves in its play.
@@ -48,7 +48,7 @@ enum class EventKind : unsigned char {
 /// "S1", …, "S5", "at_stop_plus", "at_stop_minus", "in_play".
 const char* to_string(Stage stage);
 /// "stick", "slide", "stop", "play".
-const char* to_string(Motion motion);
+const char* to_string(BlockMotion motion);
 /// "first_slip", "slip", "stop_reached", …: the enumerator's name.
 const char* to_string(EventKind kind);
 
@@ -67,7 +67,7 @@ struct Event {
 /// form of ΔT there: see displacement().
 struct Segment {
   Stage stage;
-  Motion motion;
+  BlockMotion motion;
   /// Sense of a slide or in the play, side of a stop (+1 or −1); 0 for a stick.
   int direction;
   /// Cycle that the segment belongs to, 0, 1, …
@@ -80,13 +80,13 @@ struct Segment {
   double end_displacement;          ///< x [m]
   double friction_dissipation;      ///< Heat of friction from the program's start to start_time [J]
   double thermal_work;              ///< Work of the temperature over the same time [J]
-  int region = 0;  ///< Side of the soft stop that the block touches; 0: none.
+  int region = 0;                   ///< Side of the soft stop that the block touches; 0: none.
   /// Direction in which friction is at its limit, or the stop beyond it; 0: below the limit.
-  int rubs = 0;
+  int friction_sign = 0;
   double middle = 0.0;  ///< Of the play at start_time [m].
 
   /// Whether x follows the temperature.
-  bool moves() const { return motion == Motion::slide || motion == Motion::play; }
+  bool moves() const { return motion == BlockMotion::slide || motion == BlockMotion::play; }
 };
 
 /// Exact quasi-static path of a spring-slider under a thermal program: the result of solve().
@@ -108,7 +108,7 @@ struct Path {
   /// the end of a segment. See point_at().
   double largest_axial_force = 0.0;
   /// Temperatures reported instead of the program's own, see report_temperatures_of().
-  std::optional<thermal::Program> told;
+  std::optional<thermal::Program> reported;
 
   /// Displacement at the end minus that at the start [m].
   double state_jump() const { return cycle_end_displacements.back() - start_displacement(model); }
@@ -139,14 +139,14 @@ Path solve(const SpringSlider& model, const thermal::Program& program,
 /// Makes events, samples and warnings report the temperature changes of another program at their
 /// times. If the link's coefficient depends on temperature, the solved program is the strain over
 /// one coefficient, and `reported` is the temperature. Segments keep the solved values.
-void tell_temperatures_of(thermal::Program told, Path& path);
+void report_temperatures_of(thermal::Program reported, Path& path);
 
 /// x [m] on the segment at ΔT [K] within the segment: constant in a stick and at a stop, else
 /// sliding_displacement().
 double displacement(const SpringSlider& model, const Segment& segment, double temperature_change);
 
 /// The path at one time.
-struct Place {
+struct PathPoint {
   double temperature_change;  ///< ΔT [K]
   double displacement;        ///< x [m]
   double axial_force;         ///< F [N], positive in compression
@@ -155,8 +155,8 @@ struct Place {
 /// The path at `time` [s] within a segment. The time of an event is rounded, so the program's ΔT
 /// may be outside the segment by one ulp. It is clamped to the segment, so that x stays within the
 /// stops and |F| within the friction limit.
-Place place_at(const SpringSlider& model, const thermal::Program& program, const Segment& segment,
-               double time);
+PathPoint point_at(const SpringSlider& model, const thermal::Program& program,
+                   const Segment& segment, double time);
 
 /// Work of the temperature [J] from the segment's start to ΔT [K].
 ///

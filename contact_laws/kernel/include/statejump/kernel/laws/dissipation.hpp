@@ -12,8 +12,7 @@ namespace statejump::kernel::laws {
 /// Input of an impact dissipation law.
 struct ImpactParameters {
   double restitution = parameter::restitution.default_value;  ///< e [-], in [0, 1]; 1: no loss
-  double impact_speed =
-      1.0;  ///< delta_dot_0 [m/s], > 0: approach speed at the beginning of the contact
+  double impact_speed = 1.0;  ///< delta_dot_0 [m/s], > 0: approach speed when the contact began
 };
 
 /// Checks an impact when it is set. Whether a law accepts e = 0 depends on the law, see
