@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which motions of a body are blocked, and what its mass then counts for.
+// Blocked motions of a body and its effective mass.
 #pragma once
 
 #include "yade_api.hpp"
@@ -10,7 +10,7 @@ namespace statejump::dem {
 constexpr unsigned int all_translations_blocked = 7;
 constexpr unsigned int all_rotations_blocked = 56;
 
-// 1/m [1/kg]; 0 for a body that cannot move and for one without mass, both as infinitely heavy.
+// 1/m [1/kg]; 0, as for infinite mass, for a body that cannot move or has no mass.
 inline yade::Real inverse_mass(const yade::State& state) {
   const bool fixed = (state.blockedDOFs & all_translations_blocked) == all_translations_blocked;
   return fixed || !(state.mass > 0) ? 0 : 1 / state.mass;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bores and cups given by a triangle mesh: shape, contacts and law. The geometry is that of
-// statejump/geometry, the law of one contact that of the joints (joint.hpp).
+// statejump/geometry, the law of one contact that of joint.hpp.
 #pragma once
 
 #include <array>
@@ -98,7 +98,7 @@ struct BoreGeom : RegisteredIndexable<BoreGeom, yade::GenericSpheresContact> {
   std::vector<yade::shared_ptr<JointGeom>> contacts;
   std::vector<int> previous;
   std::vector<Real> known;
-  Real strain_change = 0;  // of the wall in this step, relative; by Ig2 in every step, so not saved
+  Real strain_change = 0;  // of the wall in this step, relative; set in every step, so not saved
 
   BoreGeom() { createIndex(); }
   boost::python::dict pyDict() const override;
@@ -150,7 +150,7 @@ struct BorePhys : RegisteredIndexable<BorePhys, JointPhys> {
   }
 };
 
-// Where the contacts of a pair are; the two functors below differ in the body that is asked for.
+// Contacts of a pair; the two functors differ in the body that they accept.
 class BoreContacts {
  public:
   Real patchAngle = 2e-4;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the geometry and law functors of all joints share.
+// Shared by the geometry and law functors of all joints.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ inline kernel::BodyMotion motion(const yade::State& state) {
 
 using stepper::axis_of;
 
-// Failures apart from the path of every step, which stays short and free of text. Lengths in m.
+// Failures, separate from the path of every step, which stays short and has no text. Lengths in m.
 [[gnu::cold]] void fail_closed(const char* inner, yade::Real inner_radius, const char* outer,
                                yade::Real outer_radius, const yade::Scene& scene,
                                const yade::Interaction& contact);
@@ -25,8 +25,7 @@ using stepper::axis_of;
 [[gnu::cold]] void fail_tilted(const yade::Scene& scene, const yade::Interaction& contact);
 [[gnu::cold]] void fail_unstable(yade::Real effective_mass, yade::Real stiffness,
                                  const yade::Scene& scene, const yade::Interaction& contact);
-// "time 0.5 s, temperature change 40 K": every change that a thermal engine imposes, none if there
-// is no such engine.
+// "time 0.5 s, temperature change 40 K": all changes imposed by thermal engines, if any.
 std::string when(const yade::Scene& scene);
 
 }  // namespace statejump::dem

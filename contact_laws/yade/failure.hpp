@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Errors inside YADE's interaction loop.
 //
-// The loop runs the functors in an OpenMP parallel region, which an exception may not leave: it
-// would end the process. A functor therefore records the first failure here, and the next engine of
-// ours that runs outside of the region (one that RaisesFailures) throws it, within the same or the
-// next step. It is the one piece of shared state of the plugin,
-// because functors know no engine.
+// The loop runs the functors in an OpenMP parallel region. An exception that leaves this region
+// would end the process. So a functor records the first failure here. The next engine of the plugin
+// that runs outside the region (one that RaisesFailures) throws it, within the same or the next
+// step. This is the only shared state of the plugin, because functors know no engine.
 #pragma once
 
 #include <limits>
@@ -15,8 +14,8 @@
 
 namespace statejump::dem {
 
-// An engine of ours whose action() begins with begin(). It derives from this beside its
-// registration, so that record_failure() knows whether anybody will raise what it records.
+// Base of engines whose action() starts with begin(). Deriving from it tells record_failure() that
+// an engine will raise the failure.
 class RaisesFailures {
  public:
   RaisesFailures() = default;
@@ -25,41 +24,41 @@ class RaisesFailures {
 
  protected:
   virtual ~RaisesFailures() = default;
-  // Throws the failure that contacts have recorded. In the first step of a run, before which a
-  // script may have changed anything, it looks at all numbers of the scene, and in every step at
-  // O.dt; it throws where one is none.
+  // Throws the failure that contacts have recorded. Also checks O.dt in every step. In the first
+  // step of a run, because a script may have changed anything, checks all numbers of the scene.
   static void begin(const yade::Scene& scene);
 };
 
-// What went wrong, as fields: scripts name the part by what their model calls it, and read no
-// sentence.
+// A failure as fields. Scripts use the fields, with the part's name in their model, and do not
+// parse the sentence.
 struct Failure {
-  // What the bodies stand for: two, one or, of the scene, none.
+  // Type of the part: it has two bodies or one; the scene has none.
   enum class Part : unsigned char { contact, link, torsion_spring, prismatic_joint, body, scene };
   Part part = Part::contact;
   int id1 = -1;
   int id2 = -1;  // of a torsion spring: the tips of its two links
-  // The sentence around the name of a link, spring, prismatic joint or body; of a contact, which is
-  // named at the end, and of the scene all of it stands in `before`.
+  // The sentence around the name of a link, spring, prismatic joint or body. For a contact, which
+  // is named at the end, and for the scene the whole sentence is in `before`.
   std::string before = {};
   std::string after = {};
   yade::Real time = 0;  // [s]
-  // Where the step is too long: the longest that this part allows [s].
+  // If the time step is too long: the largest that this part allows [s].
   yade::Real stable_time_step = std::numeric_limits<yade::Real>::quiet_NaN();
-  std::string when = {};  // time and temperature changes in words
+  std::string when = {};  // text with time and temperature changes
   std::string sentence() const;
 };
 
-// For functors: keeps the first failure of a step, for an engine to throw.
+// For functors: records the first failure of a step; an engine throws it.
 void record_failure(Failure failure);
-// For functors: a failure of a contact. Where one of its numbers is none, that is what is said.
+// For functors: a failure of a contact. If one of its numbers is NaN, the failure reports that
+// number.
 void record_failure(const std::string& sentence, const yade::Scene& scene,
                     const yade::Interaction& contact);
 // For engines: throws std::runtime_error with the sentence.
 [[noreturn]] void throw_failure(Failure failure);
-// The failure that was thrown last and not taken yet, as a dict: part, bodies (two ids, one or
-// none), before, after, time, stable_time_step (None where the step is not the fault), sentence;
-// None: there is none.
+// The last thrown failure that was not yet taken, as a dict: part, bodies (two ids, one or none),
+// before, after, time, stable_time_step (None if the step is not the cause), sentence. None if
+// there is no failure.
 boost::python::object take_failure();
 
 }  // namespace statejump::dem

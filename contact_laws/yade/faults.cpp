@@ -14,13 +14,13 @@
 #include "joint.hpp"
 #include "known_cast.hpp"
 #include "prismatic.hpp"
-#include "statejump/stepper/numbers.hpp"
+#include "statejump/stepper/checks.hpp"
 #include "torsion.hpp"
 
 namespace statejump::dem {
 namespace {
 
-using stepper::Allowed;
+using stepper::ValueRange;
 using Part = Failure::Part;
 using Fault = std::optional<Failure>;
 
@@ -64,7 +64,7 @@ Fault fault_of_motion(const yade::Scene& scene, int id, const yade::State& state
   for (std::size_t i = 0; i < vectors.size(); ++i) {
     const auto& [name, value] = vectors[i];
     if (!stepper::is_finite(*value)) {
-      return of_body(scene, id, name, *value, units[i], words(Allowed::finite));
+      return of_body(scene, id, name, *value, units[i], range_text(ValueRange::finite));
     }
   }
   const Real norm = state.se3.orientation.norm();
@@ -74,35 +74,37 @@ Fault fault_of_motion(const yade::Scene& scene, int id, const yade::State& state
   return std::nullopt;
 }
 
-// Zero where nothing moves, or turns, the body, above it where something may.
+// Zero if the body cannot move or rotate, else > 0.
 Fault fault_of_inertia(const yade::Scene& scene, int id, const yade::State& state) {
   constexpr unsigned translations = 7;
   const bool moves = (state.blockedDOFs & translations) != translations;
-  const Allowed mass = moves ? Allowed::positive : Allowed::not_negative;
+  const ValueRange mass = moves ? ValueRange::positive : ValueRange::not_negative;
   if (!allows(mass, state.mass)) {
-    return of_body(scene, id, "the mass", state.mass, " kg", words(mass));
+    return of_body(scene, id, "the mass", state.mass, " kg", range_text(mass));
   }
   for (int i = 0; i < 3; ++i) {
     const bool turns = (state.blockedDOFs & (8u << i)) == 0;
-    const Allowed inertia = turns ? Allowed::positive : Allowed::not_negative;
+    const ValueRange inertia = turns ? ValueRange::positive : ValueRange::not_negative;
     if (!allows(inertia, state.inertia[i])) {
-      return of_body(scene, id, "the moment of inertia", state.inertia, " kg m2", words(inertia));
+      return of_body(scene, id, "the moment of inertia", state.inertia, " kg m2",
+                     range_text(inertia));
     }
   }
   return std::nullopt;
 }
 
-// Permanent forces are known once the ForceResetter has run in this step.
+// Permanent forces are known after the ForceResetter has run in this step.
 Fault fault_of_forces(const yade::Scene& scene, int id) {
   auto& forces = const_cast<yade::ForceContainer&>(scene.forces);  // its readers are not const
   if (forces.lastReset != scene.iter || !forces.getPermForceUsed()) return std::nullopt;
   const Vector3r& force = forces.getPermForce(id);
   if (!stepper::is_finite(force)) {
-    return of_body(scene, id, "the permanent force", force, " N", words(Allowed::finite));
+    return of_body(scene, id, "the permanent force", force, " N", range_text(ValueRange::finite));
   }
   const Vector3r& torque = forces.getPermTorque(id);
   if (!stepper::is_finite(torque)) {
-    return of_body(scene, id, "the permanent torque", torque, " N m", words(Allowed::finite));
+    return of_body(scene, id, "the permanent torque", torque, " N m",
+                   range_text(ValueRange::finite));
   }
   return std::nullopt;
 }
@@ -111,7 +113,7 @@ Fault fault_of_body(const yade::Scene& scene, int id) {
   if (!scene.bodies->exists(id)) return std::nullopt;
   const yade::Body& body = *body_at(scene, static_cast<std::size_t>(id));
   const yade::State& state = *body.state;
-  // Causes before what they lead to.
+  // Causes come before their effects.
   if (Fault fault = fault_of_inertia(scene, id, state)) return fault;
   if (Fault fault = fault_of_forces(scene, id)) return fault;
   if (Fault fault = fault_of_motion(scene, id, state)) return fault;
@@ -131,12 +133,12 @@ Fault fault_of_body(const yade::Scene& scene, int id) {
 
 Fault fault_of_physics(const yade::Scene& scene, const yade::Interaction& contact,
                        const JointPhys& physics) {
-  const auto* quantity = stepper::first_wrong(stepper::contact_quantities<JointPhys>, physics);
+  const auto* quantity = stepper::first_invalid(stepper::contact_quantities<JointPhys>, physics);
   if (!quantity) return std::nullopt;
   return failure(scene, Part::contact, contact.id1, contact.id2,
                  std::string(JointPhys::class_name) + "." + quantity->name +
                      wrong(physics.*quantity->value, std::string(" ") + quantity->unit,
-                           words(quantity->allowed)),
+                           range_text(quantity->allowed)),
                  "");
 }
 
@@ -151,13 +153,13 @@ Fault fault_of_physics(const yade::Scene& scene, const yade::Interaction& contac
 }
 
 Fault fault_of_values(const yade::Scene& scene, const ThermalLink& link) {
-  const auto* quantity = stepper::first_wrong<stepper::Link>(stepper::link_quantities, link);
+  const auto* quantity = stepper::first_invalid<stepper::Link>(stepper::link_quantities, link);
   if (!quantity) return std::nullopt;
   const stepper::Link& values = link;
-  return failure(
-      scene, Part::link, link.id1, link.id2,
-      std::string(ThermalLink::class_name) + "." + quantity->name + " of ",
-      wrong(values.*quantity->value, std::string(" ") + quantity->unit, words(quantity->allowed)));
+  return failure(scene, Part::link, link.id1, link.id2,
+                 std::string(ThermalLink::class_name) + "." + quantity->name + " of ",
+                 wrong(values.*quantity->value, std::string(" ") + quantity->unit,
+                       range_text(quantity->allowed)));
 }
 
 template <class List, class FaultOf>
@@ -217,9 +219,9 @@ Fault fault_of_spring(const yade::Scene& scene, const TorsionSpring& spring) {
   };
   const stepper::Torsion& values = spring;
   if (const auto* wrong_one =
-          stepper::first_wrong<stepper::Torsion>(stepper::torsion_quantities, values)) {
+          stepper::first_invalid<stepper::Torsion>(stepper::torsion_quantities, values)) {
     return fault(wrong_one->name, values.*wrong_one->value, std::string(" ") + wrong_one->unit,
-                 words(wrong_one->allowed));
+                 range_text(wrong_one->allowed));
   }
   if (stepper::has_friction_without_stiffness(values)) {
     return fault("frictionStiffness", values.frictionStiffness, " N m/rad",
@@ -232,7 +234,7 @@ Fault fault_of_spring(const yade::Scene& scene, const TorsionSpring& spring) {
 }
 
 Fault fault_of_prismatic(const yade::Scene& scene, const PrismaticJoint& joint) {
-  if (!allows(Allowed::positive, scene.dt)) return fault_of_scene(scene);
+  if (!allows(ValueRange::positive, scene.dt)) return fault_of_scene(scene);
   for (const int id : {joint.id1, joint.id2}) {
     if (Fault fault = fault_of_body(scene, id)) return fault;
   }
@@ -244,9 +246,9 @@ Fault fault_of_prismatic(const yade::Scene& scene, const PrismaticJoint& joint) 
   };
   const stepper::Prismatic& values = joint;
   if (const auto* wrong_one =
-          stepper::first_wrong<stepper::Prismatic>(stepper::prismatic_quantities, values)) {
+          stepper::first_invalid<stepper::Prismatic>(stepper::prismatic_quantities, values)) {
     return fault(wrong_one->name, values.*wrong_one->value, std::string(" ") + wrong_one->unit,
-                 words(wrong_one->allowed));
+                 range_text(wrong_one->allowed));
   }
   if (stepper::has_friction_without_stiffness(values)) {
     return fault("frictionStiffness", values.frictionStiffness, " N/m",
@@ -269,9 +271,10 @@ Fault fault_of_prismatic(const yade::Scene& scene, const PrismaticJoint& joint) 
 }
 
 Fault fault_of_scene(const yade::Scene& scene) {
-  if (!allows(Allowed::positive, scene.dt)) {
+  if (!allows(ValueRange::positive, scene.dt)) {
     return failure(scene, Part::scene, -1, -1,
-                   "the time step O.dt" + wrong(scene.dt, " s", words(Allowed::positive)), "");
+                   "the time step O.dt" + wrong(scene.dt, " s", range_text(ValueRange::positive)),
+                   "");
   }
   for (std::size_t i = 0; i < number_of_bodies(scene); ++i) {
     const auto& body = body_at(scene, i);
@@ -286,7 +289,7 @@ Fault fault_of_scene(const yade::Scene& scene) {
 }
 
 Fault fault_of_contact(const yade::Scene& scene, const yade::Interaction& contact) {
-  if (!allows(Allowed::positive, scene.dt)) return fault_of_scene(scene);
+  if (!allows(ValueRange::positive, scene.dt)) return fault_of_scene(scene);
   for (const int id : {contact.id1, contact.id2}) {
     if (Fault fault = fault_of_body(scene, id)) return fault;
   }
@@ -294,7 +297,7 @@ Fault fault_of_contact(const yade::Scene& scene, const yade::Interaction& contac
 }
 
 Fault fault_of_link(const yade::Scene& scene, const ThermalLink& link) {
-  if (!allows(Allowed::positive, scene.dt)) return fault_of_scene(scene);
+  if (!allows(ValueRange::positive, scene.dt)) return fault_of_scene(scene);
   for (const int id : {link.id1, link.id2}) {
     if (Fault fault = fault_of_body(scene, id)) return fault;
   }
@@ -317,7 +320,7 @@ void fail_answer(Real stiffness, const Vector3r& force, const yade::Scene& scene
 
 void fail_force(const yade::Scene& scene, int id, const Vector3r& force) {
   if (Fault fault = fault_of_body(scene, id)) throw_failure(*std::move(fault));
-  throw_failure(of_body(scene, id, "the force", force, " N", words(Allowed::finite)));
+  throw_failure(of_body(scene, id, "the force", force, " N", range_text(ValueRange::finite)));
 }
 
 }  // namespace statejump::dem

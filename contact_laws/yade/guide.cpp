@@ -7,7 +7,7 @@
 #include "failure.hpp"
 #include "faults.hpp"
 #include "ranges.hpp"
-#include "statejump/stepper/numbers.hpp"
+#include "statejump/stepper/checks.hpp"
 #include "thermal.hpp"
 
 namespace statejump::dem {
@@ -22,14 +22,15 @@ void GuidePlanes::action() {
     throw std::invalid_argument("GuidePlanes: " + std::to_string(ids.size()) + " ids, but " +
                                 std::to_string(normals.size()) + " normals");
   }
-  // All forces before the first is added: adding one makes YADE ask for another sum.
+  // All forces are read before the first is added, because adding one makes YADE require another
+  // sum.
   scene->forces.sync();
   std::vector<Vector3r> held(ids.size());
   for (std::size_t i = 0; i < ids.size(); ++i) {
     yade::State& state = *body_of(*scene, ids[i], "GuidePlanes.ids").state;
     const Vector3r& force = scene->forces.getForce(ids[i]);
     held[i] = force.dot(normals[i]) * normals[i];
-    if (!stepper::is_plain(held[i])) fail_force(*scene, ids[i], force);
+    if (!stepper::is_finite_fast(held[i])) fail_force(*scene, ids[i], force);
     state.vel -= state.vel.dot(normals[i]) * normals[i];
   }
   for (std::size_t i = 0; i < ids.size(); ++i) scene->forces.addForce(ids[i], -held[i]);

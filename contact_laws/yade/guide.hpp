@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bodies that stay in planes of any direction.
+// Bodies constrained to planes of any direction.
 #pragma once
 
 #include <vector>

@@ -5,7 +5,7 @@
 
 namespace statejump::dem {
 
-// The interpreter's lock, which a running simulation does not hold.
+// The interpreter's lock; a running simulation does not hold it.
 class Interpreter {
  public:
   Interpreter() : state_(PyGILState_Ensure()) {}

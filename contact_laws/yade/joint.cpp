@@ -32,7 +32,7 @@ Real inverse_mass_of(const yade::Scene& scene, int id) {
 }
 
 template <class Shape>
-stepper::Part part_of(const Shape& shape, Real length) {
+stepper::ThermalLength part_of(const Shape& shape, Real length) {
   return {length, shape.expanded(1), shape.thermalStrainRate};
 }
 
@@ -42,7 +42,7 @@ kernel::BodyMotion shifted(const yade::State& state, const Vector3r& shift) {
   return moved;
 }
 
-// What YADE's recorders read of a contact beside ours.
+// Additional fields that YADE's recorders read from a contact.
 bool finish(const yade::State& state1, Real radius_1, Real radius_2,
             const yade::Interaction& contact) {
   auto& geometry = static_cast<JointGeom&>(*contact.geom);
@@ -60,8 +60,8 @@ bool finish(const yade::State& state1, Real radius_1, Real radius_2,
     const yade::shared_ptr<yade::Interaction>& contact) {
   const auto& journal = static_cast<const Journal&>(*shape1);
   const auto& bearing = static_cast<const Bearing&>(*shape2);
-  const stepper::Part part_1 = part_of(journal, journal.radius);
-  const stepper::Part part_2 = part_of(bearing, bearing.radius);
+  const stepper::ThermalLength part_1 = part_of(journal, journal.radius);
+  const stepper::ThermalLength part_2 = part_of(bearing, bearing.radius);
   const Vector3r axis = axis_of(state2.se3.orientation);
   const auto tilted = [&] {
     return !(axis_of(state1.se3.orientation).cross(axis).squaredNorm() <= maxTilt * maxTilt);
@@ -70,15 +70,15 @@ bool finish(const yade::State& state1, Real radius_1, Real radius_2,
       part_1, part_2, motion(state1), shifted(state2, shift2), axis, force || contact->isReal(),
       scene->dt, tilted,
       [&](const Vector3r& normal) -> JointGeom& { return geometry_of(contact, normal); })) {
-    case stepper::Found::apart:
+    case stepper::ContactSearch::apart:
       return false;
-    case stepper::Found::closed:
+    case stepper::ContactSearch::closed:
       fail_closed("journal", part_1.expanded(), "bearing", part_2.expanded(), *scene, *contact);
       return false;
-    case stepper::Found::tilted:
+    case stepper::ContactSearch::tilted:
       fail_tilted(*scene, *contact);
       return false;
-    case stepper::Found::contact:
+    case stepper::ContactSearch::contact:
       break;
   }
   return finish(state1, part_1.expanded(), part_2.expanded(), *contact);
@@ -90,19 +90,19 @@ bool finish(const yade::State& state1, Real radius_1, Real radius_2,
     const yade::shared_ptr<yade::Interaction>& contact) {
   const auto& ball = static_cast<const Ball&>(*shape1);
   const auto& socket = static_cast<const Socket&>(*shape2);
-  const stepper::Part part_1 = part_of(ball, ball.radius);
-  const stepper::Part part_2 = part_of(socket, socket.radius);
+  const stepper::ThermalLength part_1 = part_of(ball, ball.radius);
+  const stepper::ThermalLength part_2 = part_of(socket, socket.radius);
   switch (stepper::find_ball(
       part_1, part_2, motion(state1), shifted(state2, shift2), force || contact->isReal(),
       scene->dt,
       [&](const Vector3r& normal) -> JointGeom& { return geometry_of(contact, normal); })) {
-    case stepper::Found::apart:
-    case stepper::Found::tilted:
+    case stepper::ContactSearch::apart:
+    case stepper::ContactSearch::tilted:
       return false;
-    case stepper::Found::closed:
+    case stepper::ContactSearch::closed:
       fail_closed("ball", part_1.expanded(), "socket", part_2.expanded(), *scene, *contact);
       return false;
-    case stepper::Found::contact:
+    case stepper::ContactSearch::contact:
       break;
   }
   return finish(state1, part_1.expanded(), part_2.expanded(), *contact);
@@ -114,20 +114,20 @@ bool finish(const yade::State& state1, Real radius_1, Real radius_2,
     const yade::shared_ptr<yade::Interaction>& contact) {
   const auto& ball_1 = static_cast<const Ball&>(*shape1);
   const auto& ball_2 = static_cast<const Ball&>(*shape2);
-  const stepper::Part part_1 = part_of(ball_1, ball_1.radius);
-  const stepper::Part part_2 = part_of(ball_2, ball_2.radius);
+  const stepper::ThermalLength part_1 = part_of(ball_1, ball_1.radius);
+  const stepper::ThermalLength part_2 = part_of(ball_2, ball_2.radius);
   const kernel::BodyMotion motion_2 = shifted(state2, shift2);
   switch (stepper::find_outer_balls(
       part_1, part_2, motion(state1), motion_2, force || contact->isReal(), scene->dt,
       [&](const Vector3r& normal) -> JointGeom& { return geometry_of(contact, normal); })) {
-    case stepper::Found::apart:
-    case stepper::Found::tilted:
+    case stepper::ContactSearch::apart:
+    case stepper::ContactSearch::tilted:
       return false;
-    case stepper::Found::closed:
+    case stepper::ContactSearch::closed:
       fail_inside((state1.se3.position - motion_2.position).norm(), part_1.expanded(),
                   part_2.expanded(), *scene, *contact);
       return false;
-    case stepper::Found::contact:
+    case stepper::ContactSearch::contact:
       break;
   }
   return finish(state1, part_1.expanded(), part_2.expanded(), *contact);
@@ -139,13 +139,13 @@ bool finish(const yade::State& state1, Real radius_1, Real radius_2,
     const yade::shared_ptr<yade::Interaction>& contact) {
   const auto& slider = static_cast<const Slider&>(*shape1);
   const auto& face = static_cast<const SlotFace&>(*shape2);
-  const stepper::Part pad = part_of(slider, slider.radius);
+  const stepper::ThermalLength pad = part_of(slider, slider.radius);
   const Vector3r normal = state2.se3.orientation * face.normal;
-  const stepper::Found found = stepper::find_plane(
+  const stepper::ContactSearch found = stepper::find_plane(
       pad, part_of(face, face.distance), motion(state1), shifted(state2, shift2), normal,
       force || contact->isReal(), scene->dt,
       [&](const Vector3r& first) -> JointGeom& { return geometry_of(contact, first); });
-  return found == stepper::Found::contact &&
+  return found == stepper::ContactSearch::contact &&
          finish(state1, pad.expanded(), pad.expanded(), *contact);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contact of a clearance joint in YADE: geometry, physics and law. The physics itself is the
-// kernel's (statejump/kernel); these classes move numbers between YADE's objects and it.
+// Contact of a clearance joint in YADE: geometry, physics and law. The physics is in
+// statejump/kernel; these classes transfer numbers between YADE's objects and the kernel.
 #pragma once
 
 #include <limits>
@@ -29,7 +29,7 @@ struct JointGeom : RegisteredIndexable<JointGeom, yade::GenericSpheresContact> {
   Vector3r relativeVelocity = Vector3r::Zero();
   Real journalRadius = 0;
   Real bearingRadius = std::numeric_limits<Real>::infinity();
-  // Recomputed in every step before it is used, so not saved.
+  // Recomputed in every step before use, so not saved.
   Vector3r arm1 = Vector3r::Zero();
   Vector3r arm2 = Vector3r::Zero();
   Vector3r previousNormal = Vector3r::Zero();
@@ -84,7 +84,7 @@ struct JointPhys : RegisteredIndexable<JointPhys, yade::FrictPhys> {
   Real impactSpeed = 0;
   Real dissipationSlope = 0;
   Real frictionSlope = 0;
-  // Last step's values, for the trapezoidal rule of the thermal work; kept only while
+  // Values of the last step, for the trapezoidal rule of the thermal work; updated only while
   // O.trackEnergy is on.
   Real previousElasticForce = 0;
   Real previousElasticEnergy = 0;
@@ -285,25 +285,25 @@ struct Law2_JointGeom_JointPhys_HertzMindlin
   JointEnergies energies_;
 };
 
-// Documentation of an attribute, from the catalogue: the laws of a kind with what they say of
-// themselves; what a parameter is and which laws read it.
+// Documentation of an attribute, from the catalogue: the laws of a kind with their descriptions;
+// the meaning of a parameter and the laws that read it.
 template <class Law>
 const char* law_docs();
 const char* parameter_docs(const kernel::laws::LawParameter& parameter);
 
-// What all laws have in common whose parts are chosen by name: attributes, checks and one contact's
-// step. A law derives from it beside its registration and gives law_attributes() for its own.
+// Common part of all laws chosen by name: attributes, checks and the step of one contact. A law
+// derives from it and adds law_attributes() to its own.
 class NamedJointLaw {
  public:
   std::string normalLaw = kernel::laws::HertzInternal::info.name;
   std::string dissipationLaw = kernel::laws::NoDissipation::info.name;
   std::string frictionLaw = kernel::laws::MindlinFriction::info.name;
   std::string tangentialVelocity = kernel::laws::MaterialVelocity::info.name;
-  Real restitution = kernel::laws::parameter::restitution.standard;
-  Real smallestImpactSpeed = kernel::laws::parameter::smallest_impact_speed.standard;
-  Real contactLength = kernel::laws::parameter::contact_length.standard;
-  Real v0 = kernel::laws::parameter::v0.standard;
-  Real v1 = kernel::laws::parameter::v1.standard;
+  Real restitution = kernel::laws::parameter::restitution.default_value;
+  Real smallestImpactSpeed = kernel::laws::parameter::smallest_impact_speed.default_value;
+  Real contactLength = kernel::laws::parameter::contact_length.default_value;
+  Real v0 = kernel::laws::parameter::v0.default_value;
+  Real v1 = kernel::laws::parameter::v1.default_value;
   Real firstContactTime = std::numeric_limits<Real>::quiet_NaN();
   int contacts = 0;
 
@@ -343,11 +343,13 @@ class NamedJointLaw {
                   "Number of contacts that have begun [-]"));
   }
 
-  // Makes the law of the attributes. Throws std::invalid_argument that names class and attribute.
+  // Builds the law from the attributes. Throws std::invalid_argument that names class and
+  // attribute.
   void build(const char* class_name);
-  // As build() made it.
+  // The law of the last build().
   const kernel::laws::JointLaw& law() const { return named_.law; }
-  // Forces of one contact on its two bodies and its entries in O.energy. False when it is open.
+  // Applies the forces of one contact to its two bodies and adds its energies to O.energy. False if
+  // it is open.
   bool step(const JointGeom& geometry, JointPhys& physics, const yade::Interaction& contact,
             yade::Scene& scene);
 

@@ -6,7 +6,7 @@
 namespace statejump::dem {
 namespace {
 
-// Kept as strings, because the tracker takes strings and is asked every step.
+// Stored as strings, because the tracker takes strings in every step.
 const std::string joint_elastic = "jointElastic";
 const std::string joint_friction = "jointFriction";
 const std::string joint_damping = "jointDamping";
@@ -14,8 +14,8 @@ const std::string joint_thermal_work = "jointThermalWork";
 
 }  // namespace
 
-// YADE enlarges its list of energies without a lock, and what another thread adds meanwhile is
-// lost: all names are entered by one thread before any thread adds.
+// YADE enlarges its list of energies without a lock, and entries of other threads can get lost. So
+// one thread enters all names before any thread adds.
 void JointEnergies::name(const yade::Scene& scene) {
   if (named_.load(std::memory_order_acquire)) return;
   const std::lock_guard<std::mutex> lock(naming_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the steps of a contact (statejump/stepper) put what they do, in YADE. On the path of every
-// step: inline.
+// Transfers the results of a contact step (statejump/stepper) to YADE. Called in every step, so
+// inline.
 #pragma once
 
 #include <algorithm>
@@ -24,27 +24,28 @@ struct ContactHost {
   Real time_step() const { return scene.dt; }
   bool tracks_energy() const { return scene.trackEnergy; }
   void add(const stepper::ContactEnergy& energy) const { energies.add(scene, energy); }
-  void exert(const kernel::Wrench& wrench) const {
+  void apply(const kernel::Wrench& wrench) const {
     scene.forces.addForce(contact.id1, wrench.force_1);
     scene.forces.addTorque(contact.id1, wrench.torque_1);
     scene.forces.addForce(contact.id2, wrench.force_2);
     scene.forces.addTorque(contact.id2, wrench.torque_2);
   }
-  static constexpr bool judges = true;
+  static constexpr bool checks_response = true;
   [[gnu::cold, gnu::noinline]] bool accepts(Real stiffness, const Vector3r& force,
                                             const JointPhys& physics) const {
-    const stepper::Answer answer = stepper::judge(stiffness, force, physics, scene.dt);
-    if (answer == stepper::Answer::step_is_too_long) {
+    const stepper::ResponseCheck answer =
+        stepper::check_response(stiffness, force, physics, scene.dt);
+    if (answer == stepper::ResponseCheck::step_is_too_long) {
       fail_unstable(physics.effectiveMass, stiffness, scene, contact);
-    } else if (answer == stepper::Answer::no_number) {
+    } else if (answer == stepper::ResponseCheck::not_finite) {
       fail_answer(stiffness, force, scene, contact);
     }
-    return answer == stepper::Answer::good;
+    return answer == stepper::ResponseCheck::valid;
   }
 };
 
 // Physics of a new contact of two materials.
-// @param inverse_mass 1/m1 + 1/m2 [1/kg]; @param fail is given a sentence
+// @param inverse_mass 1/m1 + 1/m2 [1/kg]; @param fail receives a sentence
 template <class Physics, class Fail>
 void fill_physics(const Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys& functor,
                   const ThermalFrictMat& first, const ThermalFrictMat& second, Real inverse_mass,
@@ -65,7 +66,7 @@ void fill_physics(const Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys& functor,
   physics.tangentialDampingRatio = functor.tangentialDampingRatio;
 }
 
-// What a contact is and keeps, between YADE's objects and plain values, either way.
+// Copies the state of a contact between YADE's objects and plain values, in either direction.
 template <class From, class To>
 void copy_geometry(const From& from, To& to) {
   to.normal = from.normal;

@@ -7,9 +7,8 @@
 
 namespace statejump::dem {
 
-/// dynamic_cast to a class derived from From, null where the object is of another class. The
-/// answers of the last classes that were asked for are remembered, for dynamic_cast compares names
-/// of classes each time.
+/// dynamic_cast to a class derived from From, null for an object of another class. Caches the
+/// results for the last classes, because dynamic_cast compares class names each time.
 template <class To, class From>
 To* known_cast(From* from) {
   struct Answer {

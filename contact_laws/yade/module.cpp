@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The extension module: checks YADE's interface and registers the classes with the running YADE.
-// Adding a class is one entry in the list below.
+// To add a class, add one entry to the list of classes.
 #include <boost/archive/basic_archive.hpp>
 #include <boost/make_shared.hpp>
 #include <string>
@@ -78,7 +78,7 @@ std::string setup(const boost::python::object& wrapper) {
   return "";
 }
 
-// Of two bodies of one material.
+// For two bodies of one material.
 double hertz_depth(double force, double effectiveRadius, double young, double poisson) {
   kernel::require(force >= 0, "force", force, "[0, inf) N");
   kernel::require(effectiveRadius > 0, "effectiveRadius", effectiveRadius, "(0, inf) m");
@@ -87,7 +87,7 @@ double hertz_depth(double force, double effectiveRadius, double young, double po
       force);
 }
 
-// By the attribute that takes them.
+// Keyed by the attribute that takes the name.
 boost::python::dict law_names() {
   namespace laws = kernel::laws;
   boost::python::dict names;
@@ -103,7 +103,7 @@ boost::python::dict law_names() {
   return names;
 }
 
-// Of the files that this YADE's O.save writes; it changes with the version of Boost.
+// Version of the files that this YADE's O.save writes; it changes with the version of Boost.
 unsigned archive_version() {
   const auto version = boost::archive::BOOST_ARCHIVE_VERSION();
   return version;

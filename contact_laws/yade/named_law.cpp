@@ -18,7 +18,7 @@ namespace {
 
 namespace laws = kernel::laws;
 
-// The name of a law of one kind, or a sentence that lists the known ones.
+// Returns the law of one kind by name, or throws a sentence that lists the known names.
 template <class Law>
 Law law_by_name(Law (*find)(const std::string&), const char* class_name, const char* attribute,
                 const std::string& name) {
@@ -37,7 +37,7 @@ Law law_by_name(Law (*find)(const std::string&), const char* class_name, const c
   return find(name);
 }
 
-// A sentence that lives as long as the program, as Python's documentation wants it.
+// A sentence that lives until the program ends, as Python's documentation requires.
 const char* kept(const std::string& sentence) {
   static std::mutex mutex;
   static std::set<std::string> sentences;
@@ -108,7 +108,7 @@ void NamedJointLaw::build(const char* class_name) {
   law.friction = law_by_name(laws::friction_law, class_name, "frictionLaw", frictionLaw);
   law.tangential_velocity = law_by_name(laws::tangential_velocity_law, class_name,
                                         "tangentialVelocity", tangentialVelocity);
-  if (!laws::go_together(law.normal, law.friction)) {
+  if (!laws::are_compatible(law.normal, law.friction)) {
     dem::refuse(class_name, "normalLaw", normalLaw,
                 laws::names_with<laws::NormalLaw>(laws::Trait::point_contact) +
                     " with frictionLaw '" + frictionLaw + "'");
@@ -159,7 +159,7 @@ bool NamedJointLaw::step(const JointGeom& geometry, JointPhys& physics,
   if (geometry.penetrationDepth > 0 && !physics.begun) {
     const Real touched = stepper::begin(geometry, physics, scene.time, scene.dt);
     const std::lock_guard<std::mutex> lock(beginning_);
-    stepper::Begun begun{firstContactTime, contacts};
+    stepper::FirstTouch begun{firstContactTime, contacts};
     begun.add(touched);
     firstContactTime = begun.first;
     contacts = begun.count;

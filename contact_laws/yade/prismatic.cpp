@@ -12,13 +12,13 @@
 #include "contact_parts.hpp"
 #include "faults.hpp"
 #include "ranges.hpp"
-#include "statejump/stepper/numbers.hpp"
+#include "statejump/stepper/checks.hpp"
 #include "thermal.hpp"
 
 namespace statejump::dem {
 namespace {
 
-// Entries of O.energy; kept as strings, because the tracker takes strings and is asked every step.
+// Names in O.energy; stored as strings, because the tracker takes strings in every step.
 const std::string prismatic_elastic = "prismaticElastic";
 const std::string prismatic_friction = "prismaticFriction";
 const std::string prismatic_damping = "prismaticDamping";
@@ -26,7 +26,7 @@ const std::string prismatic_damping = "prismaticDamping";
 [[noreturn, gnu::cold]] void fail(const yade::Scene& scene, const PrismaticJoint& joint,
                                   const std::string& before, const std::string& after,
                                   Real stable) {
-  // Where it is a number of the joint or of its bodies that is none, that is what is said.
+  // If a number of the joint or of its bodies is invalid, the failure reports that number.
   if (auto fault = fault_of_prismatic(scene, joint)) throw_failure(*std::move(fault));
   throw_failure({Failure::Part::prismatic_joint, joint.id1, joint.id2, before, after, scene.time,
                  stable, when(scene)});
@@ -80,7 +80,7 @@ void PrismaticJoints::act(PrismaticJoint& joint) {
     fail(*scene, joint, "the time step " + text_of(scene->dt) + " s is above the stable one of ",
          ", " + text_of(step.largest_step) + " s", step.largest_step);
   }
-  if (!stepper::is_plain(step.force)) {
+  if (!stepper::is_finite_fast(step.force)) {
     fail(*scene, joint, "the force is not finite of ", "", no_step);
   }
   scene->forces.addForce(joint.id1, step.force);

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "statejump/kernel/laws/law_info.hpp"
-#include "statejump/stepper/numbers.hpp"
+#include "statejump/stepper/checks.hpp"
 
 namespace statejump::dem {
 
@@ -28,29 +28,29 @@ namespace statejump::dem {
 }
 
 // @param unit in brackets
-inline void require(stepper::Allowed allowed, const char* class_name, const char* attribute,
+inline void require(stepper::ValueRange allowed, const char* class_name, const char* attribute,
                     double value, const std::string& unit) {
   if (stepper::allows(allowed, value)) return;
-  refuse(class_name, attribute, value, (std::string(words(allowed)) + " " + unit).c_str());
+  refuse(class_name, attribute, value, (std::string(range_text(allowed)) + " " + unit).c_str());
 }
 
 inline void require_positive(const char* class_name, const char* attribute, double value,
                              const char* unit) {
-  require(stepper::Allowed::positive, class_name, attribute, value, unit);
+  require(stepper::ValueRange::positive, class_name, attribute, value, unit);
 }
 
 inline void require_not_negative(const char* class_name, const char* attribute, double value,
                                  const char* unit) {
-  require(stepper::Allowed::not_negative, class_name, attribute, value, unit);
+  require(stepper::ValueRange::not_negative, class_name, attribute, value, unit);
 }
 
-// Numbers that a script may set: those that may be used, and 0 for what is not set yet.
+// Numbers that a script may set: the allowed ones, and 0 for a value not yet set.
 template <class Object, std::size_t size>
 void require_settable(const char* class_name, const stepper::Quantities<Object, size>& quantities,
                       const Object& object) {
   for (const stepper::Quantity<Object>& each : quantities) {
-    const bool positive = each.allowed == stepper::Allowed::positive;
-    require(positive ? stepper::Allowed::not_negative : each.allowed, class_name, each.name,
+    const bool positive = each.allowed == stepper::ValueRange::positive;
+    require(positive ? stepper::ValueRange::not_negative : each.allowed, class_name, each.name,
             object.*each.value, std::string("[") + each.unit + "]");
   }
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What YADE expects of every class beside its physics: a name, a documented attribute list, keyword
-// construction, dict(), serialization and a dispatch index.
+// YADE's requirements for every class besides its physics: a name, a documented attribute list,
+// keyword construction, dict(), serialization and a dispatch index.
 //
 // A class derives from Registered<Itself, Base> (or RegisteredIndexable, for Shape, Material, IGeom
-// and IPhys) and states its name, its documentation and its attributes once:
+// and IPhys) and defines its name, documentation and attributes once:
 //
 //   struct Journal : RegisteredIndexable<Journal, ThermalShape> {
 //     static constexpr const char* class_name = "Journal";
@@ -15,10 +15,9 @@
 //     }
 //   };
 //
-// Python access, O.save/O.load and dict() all follow from that one list. What does it, Boost.Python
-// and Boost.Serialization, is defined in registration.hpp and compiled once, in module.cpp:
-// compiled with every source that knows a class, it would take as long as all the rest of the
-// plugin.
+// Python access, O.save/O.load and dict() all follow from that list. registration.hpp implements
+// them with Boost.Python and Boost.Serialization. Only module.cpp compiles it, because compiling it
+// in every source would double the compile time of the plugin.
 #pragma once
 
 #include <string>
@@ -45,7 +44,7 @@ constexpr Attribute<Class, Type> attribute(const char* name, Type Class::*member
   return {name, member, doc, false};
 }
 
-// State that the simulation writes and a script only reads; saved all the same.
+// State that the simulation writes and a script can only read; it is saved.
 template <class Class, class Type>
 constexpr Attribute<Class, Type> read_only(const char* name, Type Class::*member, const char* doc) {
   return {name, member, doc, true};
@@ -72,7 +71,7 @@ class Registered : public Base {
     static_cast<Derived&>(*this).check();
   }
 
-  // Throws std::invalid_argument on values outside their range; classes with ranges hide it.
+  // Throws std::invalid_argument for values out of range; classes with ranges hide it.
   void check() const {}
 
   void pyRegisterClass(boost::python::object scope) override;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What registered.hpp declares of every class: its Python class and its serialization. Included
-// once, by module.cpp.
+// Implements registered.hpp: Python class and serialization of every class. Included once, by
+// module.cpp.
 #pragma once
 
 #include <array>
@@ -35,8 +35,8 @@ void archive_value(Archive& archive, const char* name, Type& value) {
   archive& boost::serialization::make_nvp(name, value);
 }
 
-// The radius of a flat face is infinite and a time that is not there yet NaN: an XML archive writes
-// them, but cannot read its own words.
+// The radius of a flat face is infinite and an unset time is NaN. An XML archive writes these
+// values but cannot read them.
 template <class Archive>
 void archive_value(Archive& archive, const char* name, Real& value) {
   if constexpr (std::is_same_v<Archive, boost::archive::xml_oarchive>) {
@@ -53,7 +53,7 @@ void archive_value(Archive& archive, const char* name, Real& value) {
   }
 }
 
-// Component by component: YADE's own serialization of vectors is not part of its interface.
+// Component by component, because YADE's serialization of vectors is not part of its interface.
 template <class Archive>
 void archive_value(Archive& archive, const char* name, Vector3r& value) {
   static constexpr const char* components[3] = {"_x", "_y", "_z"};
@@ -90,7 +90,7 @@ void archive_value(Archive& archive, const char* name, std::vector<std::array<in
   archive_triples(archive, name, value, std::vector<int>());
 }
 
-// What a script must give for an attribute of a type.
+// The Python type that a script must assign to an attribute.
 template <class Type>
 constexpr const char* what_it_takes() {
   if constexpr (std::is_same_v<Type, bool>) return "True or False";
@@ -106,7 +106,7 @@ constexpr const char* what_it_takes() {
   return "of the type that the documentation names";
 }
 
-// @throws TypeError in Python's words, with the name of the attribute
+// @throws TypeError with Python's text and the name of the attribute
 template <class Type>
 Type value_of(const char* class_name, const char* attribute, const boost::python::object& value) {
   const boost::python::extract<Type> given(value);
@@ -183,12 +183,12 @@ void Registered<Derived, Base>::pyRegisterClass(boost::python::object scope) {
   entry.def("__init__", py::raw_function(&detail::keyword_constructor<Derived>, 1));
   for_each_attribute([&](const auto& a) {
     using Type = std::decay_t<decltype(std::declval<Derived&>().*a.member)>;
-    Type Derived::*const member = a.member;  // also where a base that Python does not know has it
+    Type Derived::*const member = a.member;  // also valid if a base unknown to Python has it
     const auto get = py::make_getter(member, py::return_value_policy<py::return_by_value>());
     if (a.read_only) {
       entry.add_property(a.name, get, a.doc);
     } else {
-      // Checked as on construction; a refused value leaves the old one in place.
+      // Checked as on construction; a rejected value leaves the old one.
       const auto set = [member, name = a.name](Derived& self, const py::object& value) {
         const Type old = self.*member;
         self.*member = detail::value_of<Type>(Derived::class_name, name, value);
@@ -219,7 +219,7 @@ void Registered<Derived, Base>::serialize(Archive& archive, unsigned int) {
   if constexpr (Archive::is_loading::value) self.callPostLoad();
 }
 
-// Makes the class known to YADE's factory; its Python class follows in Omega::buildDynlibDatabase.
+// Registers the class in YADE's factory; Omega::buildDynlibDatabase creates its Python class.
 template <class Class>
 void register_factory() {
   const bool is_new = yade::ClassFactory::instance().registerFactorable(
@@ -233,7 +233,7 @@ void register_factory() {
 
 }  // namespace statejump::dem
 
-// A class by the name under which O.save writes it, with all that is declared of it.
+// Exports a class, with everything registered for it, under its name in O.save.
 #define STATEJUMP_EXPORT_AS(Class, Name) \
   BOOST_CLASS_EXPORT_GUID(Class, Name)   \
   template class statejump::dem::Registered<Class, Class::RegisteredBase>;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "ranges.hpp"
-#include "statejump/stepper/numbers.hpp"
+#include "statejump/stepper/checks.hpp"
 
 namespace statejump::dem {
 namespace {
@@ -26,7 +26,7 @@ Vector3r cylinder_half_extents(const yade::Quaternionr& orientation, Real radius
 }  // namespace
 
 void ThermalFrictMat::check() const {
-  require(stepper::Allowed::finite, class_name, "thermalExpansion", thermalExpansion, "[1/K]");
+  require(stepper::ValueRange::finite, class_name, "thermalExpansion", thermalExpansion, "[1/K]");
 }
 
 void ThermalShape::check() const {

@@ -14,7 +14,7 @@
 namespace statejump::dem {
 namespace {
 
-// Numbers of a row of each.
+// Numbers per object of each type.
 constexpr std::size_t body_width = 9, contact_width = 12, link_width = 4, spring_width = 3,
                       joint_width = 3;
 
@@ -49,20 +49,20 @@ void StateRecorder::check() {
   require_objects(links, "links");
   require_objects(springs, "springs");
   require_objects(joints, "joints");
-  places_.clear();
+  columns_.clear();
   for (std::size_t i = 0; i < contacts.size(); i += 2) {
-    if (!places_.emplace(key_of(contacts[i], contacts[i + 1]), i / 2).second) {
+    if (!columns_.emplace(key_of(contacts[i], contacts[i + 1]), i / 2).second) {
       throw std::invalid_argument(std::string(class_name) + ".contacts names bodies " +
                                   std::to_string(contacts[i]) + " and " +
                                   std::to_string(contacts[i + 1]) + " twice");
     }
   }
-  rows_.clear();  // they were of another width
+  rows_.clear();  // their width has changed
 }
 
 std::size_t StateRecorder::width() const {
   return 1 + energy_names().size() + 3 + body_width * bodies.size() +
-         contact_width * places_.size() + link_width * links.size() +
+         contact_width * columns_.size() + link_width * links.size() +
          spring_width * springs.size() + joint_width * joints.size();
 }
 
@@ -103,13 +103,13 @@ void StateRecorder::sample(const yade::Scene& of, const Sums& sums) {
 
 void StateRecorder::add_contacts(const yade::Scene& of, std::size_t strangers) {
   const std::size_t first = rows_.size();
-  rows_.resize(first + contact_width * places_.size());
+  rows_.resize(first + contact_width * columns_.size());
   for (std::size_t i = 0; i < number_of_interactions(of); ++i) {
     const yade::Interaction& contact = interaction_at(of, i);
     if (!contact.isReal()) continue;
     ++rows_[strangers];
-    const auto place = places_.find(key_of(contact.id1, contact.id2));
-    if (place == places_.end()) {
+    const auto place = columns_.find(key_of(contact.id1, contact.id2));
+    if (place == columns_.end()) {
       if (rows_[strangers + 1] < 0) {
         rows_[strangers + 1] = contact.id1;
         rows_[strangers + 2] = contact.id2;

@@ -37,7 +37,7 @@ struct StateRecorder : Registered<StateRecorder, yade::GlobalEngine> {
   std::vector<yade::shared_ptr<TorsionSpring>> springs;
   std::vector<yade::shared_ptr<PrismaticJoint>> joints;
 
-  // What a scene does not keep with its objects. The interpreter's lock is held.
+  // Values that a scene does not store with its objects. The interpreter's lock is held.
   struct Sums {
     const stepper::Energies& energies;
     const stepper::StoredEnergies& stored;
@@ -80,7 +80,7 @@ struct StateRecorder : Registered<StateRecorder, yade::GlobalEngine> {
   std::size_t rows() const { return rows_.size() / width(); }
   boost::python::list scalars() const;
   void add_contacts(const yade::Scene& of, std::size_t strangers);
-  std::unordered_map<std::uint64_t, std::size_t> places_;  // of contacts, by their bodies
+  std::unordered_map<std::uint64_t, std::size_t> columns_;  // of contacts, by their bodies
   std::vector<Real> rows_;
 };
 

@@ -8,7 +8,7 @@
 
 #include "interpreter.hpp"
 #include "ranges.hpp"
-#include "statejump/stepper/parts.hpp"
+#include "statejump/stepper/partition.hpp"
 #include "stepper_arrays.hpp"
 #include "stepper_energies.hpp"
 #include "stepper_engines.hpp"
@@ -16,30 +16,31 @@
 namespace statejump::dem {
 namespace {
 
-// Steps until the ordinary loop has to make one.
+// Number of steps until YADE's own loop must make one.
 long steps_ahead(const yade::Scene& scene, long substeps) {
   if (scene.subStepping || !(scene.dt > 0)) return 0;
   const long beyond = scene.iter % substeps;
   long ahead = beyond == 0 ? 0 : substeps - beyond;
   if (scene.stopAtIter > scene.iter) ahead = std::min(ahead, scene.stopAtIter - scene.iter - 1);
   if (scene.stopAtTime > scene.time) {
-    // YADE stops where its time is just that, if it ever is: the last steps before are its own.
+    // YADE stops if its time equals stopAtTime exactly, so it makes the last steps before that
+    // itself.
     const Real left = (scene.stopAtTime - scene.time) / scene.dt - 2;
     if (left < static_cast<Real>(ahead)) ahead = std::max(0L, static_cast<long>(left));
   }
   return ahead;
 }
 
-long run(stepper::Scene& arrays, long steps, const stepper::Scene::Make& make,
+long run(stepper::Scene& arrays, long steps, const stepper::Scene::CreatePhysics& make,
          const stepper::Scene::Observe& observe) {
   // Energies are sums over all contacts in their order, step by step.
   if (arrays.tracks_energy) return arrays.run(steps, make, observe);
-  stepper::Parts parts(arrays);
-  if (parts.size() == 1) return arrays.run(steps, make, observe);
-  const long apart = observe ? steps - 1 : steps;  // who looks at a step sees all of it
-  const long done = parts.run(apart, make);
+  stepper::Partition partition(arrays);
+  if (partition.size() == 1) return arrays.run(steps, make, observe);
+  const long apart = observe ? steps - 1 : steps;  // an observed step needs the whole scene
+  const long done = partition.run(apart, make);
   if (done < apart) return done;
-  parts.collect(arrays);
+  partition.collect(arrays);
   return observe ? done + arrays.run(1, make, observe) : done;
 }
 
@@ -65,7 +66,7 @@ class StepsAhead {
   }
 
  private:
-  // Until a step that a recorder wants is made.
+  // Steps until a sample for a recorder is due.
   long steps_to_a_sample() const {
     long steps = std::numeric_limits<long>::max();
     for (const StateRecorder* recorder : engines_.recorders) {
@@ -75,12 +76,12 @@ class StepsAhead {
     return steps;
   }
 
-  // Steps of a piece before a body may leave its bound, which ends the piece, and what was made of
-  // it is made again. In meshed bores that costs as much as in the ordinary loop: there pieces go
-  // most of the way at the velocities of now, so that the last one is short.
+  // Steps until a body may leave its bound. Leaving ends a piece, which is then repeated up to
+  // there. In meshed bores a repetition costs as much as YADE's own loop. There, pieces cover most
+  // of the distance at the current velocities, so that the last one is short.
   long steps_to_a_bound() const {
     constexpr Real most_of_the_way = 0.75;
-    constexpr long shortest = 8;  // filling and copying of arrays cost about as much as a step
+    constexpr long shortest = 8;  // copying the arrays costs about as much as a step
     if (arrays_.bores.empty()) return std::numeric_limits<long>::max();
     Real steps = static_cast<Real>(std::numeric_limits<int>::max());
     for (const stepper::Body& body : arrays_.bodies) {
@@ -95,7 +96,7 @@ class StepsAhead {
     return std::max(shortest, static_cast<long>(most_of_the_way * steps));
   }
 
-  // Leaves the arrays behind the steps that the ordinary loop has nothing to say to.
+  // Makes steps and leaves the arrays before the first step that YADE's own loop must make.
   long make_piece(long steps) {
     start_ = arrays_;
     const long last = arrays_.iteration + steps - 1;
@@ -116,17 +117,17 @@ class StepsAhead {
       return run(arrays_, some, make_, observe_last);
     };
     long done = attempt(steps, wanting.empty() ? stepper::Scene::Observe() : observe);
-    if (done == steps && arrays_.is_sound()) return done;
+    if (done == steps && arrays_.has_finite_state()) return done;
     for (const auto& [recorder, size] : wanting) recorder->forget(size);
     if (done < steps) {
       arrays_ = start_;
       if (done > 0) attempt(done, {});
     }
-    if (!arrays_.is_sound()) {
-      // The step that leaves a number that is none is for the ordinary loop to tell: those before.
+    if (!arrays_.has_finite_state()) {
+      // YADE's own loop reports the step with an invalid number; repeat the steps before it.
       arrays_ = start_;
       done = 0;
-      while (arrays_.run(1, make_) == 1 && arrays_.is_sound()) ++done;
+      while (arrays_.run(1, make_) == 1 && arrays_.has_finite_state()) ++done;
       arrays_ = start_;
       if (done > 0) attempt(done, {});
     }
@@ -138,7 +139,7 @@ class StepsAhead {
   const stepper::Energies& before_;
   JointArrays exchange_;
   stepper::Scene arrays_, start_;
-  const stepper::Scene::Make make_ = [this](std::size_t contact) {
+  const stepper::Scene::CreatePhysics make_ = [this](std::size_t contact) {
     return exchange_.physics(contact);
   };
   bool sampled_ = false;

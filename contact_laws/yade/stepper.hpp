@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Steps of a scene of joints ahead of YADE's own loop.
+// Makes steps of a scene of joints ahead of YADE's own loop.
 #pragma once
 
 #include <vector>
@@ -34,8 +34,8 @@ struct JointStepper : Registered<JointStepper, yade::GlobalEngine>, RaisesFailur
   }
 
  private:
-  // The ordinary loop has made the step before with these engines and so many bodies: contacts are
-  // known and energies have their names.
+  // Whether YADE's own loop made the previous step with these engines and this number of bodies, so
+  // that contacts and names of energies exist.
   bool follows_an_ordinary_step();
   long last_iteration_ = -1;
   const yade::Scene* last_scene_ = nullptr;

@@ -23,7 +23,7 @@ namespace {
 
 constexpr int aspherical = 2;  // bit of Body::flags
 
-// Calls act with the engine as what it is.
+// Calls act with the engine as its actual class.
 template <class Act>
 void as_stage(yade::Engine& engine, Act&& act) {
   if (auto* links = known_cast<ThermalLinks>(&engine)) {
@@ -38,14 +38,14 @@ void as_stage(yade::Engine& engine, Act&& act) {
 }
 
 void scatter_stage(const ThermalLinks& to, const stepper::Stage& from) {
-  const auto& places = std::get<stepper::Links>(from).places;
+  const auto& places = std::get<stepper::Links>(from).links;
   for (std::size_t i = 0; i < places.size(); ++i) {
     static_cast<stepper::Link&>(*to.links[i]) = places[i].link;
   }
 }
 
 void scatter_stage(const TorsionSprings& to, const stepper::Stage& from) {
-  const auto& places = std::get<std::vector<stepper::TorsionPlace>>(from);
+  const auto& places = std::get<std::vector<stepper::TorsionEntry>>(from);
   for (std::size_t i = 0; i < places.size(); ++i) {
     static_cast<stepper::Torsion&>(*to.springs[i]) = places[i].spring;
   }
@@ -58,9 +58,9 @@ void scatter_stage(const PrismaticJoints& to, const stepper::Stage& from) {
   }
 }
 
-void scatter_stage(const GuidePlanes&, const stepper::Stage&) {}  // keeps nothing
+void scatter_stage(const GuidePlanes&, const stepper::Stage&) {}  // no state
 
-// What YADE keeps of any contact of two round parts.
+// Copies the attributes of YADE for any contact of two round bodies.
 template <class From, class To>
 void copy_place(const From& from, To& to) {
   to.normal = from.normal;
@@ -75,7 +75,7 @@ void resize(std::vector<Entry>& contacts, std::size_t count) {
   while (contacts.size() < count) contacts.push_back(stepper::new_contact<Entry>());
 }
 
-// Geometry and physics of all contacts with a bore, either way.
+// Geometry and physics of all contacts with a bore, in either direction.
 template <class From, class To>
 void copy_bore_geometry(const From& from, To& to) {
   copy_place(from, to);
@@ -98,7 +98,7 @@ void copy_bore_physics(const From& from, To& to) {
   }
 }
 
-// False where the pair has what the ordinary loop alone may have a word on.
+// False if the pair has a state that only YADE's own loop can handle.
 bool gather_bore(const yade::Interaction& from, stepper::Bore& to) {
   const auto* geometry = known_cast<const BoreGeom>(from.geom.get());
   const auto* physics = known_cast<const BorePhys>(from.phys.get());
@@ -143,7 +143,7 @@ void scatter_bore(const stepper::Contact& contact, const stepper::Bore& from,
 
 bool JointArrays::gather(stepper::Scene& arrays) {
   arrays = {};
-  if (fault_of_scene(scene_)) return false;  // the ordinary loop tells it where it matters
+  if (fault_of_scene(scene_)) return false;  // YADE's own loop reports it
   interactions_.clear();
   heated_.clear();
   strains_.clear();
@@ -163,7 +163,7 @@ bool JointArrays::gather(stepper::Scene& arrays) {
     arrays.bore_law = engines_.bore_law->named_law();
     arrays.begun_in_bores = {engines_.bore_law->firstContactTime, engines_.bore_law->contacts};
   }
-  scene_.forces.sync();  // the permanent forces alone: the others have just been reset
+  scene_.forces.sync();  // only permanent forces: the others have just been reset
   arrays.bodies.reserve(number_of_bodies(scene_));
   for (std::size_t id = 0; id < number_of_bodies(scene_); ++id) {
     if (!gather_body(id, arrays)) return false;
@@ -209,7 +209,7 @@ bool JointArrays::gather_body(std::size_t id, stepper::Scene& arrays) {
   if (!one.bounded) return true;
   one.bound_position = body.bound->refPos;
   one.bound_reach = body.bound->sweepLength;
-  return !stepper::left_its_bound(one);  // else the collider is about to look again
+  return !stepper::left_bound(one);  // else the collider will run
 }
 
 std::size_t JointArrays::program_of(const ThermalProgram& program, stepper::Scene& arrays) {
@@ -255,7 +255,7 @@ std::size_t JointArrays::strain_of(const yade::Body& body, stepper::Scene& array
   return common->second;
 }
 
-// Whether some functor of the scene knows the pair.
+// Whether some functor of the scene accepts the pair.
 bool JointArrays::find_parts(const yade::Body& one, const yade::Body& two,
                              stepper::Contact& contact) const {
   const yade::Shape* const first = one.shape.get();
@@ -304,7 +304,7 @@ bool JointArrays::find_parts(const yade::Body& one, const yade::Body& two,
   return false;
 }
 
-// The bore where some functor of the scene knows the pair as one with a meshed bore.
+// The bore, if some functor of the scene accepts the pair as a meshed bore.
 std::optional<stepper::Bore> JointArrays::find_bore(const yade::Body& one, const yade::Body& two,
                                                     stepper::Contact& contact) const {
   const auto* hole = known_cast<const MeshBore>(two.shape.get());
@@ -364,10 +364,10 @@ bool JointArrays::gather_contact(std::size_t place, stepper::Scene& arrays) {
 
 bool JointArrays::gather_stage(const ThermalLinks& group, stepper::Scene& arrays) {
   stepper::Links links;
-  links.places.reserve(group.links.size());
+  links.links.reserve(group.links.size());
   for (const auto& link : group.links) {
     if (!link || !link->program || !exists(link->id1) || !exists(link->id2)) return false;
-    links.places.push_back({*link, program_of(*link->program, arrays)});
+    links.links.push_back({*link, program_of(*link->program, arrays)});
     links.needs_moments = links.needs_moments || link->tipTurnsWithLink;
   }
   arrays.stages.emplace_back(std::move(links));
@@ -375,7 +375,7 @@ bool JointArrays::gather_stage(const ThermalLinks& group, stepper::Scene& arrays
 }
 
 bool JointArrays::gather_stage(const TorsionSprings& group, stepper::Scene& arrays) {
-  std::vector<stepper::TorsionPlace> places;
+  std::vector<stepper::TorsionEntry> places;
   places.reserve(group.springs.size());
   for (const auto& spring : group.springs) {
     if (!spring || !spring->link1 || !spring->link2) return false;

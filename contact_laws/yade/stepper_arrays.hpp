@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene of YADE as the arrays of statejump/stepper, and back.
+// Conversion of a YADE scene to the arrays of statejump/stepper, and back.
 #pragma once
 
 #include <cstddef>
@@ -22,12 +22,12 @@ class JointArrays {
  public:
   JointArrays(yade::Scene& scene, const JointEngines& engines) : scene_(scene), engines_(engines) {}
 
-  // Fills the arrays. False where the ordinary loop has something to do or to say first. Throws
-  // std::invalid_argument where a body cannot be stepped.
+  // Fills the arrays. False if YADE's own loop must make the next step. Throws
+  // std::invalid_argument for a body that cannot be stepped.
   bool gather(stepper::Scene& arrays);
-  // Writes back what has changed. The interpreter's lock is held.
+  // Writes the changes back. The interpreter's lock is held.
   void scatter(const stepper::Scene& arrays);
-  // Of a contact that begins; none where its materials allow none.
+  // Physics of a contact that begins; empty for invalid materials.
   std::optional<stepper::ContactPhysics> physics(std::size_t contact) const;
 
  private:
@@ -50,10 +50,10 @@ class JointArrays {
 
   yade::Scene& scene_;
   const JointEngines& engines_;
-  std::vector<std::size_t> interactions_;  // of each contact, its place in YADE's container
-  std::vector<std::pair<ThermalShape*, std::size_t>> heated_;     // shapes that engines set
-  std::unordered_map<const ThermalShape*, std::size_t> strains_;  // of those, their strain
-  // Strains that are the same and stay so: by engine, expansion, strain and its rate.
+  std::vector<std::size_t> interactions_;  // index of each contact in YADE's container
+  std::vector<std::pair<ThermalShape*, std::size_t>> heated_;  // shapes whose strain an engine sets
+  std::unordered_map<const ThermalShape*, std::size_t> strains_;  // index of their strain
+  // Strains that are and remain equal: by engine, expansion, strain and its rate.
   std::map<std::tuple<std::size_t, Real, Real, Real>, std::size_t> common_strains_;
   std::map<const ThermalProgram*, std::size_t> programs_;
 };

@@ -21,10 +21,10 @@ std::string type_of(const py::object& object) {
   return py::extract<std::string>(object.attr("__class__").attr("__name__"));
 }
 
-// Engines of YADE that the stepper knows.
+// YADE engines that the stepper supports.
 enum class Known { resetter, collider, loop, newton, onlooker, time_stepper };
 
-// Where an engine stands in a step.
+// Position of an engine in a step.
 enum class Place { resetter, stepper, before, loop, behind, recorder, motion };
 
 class Reader {
@@ -93,7 +93,7 @@ class Reader {
     }
   }
 
-  // Throws where it is none of them.
+  // Throws for any other engine.
   static Known known(const py::object& object, const std::string& class_name) {
     static constexpr std::array<std::pair<const char*, Known>, 6> bases = {
         {{"ForceResetter", Known::resetter},
@@ -102,7 +102,7 @@ class Reader {
          {"NewtonIntegrator", Known::newton},
          {"PeriodicEngine", Known::onlooker},
          {"TimeStepper", Known::time_stepper}}};
-    // This is asked between any two runs of steps: most engines are told by their names alone.
+    // This check runs between any two runs of steps, so most engines are recognised by their names.
     if (class_name == "PyRunner") return Known::onlooker;
     for (const auto& [name, which] : bases) {
       if (class_name == name) return which;
@@ -118,7 +118,7 @@ class Reader {
 
   void stand(Place place, const std::string& name) {
     const bool right = any_ ? place >= last_ : place == Place::resetter;
-    // Nothing of a step of its own between the forces' reset and the stepper.
+    // Only the stepper may follow the forces' reset.
     const bool behind_resetter = place != Place::stepper || last_ == Place::resetter;
     const bool stepper_is_there = place <= Place::stepper || seen_stepper_;
     if (!right || !behind_resetter || !stepper_is_there) {
@@ -144,7 +144,7 @@ class Reader {
     return true;
   }
 
-  // Calls take for every functor of a dispatcher; one that nobody takes is unknown.
+  // Calls take for every functor of a dispatcher; a functor that no branch takes is unknown.
   template <class Take>
   static void read_functors(const py::object& loop, const char* dispatcher, Take&& take_one) {
     const py::object functors(loop.attr(dispatcher).attr("functors"));
@@ -186,7 +186,7 @@ class Reader {
     if (py::extract<int>(integrator.attr("mask"))() > 0) {
       refuse_scene("NewtonIntegrator.mask must be -1: every body moves");
     }
-    // Versions of YADE differ in whether the work of gravity counts in what damping takes.
+    // Versions of YADE differ in whether damping includes the work of gravity.
     if (scene_.trackEnergy && newton.damping != 0 && !newton.gravity.isZero(0)) {
       refuse_scene("with O.trackEnergy and gravity NewtonIntegrator.damping must be 0");
     }

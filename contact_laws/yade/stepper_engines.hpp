@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The engines of a scene as the JointStepper sees them.
+// The engines of a scene, in the form that the JointStepper needs.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 #include "bore.hpp"
 #include "joint.hpp"
 #include "state_recorder.hpp"
-#include "statejump/stepper/motion.hpp"
+#include "statejump/stepper/body.hpp"
 #include "thermal.hpp"
 
 namespace statejump::dem {
@@ -31,11 +31,11 @@ struct JointEngines {
   bool has_collider = false;
 };
 
-// Throws std::invalid_argument: "JointStepper: " and what it is that cannot be stepped.
+// Throws std::invalid_argument: "JointStepper: " and the object that cannot be stepped.
 [[noreturn]] void refuse_scene(const std::string& what);
 
-// Reads the engines of a scene, those of YADE through Python. Throws std::invalid_argument where
-// the stepper does not know one, or where their order is not that of a step of its own.
+// Reads the engines of a scene, those of YADE through Python. Throws std::invalid_argument for an
+// unknown engine or an unsupported order.
 JointEngines joint_engines(const yade::Scene& scene, const yade::Engine& stepper);
 
 }  // namespace statejump::dem

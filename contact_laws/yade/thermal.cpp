@@ -19,19 +19,19 @@
 #include "ranges.hpp"
 #include "shapes.hpp"
 #include "statejump/kernel/stable_step.hpp"
-#include "statejump/stepper/numbers.hpp"
+#include "statejump/stepper/checks.hpp"
 #include "torsion.hpp"
 
 namespace statejump::dem {
 namespace {
 
-// Entries of O.energy; kept as strings, because the tracker takes strings and is asked every step.
+// Names in O.energy; stored as strings, because the tracker takes strings in every step.
 const std::string link_elastic = "linkElastic";
 const std::string link_damping = "linkDamping";
 const std::string link_thermal_work = "linkThermalWork";
 const std::string pin_damping = "pinDamping";
 
-// Throws where it is a number of the link or of its bodies that is none.
+// Throws if a number of the link or of its bodies is invalid.
 void throw_fault(const yade::Scene& scene, const ThermalLink& link) {
   if (auto fault = fault_of_link(scene, link)) throw_failure(*std::move(fault));
 }
@@ -48,7 +48,7 @@ void throw_fault(const yade::Scene& scene, const ThermalLink& link) {
                  stable, when(scene)});
 }
 
-// Coinciding ends, or ends further apart than a number says.
+// Ends coincide, or their distance is not finite.
 [[gnu::cold, gnu::noinline]] void fail_length(const yade::Scene& scene, const ThermalLink& link,
                                               Real length) {
   throw_fault(scene, link);
@@ -58,7 +58,7 @@ void throw_fault(const yade::Scene& scene, const ThermalLink& link) {
                  std::numeric_limits<Real>::quiet_NaN(), when(scene)});
 }
 
-// The temperature leaves the link no length, or its force is no number.
+// The temperature gives the link no positive length, or its force is not finite.
 [[gnu::cold, gnu::noinline]] void fail_force(const yade::Scene& scene, const ThermalLink& link,
                                              const stepper::LinkStep& step) {
   throw_fault(scene, link);
@@ -161,7 +161,7 @@ void ThermalExpansionEngine::action() {
   for (const Target& target : targets()) {
     if (target.is_shared) continue;
     const Real strain = target.material->thermalExpansion * temperatureChange;
-    if (!stepper::is_plain_strain(strain) && !stepper::is_strain(strain)) {
+    if (!stepper::is_small_strain(strain) && !stepper::is_strain(strain)) {
       fail_strain(*scene, static_cast<int>(target.id), strain, target.material->thermalExpansion);
     }
     target.shape->thermalStrainRate = (strain - target.shape->thermalStrain) / scene->dt;
@@ -175,14 +175,14 @@ void ThermalLink::check() const {
 
 void ThermalLinks::action() {
   begin(*scene);
-  // Only a tip that turns with its link asks for the moments of the step; summing the threads'
-  // parts for nothing would cost as much as all the rest of this engine.
+  // Only a tip that rotates with its link needs the moments of the step. The sum over threads would
+  // cost as much as the rest of this engine.
   bool needs_moments = false;
   for (const auto& link : links) {
     if (!link) throw std::invalid_argument("ThermalLinks.links holds None");
     needs_moments = needs_moments || link->tipTurnsWithLink;
   }
-  // All moments before the first force: adding one makes YADE ask for another sum.
+  // All moments are read before the first force, because adding one makes YADE require another sum.
   moments_.assign(links.size(), Vector3r::Zero());
   if (needs_moments) {
     scene->forces.sync();
@@ -206,14 +206,14 @@ void ThermalLinks::act(ThermalLink& link, const Vector3r& moment) {
     if (!(scene->dt <= stable)) refuse_time_step(*scene, link, stable);
   }
   Vector3r force_on_tip = stepper::force_on_tip(step);
-  if (!stepper::is_plain(step, force_on_tip)) fail_force(*scene, link, step);
+  if (!stepper::is_finite_fast(step, force_on_tip)) fail_force(*scene, link, step);
   if (link.tipTurnsWithLink) {
     yade::State& tip = ends.tip;
     if ((tip.blockedDOFs & all_rotations_blocked) != all_rotations_blocked) {
       throw std::invalid_argument("ThermalLink.tipTurnsWithLink: block the rotations of body " +
                                   std::to_string(link.id2) + " (blockedDOFs containing 'XYZ')");
     }
-    force_on_tip += stepper::turn_tip(link, step, moment, tip.se3.orientation, tip.angVel);
+    force_on_tip += stepper::rotate_tip(link, step, moment, tip.se3.orientation, tip.angVel);
   }
   scene->forces.addForce(link.id2, force_on_tip);
   scene->forces.addForce(link.id1, -force_on_tip);
@@ -233,8 +233,8 @@ void ThermalLinks::act(ThermalLink& link, const Vector3r& moment) {
 
 namespace {
 
-// How much a unit force with the given arm moves a body, per unit time squared [1/kg]: along the
-// force itself, and through the rotation when the body may turn. Arms that do not turn it are 0.
+// Acceleration of a body by a unit force with the given arm [1/kg]: along the force, and through
+// the rotation if the body may rotate. Zero for an arm that does not rotate it.
 Real mobility(const yade::State& state, Real arm_squared) {
   Real smallest_inertia = 0;
   for (int i = 0; i < 3; ++i) {
@@ -249,9 +249,9 @@ Real mobility(const yade::State& state, Real arm_squared) {
 
 }  // namespace
 
-// With s the stretch of a spring of stiffness k between two bodies, s^2 <= 2 (s1^2 + s2^2) and
-// s_i^2 <= mobility_i * 2 * (kinetic energy per unit rate squared): the largest eigenvalue is at
-// most the largest sum of 2 k mobility over what touches one body.
+// Let s be the stretch of a spring of stiffness k between two bodies. Then s^2 <= 2 (s1^2 + s2^2)
+// and s_i^2 <= mobility_i * 2 * (kinetic energy per unit rate squared). So the largest eigenvalue
+// is at most the largest sum of 2 k mobility over the springs of one body.
 double stable_time_step(const yade::Scene& scene) {
   const std::size_t count = number_of_bodies(scene);
   std::vector<Real> stiffness(count, 0);  // per mass
@@ -309,8 +309,9 @@ double stable_time_step(const yade::Scene& scene) {
     } else if (const auto* springs = dynamic_cast<const TorsionSprings*>(engine.get())) {
       for (const auto& spring : springs->springs) {
         if (!spring || !spring->link1 || !spring->link2) continue;
-        // The angle is the sum of up to four displacements over their lengths, so its square is at
-        // most that number of ends that move times the sum of the squares; 2 of it follow below.
+        // The angle is the sum of up to four displacements over their lengths. So its square is at
+        // most the number of moving ends times the sum of the squares; the common factor 2 is
+        // applied later.
         const std::array<LinkEnds, 2> links = {ends_of(scene, *spring->link1),
                                                ends_of(scene, *spring->link2)};
         int moving = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Temperature programs, the engine that imposes them on shapes, and links that expand.
+// Temperature programs, the engine that applies them to shapes, and expanding links.
 #pragma once
 
 #include <optional>
@@ -68,16 +68,16 @@ struct ThermalExpansionEngine : Registered<ThermalExpansionEngine, yade::GlobalE
   std::vector<int> ids;
   Real temperatureChange = 0;
 
-  // A body as it was when it was collected: compared before use, so that a body erased or given
-  // another shape by a script is noticed. Not owned: Python objects may only be released under the
-  // interpreter's lock, which a running simulation does not hold.
+  // A body at the time of collection. It is compared before use, which detects a body that a script
+  // has erased or given another shape. Not owned, because Python objects may only be released under
+  // the interpreter's lock, which a running simulation does not hold.
   struct Target {
     std::size_t id;
     ThermalShape* shape;
     const ThermalFrictMat* material;
-    bool is_shared;  // its shape is that of an earlier body, whose material counts
+    bool is_shared;  // its shape is that of an earlier body, whose material applies
   };
-  // Of this moment.
+  // The current targets.
   const std::vector<Target>& targets();
 
   void action() override;
@@ -153,7 +153,7 @@ struct ThermalLink : Registered<ThermalLink, yade::Serializable>, stepper::Link 
   }
 };
 
-// The two ends of a link as they are now. Throws when a body is missing or the ends coincide.
+// The two current ends of a link. Throws if a body is missing or the ends coincide.
 struct LinkEnds {
   yade::State& root;
   yade::State& tip;
@@ -178,16 +178,16 @@ struct ThermalLinks : Registered<ThermalLinks, yade::GlobalEngine>, RaisesFailur
   }
 
  private:
-  // moment: of the contacts of the step on the tip [N m]; zero unless the tip turns with the link
+  // moment: of the contacts of the step on the tip [N m]; zero unless the tip rotates with the link
   void act(ThermalLink& link, const Vector3r& moment);
   std::vector<Vector3r> moments_;
   std::array<int, 4> energy_ids_ = {-1, -1, -1, -1};
 };
 
 // Stable time step of the current state [s], on the safe side: the smallest 4 / (c + sqrt(c^2 + 4
-// k)) over the bodies, with k twice the sum of stiffness times mobility (1/m, and arm^2/I where the
-// body may turn) of what touches the body and c likewise for damping. Exact for a spring between
-// equal masses, by a factor of up to sqrt(2) small otherwise. Infinity when nothing acts on a free
+// k)) over the bodies. k is twice the sum of stiffness times mobility (1/m, and arm^2/I if the body
+// may rotate) over the springs of the body; c likewise for damping. Exact for a spring between
+// equal masses, otherwise smaller by a factor of up to sqrt(2). Infinity if nothing acts on a free
 // body.
 double stable_time_step(const yade::Scene& scene);
 

@@ -12,7 +12,7 @@
 #include "faults.hpp"
 #include "ranges.hpp"
 #include "statejump/kernel/stable_step.hpp"
-#include "statejump/stepper/numbers.hpp"
+#include "statejump/stepper/checks.hpp"
 
 namespace statejump::dem {
 namespace {
@@ -21,7 +21,7 @@ const std::string torsion_elastic = "torsionElastic";
 const std::string torsion_friction = "torsionFriction";
 constexpr Real pi = 3.14159265358979323846;
 
-// Throws where it is a number of the spring that is none.
+// Throws if a number of the spring is invalid.
 void throw_fault(const yade::Scene& scene, const TorsionSpring& spring) {
   if (auto fault = fault_of_spring(scene, spring)) throw_failure(*std::move(fault));
 }

@@ -11,12 +11,12 @@
 #ifdef STATEJUMP_HAS_VIEW
 namespace statejump::dem {
 
-// Makes a 3-D view that was started before our classes were known draw them, too. Without it YADE
-// ends with a failed assertion when such a view meets a shape of ours.
+// Makes a 3-D view started before the plugin's classes were registered draw them. Otherwise YADE
+// ends with a failed assertion when such a view encounters one of these shapes.
 void refresh_view();
 
-// How many times larger than it is the play of a journal in its bearing is drawn. YADE makes its
-// own functors for the view, so that a script can only reach what is common to all of them.
+// Magnification of a journal's play in the drawing. YADE constructs the view functors itself, so a
+// script can only change what they share.
 struct ViewSettings {
   static Real clearance_scale() { return clearance_scale_; }
   static void set_clearance_scale(Real scale);

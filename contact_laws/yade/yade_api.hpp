@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one place where the plugin chooses its YADE interface: the declared one (stock Debian YADE,
-// no headers needed) or the real headers of a YADE source tree (-DYADE_SOURCE_DIR, any other
-// version).
+// Chooses the plugin's YADE interface: the declared one (stock Debian YADE, no headers needed) or
+// the real headers of a YADE source tree (-DYADE_SOURCE_DIR, any other version).
 #pragma once
 
 #ifdef STATEJUMP_REAL_YADE_HEADERS
@@ -30,8 +29,8 @@
 
 namespace statejump::dem {
 
-// What the two interfaces offer under different names or access rights. The pointer to a body is
-// null where the body was erased.
+// Functions that the two interfaces offer under different names or access rights. The pointer to a
+// body is null if the body was erased.
 inline std::size_t number_of_bodies(const yade::Scene& scene) {
   return scene.bodies->size();
 }
@@ -49,7 +48,7 @@ inline yade::Interaction& interaction_to_change(const yade::Scene& scene, std::s
   return *(*scene.interactions)[i];
 }
 
-// Makes the Python classes of factory classes, base classes first.
+// Creates the Python classes of factory classes, base classes first.
 inline void register_python_classes(const std::vector<std::string>& class_names) {
 #ifdef STATEJUMP_REAL_YADE_HEADERS
   // The function of the other branch is private; YADE's loader of plugins calls it with this list.

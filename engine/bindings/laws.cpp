@@ -47,7 +47,7 @@ py::dict to_dict(const laws::LawParameter& parameter) {
   result["low"] = parameter.low;
   result["high"] = parameter.high;
   result["low_excluded"] = parameter.low_excluded;
-  result["default"] = parameter.standard;
+  result["default"] = parameter.default_value;
   result["meaning"] = parameter.meaning;
   result["source"] = parameter.source;
   return result;

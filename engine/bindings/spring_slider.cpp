@@ -19,16 +19,17 @@ namespace statejump::bindings {
 
 namespace {
 
-void bind_model(py::module_& module) {
+py::class_<spring_slider::SpringSlider> bind_model_fields(py::module_& module) {
   constexpr double no_stop = std::numeric_limits<double>::infinity();
-  py::class_<spring_slider::SpringSlider>(
-      module, "SpringSlider",
-      "A heated link that pushes a block with dry friction between two stops (paper, section "
-      "3).\n\n"
-      "Axial force F = k_T (x_T - x), positive in compression, k_T = E A/l_T,\n"
-      "l_T = l0 (1 + alpha dT), x_T = l_T - l0. Quasi-static and rate-independent.\n"
-      "Clearances are the distances to the stops, > 0, or infinity for no stop.\n"
-      "Raises ValueError for a value out of range.")
+  return py::class_<spring_slider::SpringSlider>(
+             module, "SpringSlider",
+             "A heated link that pushes a block with dry friction between two stops (paper, "
+             "section "
+             "3).\n\n"
+             "Axial force F = k_T (x_T - x), positive in compression, k_T = E A/l_T,\n"
+             "l_T = l0 (1 + alpha dT), x_T = l_T - l0. Quasi-static and rate-independent.\n"
+             "Clearances are the distances to the stops, > 0, or infinity for no stop.\n"
+             "Raises ValueError for a value out of range.")
       .def(py::init([](double young_modulus, double cross_section_area, double stress_free_length,
                        double thermal_expansion, double friction_force, double clearance_minus,
                        double clearance_plus, double preload_stiffness, double preload_force,
@@ -60,14 +61,18 @@ void bind_model(py::module_& module) {
       .def_readonly("preload_force_N", &spring_slider::SpringSlider::preload_force,
                     "Tension of the preload spring at x = 0, towards -x when positive.")
       .def_readonly("stop_stiffness_N_per_m", &spring_slider::SpringSlider::stop_stiffness)
-      .def_readonly("play_m", &spring_slider::SpringSlider::play)
+      .def_readonly("play_m", &spring_slider::SpringSlider::play);
+}
+
+void bind_model(py::module_& module) {
+  bind_model_fields(module)
       .def_property_readonly(
           "start_displacement_m",
           [](const spring_slider::SpringSlider& self) { return start_displacement(self); },
-          "Where the block starts [m]: stuck or without friction, or where a stop is in its way.")
+          "Start position of the block [m]: stuck or without friction, or at a stop.")
       .def_property_readonly(
           "start_load_N", [](const spring_slider::SpringSlider& self) { return start_load(self); },
-          "What friction balances at the start [N], stops left aside.")
+          "Force balanced by friction at the start [N], without stops.")
       .def_property_readonly(
           "start_middle_m",
           [](const spring_slider::SpringSlider& self) { return start_of(self).middle; },
@@ -80,7 +85,7 @@ void bind_model(py::module_& module) {
           py::arg("temperature_change_K") = 0.0, "k_T = E A/l_T [N/m] at dT [K].")
       .def_property_readonly(
           "state_jump_m", [](const spring_slider::SpringSlider& self) { return state_jump(self); },
-          "What one closed cycle that heats leaves [m] if it ends sliding at dT = 0;\n"
+          "Displacement after one closed heating cycle [m] that ends sliding at dT = 0;\n"
           "f/(k + k_p) from a start without friction.")
       .def(
           "state_jump_after_slide_m",
@@ -88,7 +93,7 @@ void bind_model(py::module_& module) {
             return state_jump(self, direction);
           },
           py::arg("direction"),
-          "The same [m] of a cycle that ends sliding in this sense, +1 or -1.")
+          "The same [m] for a cycle that ends sliding in this direction, +1 or -1.")
       .def(
           "euler_load_N",
           [](const spring_slider::SpringSlider& self, const std::string& ends,
@@ -205,9 +210,9 @@ void bind_path(py::module_& module) {
       "solve_spring_slider",
       [](const spring_slider::SpringSlider& model, const thermal::Program& program,
          const std::optional<Eigen::VectorXd>& time_s,
-         const std::optional<thermal::Program>& told) {
+         const std::optional<thermal::Program>& reported) {
         spring_slider::Path path = time_s ? solve(model, program, *time_s) : solve(model, program);
-        if (told) tell_temperatures_of(*told, path);
+        if (reported) report_temperatures_of(*reported, path);
         return path;
       },
       py::arg("model"), py::arg("program"), py::arg("time_s") = py::none(),

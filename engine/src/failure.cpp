@@ -27,7 +27,7 @@ std::string number_named(const FailureFields& fields, const char* name) {
   return text_of("%g", number_of(fields, name));
 }
 
-/// " at a temperature change of 12.5 K (t = 0.25 s)"; "" where no instant is known.
+/// " at a temperature change of 12.5 K (t = 0.25 s)"; "" if no instant is known.
 std::string at_instant(const FailureFields& fields) {
   if (!fields.temperature_change) return "";
   std::ostringstream text;
@@ -37,7 +37,7 @@ std::string at_instant(const FailureFields& fields) {
   return text.str();
 }
 
-/// "node 'B' mostly along x, node 'C' mostly along y; node …": modes parted by semicolons.
+/// "node 'B' mostly along x, node 'C' mostly along y; node …": modes separated by semicolons.
 std::string movers(const std::vector<FailureMode>& modes) {
   std::string text;
   for (const FailureMode& mode : modes) {
@@ -65,7 +65,7 @@ std::string joint(const FailureFields& fields) {
   return fields.joints.front().kind + " '" + fields.joints.front().name + "'";
 }
 
-/// Joints that a sentence names; of more it gives the number.
+/// A sentence names at most this many joints, else their number.
 constexpr std::size_t most_named = 8;
 
 /// "slider 'A', revolute 'B'".

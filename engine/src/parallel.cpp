@@ -23,8 +23,8 @@ std::size_t processors() {
 }  // namespace
 
 std::size_t threads() {
-  if (const char* told = std::getenv("OMP_NUM_THREADS")) {
-    const int number = std::atoi(told);
+  if (const char* text = std::getenv("OMP_NUM_THREADS")) {
+    const int number = std::atoi(text);
     if (number > 0) return static_cast<std::size_t>(number);
   }
   return processors();

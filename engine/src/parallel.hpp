@@ -6,17 +6,17 @@
 
 namespace statejump {
 
-/// Threads that in_parallel() uses: as many as OMP_NUM_THREADS says, whose meaning users know and
-/// which those who start many processes set, else as many processors as the process may use.
+/// Number of threads of in_parallel(): OMP_NUM_THREADS, if set, so that users who start many
+/// processes can limit it. Else the number of processors available to the process.
 std::size_t threads();
 
 /// Calls `work(k)` for every k below `count`, several at a time, in any order. The threads end
-/// before it returns: none is left for a process that forks. What `work` throws is thrown here, of
-/// several the one with the lowest k; the others are done all the same.
+/// before it returns, so a process may fork afterwards. If `work` throws, all calls are still made,
+/// and the exception with the lowest k is rethrown.
 void in_parallel(std::size_t count, const std::function<void(std::size_t)>& work);
 
-/// Calls `work(i)` for every i below `count` in pieces of `length`, see above. Of one piece it is a
-/// loop.
+/// Calls `work(i)` for every i below `count` in blocks of `length`, with in_parallel(). A single
+/// block is a plain loop.
 template <class Work>
 void each_in_parallel(std::size_t count, std::size_t length, Work&& work) {
   const std::size_t pieces = (count + length - 1) / length;

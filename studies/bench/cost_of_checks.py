@@ -6,7 +6,7 @@
     cost_of_checks.py start BEFORE AFTER           the start of the command in two builds (folders for PYTHONPATH)
 
 Instructions are those of callgrind, which no other work of the machine changes. Steps: the difference of two runs, the
-second twice as long; without checks means that numbers.hpp answers every question of every step with yes. What the
+second twice as long; without checks means that every check of checks.hpp in every step passes. What the
 compiler makes of either differs by more than the checks themselves: leaving out a single one may cost instructions.
 Contacts that are stepped four at once are asked in lanes, by a question of their own.
 Start: ``--version`` and ``reduced table1``, with the bytecode that an installation has.
@@ -28,7 +28,7 @@ PYTHON = "/usr/bin/python3"
 FLAGS = ("-std=c++17", "-O3", "-DNDEBUG", "-ffp-contract=off", "-fno-math-errno", "-DEIGEN_DONT_ALIGN",
          "-DEIGEN_DONT_VECTORIZE", "-Wno-psabi", "-isystem", "/usr/include/eigen3")
 QUESTIONS = {  # of every step, by header, with what says yes
-    "numbers.hpp": {"inline bool is_plain(const Vector3& v)": "true", "inline bool is_below(": "true"},
+    "checks.hpp": {"inline bool is_finite_fast(const Vector3& v)": "true", "inline bool is_below(": "true"},
     "contact_lanes.hpp": {"inline Mask are_below(": "~Mask{}"},
 }
 STEPS = {1: 4000, 100: 400}  # by number of joints

@@ -82,7 +82,7 @@ def test_parameters_are_those_of_the_cases() -> None:
         assert parameter.allows(parameter.low) != parameter.low_excluded
 
 
-def test_unknown_law() -> None:
+def test_unstatic_law() -> None:
     with pytest.raises(ValueError, match="friction_law = 'mindlyn', allowed is one of none, ambrosio, mindlin"):
         laws.law("friction", "mindlyn")
 

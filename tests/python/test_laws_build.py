@@ -148,8 +148,8 @@ struct UserLaw {
 
 
 @pytest.mark.parametrize("name, body, complaint", [
-    ("no_number", "return {std::nan(\"\"), 1.0, 0.0, 0.0};", "answered force = nan"),
-    ("pulls", "return {-1.0, 1.0, 0.0, 0.0};", "answered force = -1"),
+    ("no_number", "return {std::nan(\"\"), 1.0, 0.0, 0.0};", "returned force = nan"),
+    ("pulls", "return {-1.0, 1.0, 0.0, 0.0};", "returned force = -1"),
     ("throws", "throw std::runtime_error(\"no idea\");", "no idea"),
     ("throws_a_number", "throw 42;", "an exception that is no std::exception"),
 ])

@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Two balls that collide, both free: how long they touch, how hard, and how fast they part.
+"""Impact of two free balls: duration, largest force and rebound speed.
 
     yade -n -x yade_scripts/examples/impact.py
     RESTITUTION=0.8 FRICTION=0.3 SPIN=500 yade -n -x yade_scripts/examples/impact.py
 
-The first line is test 1 of Chung and Ooi, Granul. Matter 13, 2011: balls of glass of 10 mm radius that
-meet at 20 m/s, without loss. SPIN [rad/s] turns the first ball, so that the contact slides, or sticks and
-slips at its rim.
+The first line is test 1 of Chung and Ooi, Granul. Matter 13, 2011: glass balls of 10 mm radius that
+collide at 20 m/s without loss. SPIN [rad/s] rotates the first ball, so that the contact slides, or sticks
+with partial slip.
 """
 import os
 import sys
 from math import atan, gamma, pi, sqrt
 from pathlib import Path
 
-# The build tree, for a clone that is not installed.
+# Finds the build tree of a clone that is not installed.
 sys.path.insert(0, str(Path(sys.argv[0]).resolve().parents[2] / "build" / "python"))
 from statejump_yade import *
 
@@ -47,11 +47,11 @@ O.engines = [
             dissipationLaw="exact_restitution", restitution=restitution, frictionLaw="mindlin_deresiewicz",
         )],
     ),
-    ThermalLinks(),  # none; an engine of the plugin, which raises what goes wrong in a contact
+    ThermalLinks(),  # none; this engine of the plugin raises errors of contacts
     NewtonIntegrator(damping=0),
 ]
 
-# Hertz: how long and how hard two balls touch that lose nothing.
+# Hertz: duration and force of an impact without loss.
 closing, pair_mass, pair_radius, modulus = 2 * speed, mass / 2, radius / 2, young / (2 * (1 - poisson**2))
 stiffness = 4 / 3 * modulus * sqrt(pair_radius)
 depth = (5 / 4 * pair_mass * closing**2 / stiffness) ** 0.4

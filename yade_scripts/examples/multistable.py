@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a loaded joint with friction can rest: not in one place, but in a whole set of them.
+"""Rest positions of a loaded joint with friction: a set of positions, not a single one.
 
     yade -n -x yade_scripts/examples/multistable.py             # table; CSV and figure in results/multistable
     FOLDER=out CASES=circle,sphere yade -n -x yade_scripts/examples/multistable.py
 
-A journal in a bearing under a constant force F touches the wall somewhere. It rests there if friction
-can hold it: if the reaction that F needs, -F, is no farther than atan(mu) from the wall's normal N on
-the free side (Coulomb's cone). Every place where that holds is a stable state.
+A journal in a bearing under a constant force F touches the wall. It rests there if the reaction -F is
+inside Coulomb's cone, within atan(mu) of the wall's normal N on the free side. Every such position is a
+stable state.
 
-Here many joints, far from each other, are let go at once, each at rest at another place of its wall
-and as deep in it as its part of F along the normal presses it. Those that the cone holds stay; all
-others leave. The journals cannot turn, like pins fixed to a link; a free one would roll.
+The script releases many joints at once, far from each other. Each starts at rest at another position of
+its wall, at the depth that carries the normal part of F. Journals inside the cone stay; all others leave.
+The journals cannot rotate, like pins fixed to a link; a free one would roll.
 
-A convex wall has each normal once, so its stable states are one piece (docs/theory/rest_sets.md). The case
-three_hollows has a wall that is not convex, but nowhere as hollow as the journal is round, and a force
-towards a bump: three pieces, on the bump's top and beside it in the two hollows.
+A convex wall has each normal once, so its stable states are connected (docs/theory/rest_sets.md). The wall
+of the case three_hollows is not convex, but less curved than the journal, and the force points to a bump.
+Its stable states have three components: on top of the bump and in the two hollows beside it.
 """
 import csv
 import os
@@ -23,7 +23,7 @@ from dataclasses import dataclass, field
 from math import acos, atan, atan2, cos, degrees, pi, radians, sin, sqrt
 from pathlib import Path
 
-# The build tree, for a clone that is not installed.
+# Finds the build tree of a clone that is not installed.
 here = Path(sys.argv[0]).resolve().parent
 sys.path += [str(here), str(here.parents[1] / "build" / "python")]
 from statejump_yade import *
@@ -31,7 +31,7 @@ from statejump_yade import *
 young, poisson, friction = 70e9, 0.3, 0.3  # Table 2 of Chen et al. (2021): Pa, -, -
 R1, R2 = 5e-3, 5.1e-3  # m, journal (ball) and bearing (socket)
 load, mass = 1.0, 1e-3  # N, kg
-spacing = 0.02  # m, between joints that do not see each other
+spacing = 0.02  # m, between joints that do not interact
 cone = atan(friction)
 shear_modulus = young / (4 * (2 - poisson) * (1 + poisson))  # G*
 
@@ -42,12 +42,12 @@ def effective_radius(inner_radius, wall_radius):
 
 
 def depth_under(force, effective):
-    """Depth at which Hertz contact carries a force [m]."""
+    """Depth at which a Hertz contact carries a force [m]."""
     return hertz_depth(max(force, 0), effective, young, poisson)
 
 
 def creep(effective):
-    """How far friction at its limit stretches the contact [m]: mu F / k_t."""
+    """Tangential displacement of the contact at the friction limit [m]: mu F / k_t."""
     contact_radius = sqrt(effective * depth_under(load, effective))
     return friction * load / (8 * shear_modulus * contact_radius)
 
@@ -111,7 +111,7 @@ def lobed(name, waves, amplitude, towards, journal=R1, count=600):
     for i in range(count):
         point, normal, radius = wall(2 * pi * (i + 0.5) / count)
         touching = point - journal * normal
-        # Elsewhere the journal must not be in the wall: then this place cannot be reached.
+        # Elsewhere the journal must not be in the wall; else it cannot reach this position.
         flatter = radius > journal or radius < 0
         if flatter and min((other - touching).norm() for other in others) > journal - 1e-10:
             places.append((normal, radius, touching))
@@ -125,7 +125,7 @@ def lobed(name, waves, amplitude, towards, journal=R1, count=600):
 
 
 def release(case):
-    """Let go of one journal per place and see which are still there after 8 ms."""
+    """Release one journal per position and report which are still there after 8 ms."""
     O.reset()
     metal = O.materials[O.materials.append(
         ThermalFrictMat(young=young, poisson=poisson, frictionAngle=cone)
@@ -162,8 +162,8 @@ def release(case):
     ]
     O.dt = 1e-6
     O.run(8000, True)
-    # Whoever leaves at an angle beyond the cone swings as far to its other side: an angle of 0.2
-    # degrees makes that 0.4 degrees of the clearance circle.
+    # A journal that leaves at an angle outside the cone swings equally far to the other side. So 0.2 degrees become 0.4
+    # degrees of the clearance circle.
     for (number, start), (normal, radius, _) in zip(pairs, case.places):
         state = O.bodies[number].state
         moved = (state.pos - start).norm()
@@ -180,7 +180,7 @@ def release(case):
 
 
 def wrong(case, beyond):
-    """Number of joints that did not do what was predicted, beyond or within 1 degree."""
+    """Number of joints that differ from the prediction, beyond or within 1 degree."""
     return sum(
         (row["predicted"] == "stays") != (row["seen"] == "stayed")
         and (abs(row["angle_to_force_deg"] - degrees(cone)) > 1) == beyond
@@ -189,7 +189,7 @@ def wrong(case, beyond):
 
 
 def parts(case, key, value):
-    """Runs of consecutive places around the wall whose rows have a value: lists of their numbers."""
+    """Runs of consecutive positions around the wall whose rows have a value: lists of their indices."""
     chosen = [row[key] == value for row in case.rows]
     runs = []
     for first in (i for i, here in enumerate(chosen) if here and not chosen[i - 1]):
@@ -212,7 +212,7 @@ def table(cases):
                                ("seen", "left"))
         ]
         numbers = [len(case.rows), case.not_admissible, *counts, wrong(case, False), wrong(case, True)]
-        # The sphere's places lie on a surface, not one after the other.
+        # The sphere's positions lie on a surface, without an order.
         numbers += ["–"] * 2 if case.name == "sphere" else [
             len(parts(case, "predicted", "stays")), len(parts(case, "seen", "stayed"))
         ]
@@ -221,7 +221,7 @@ def table(cases):
 
 
 def draw(cases, folder):
-    """Places coloured by behaviour, the predicted set behind them."""
+    """Plot the positions, coloured by result, with the predicted set behind them."""
     import matplotlib
 
     matplotlib.use("Agg")

@@ -3,13 +3,13 @@
 
     yade -n -x yade_scripts/examples/table1.py
 
-Prints the state jump: where the slider is when the temperature is back, minus where it started.
+Prints the state jump: the slider's position after the temperature cycle minus its start.
 """
 import sys
 from math import atan
 from pathlib import Path
 
-# The build tree, for a clone that is not installed.
+# Finds the build tree of a clone that is not installed.
 sys.path.insert(0, str(Path(sys.argv[0]).resolve().parents[2] / "build" / "python"))
 from statejump_yade import *
 
@@ -35,7 +35,7 @@ slider.material = O.materials[aluminium]
 slider.bound = Aabb()
 slider.state.mass = density * area * length / 3
 slider.state.blockedDOFs = "zXYZ"  # a guided block: it slides and sinks in, it does not turn
-# Start where the floor carries the normal force.
+# Start at the depth at which the floor carries the normal force.
 slider.state.pos = (0, -hertz_depth(normal_force, pad_radius, young, 0.3), 0)
 slider = O.bodies.append(slider)
 
@@ -49,7 +49,7 @@ bar = ThermalLink(
 
 O.engines = [
     ForceResetter(),
-    # The joint is stepped by itself. Without this line YADE's loop makes every step: the same numbers, slower.
+    # The JointStepper makes the steps. Without this line YADE's loop makes them: the same numbers, more slowly.
     JointStepper(substeps=1000),
     ThermalExpansionEngine(program=orbit),
     InsertionSortCollider([Bo1_Slider_Aabb(), Bo1_SlotFace_Aabb()], verletDist=0.1 * pad_radius),
@@ -65,7 +65,7 @@ O.forces.setPermF(slider, (0, -normal_force, 0))
 O.trackEnergy = True
 
 O.dt = 1e-9
-O.step()  # the floor is in contact now, and the stiffness known
+O.step()  # now the floor is in contact and the stiffness is known
 O.dt = 0.1 * stable_time_step()
 start = O.bodies[slider].state.pos[0]
 O.run(int(round(orbit.period / O.dt)), True)

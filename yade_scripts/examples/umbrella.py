@@ -6,20 +6,20 @@
     PARAVIEW=out/umbrella- yade -n -x yade_scripts/examples/umbrella.py    # files for ParaView as well
 
 Links AB and BC are pinned to a frame at A and C. At B the journal of BC has 0.1 mm of play in the
-bearing of AB. Heated, the links grow and the frame does not: the play is used up, journal and
-bearing roll and slip on each other, and after the eclipse they rest somewhere else.
+bearing of AB. During heating the links grow and the frame does not. The play closes, journal and
+bearing roll and slip, and after the eclipse they rest in another position.
 """
 import os
 import sys
 from math import atan, atan2, sqrt
 from pathlib import Path
 
-# The build tree, for a clone that is not installed.
+# Finds the build tree of a clone that is not installed.
 here = Path(sys.argv[0]).resolve().parent
 sys.path[:0] = [str(here), str(here.parents[1] / "build" / "python")]
 from statejump_yade import *
 
-# Tables 2 and 3. The paper gives neither section, nor damping, nor the duration of the cycle.
+# Tables 2 and 3. The paper does not state section, damping and duration of the cycle.
 frame, length_ab, length_bc, mass_ab, mass_bc = 0.12, 0.05, 0.10, 0.5, 1.0  # m, kg
 young, poisson, area, expansion = 70e9, 0.3, 9e-6, 23.75e-6  # Pa, -, m2, 1/K
 journal_radius, clearance, friction = 5e-3, 1e-4, 0.3  # m, m, -
@@ -35,7 +35,7 @@ aluminium = O.materials.append(
 
 def tip(shape, mass):
     """The end of a link at B. A uniform rod on a fixed pin is exactly a massless spring with a
-    third of its mass at the tip. The links swing in the x-y plane; ThermalLink turns the tip."""
+    third of its mass at the tip. The links move in the x-y plane; ThermalLink rotates the tip."""
     body = Body()
     body.shape, body.material, body.bound = shape, O.materials[aluminium], Aabb()
     body.state.mass, body.state.pos, body.state.blockedDOFs = mass / 3, start, "zXYZ"
@@ -79,7 +79,7 @@ if os.environ.get("PARAVIEW"):
 
 
 def report():
-    """State jump: where AB points now that the temperature is back, minus where it pointed."""
+    """State jump: direction of AB after the temperature cycle minus its direction before."""
     direction = O.bodies[bearing].state.pos
     jump = atan2(direction[1], direction[0]) - atan2(start[1], start[0])
     touched = orbit.temperatureChange(law.firstContactTime)
@@ -88,7 +88,7 @@ def report():
     print(f"state jump of AB: {jump * 1e3:.4f} mrad")
 
 
-O.dt = 5e-6  # s; the links ring at 1.4 kHz, journal on bearing at about the same
+O.dt = 5e-6  # s; the links vibrate at 1.4 kHz, journal on bearing at about the same
 steps = int(round(orbit.period / O.dt))
 engines.insert(-1, PyRunner(command="report()", iterPeriod=steps, firstIterRun=steps))
 O.engines = engines
@@ -98,4 +98,4 @@ if windows:
 
     view = qt.View()
     view.center()
-O.run(steps + 1, not windows)  # with windows: go on while one looks
+O.run(steps + 1, not windows)  # with windows: return while the run goes on

@@ -34,7 +34,7 @@ history = table_file.with_name(f"{table_file.name}.sample_{sample.index}.csv")
 values, samples = history.with_suffix(".case.json"), history.with_suffix(".samples")
 values.write_text(json.dumps(sample.dem_values()))
 os.environ["STATEJUMP_CASE_JSON"], os.environ["STATEJUMP_OUTPUT"] = str(values), str(samples)
-# The same script that statejump starts; it needs the namespace of the main script.
+# The script that statejump starts; it needs the namespace of the main script.
 runner = Path(sys.argv[0]).resolve().with_name("run_case.py")
 exec(compile(runner.read_text(), str(runner), "exec"), globals())
 values.unlink()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Failures of a run from a case file, in the case's names: the plugin knows bodies by their numbers only."""
+"""Failures of a run from a case file, with the names of the case: the plugin knows only the numbers of bodies."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
@@ -9,15 +9,15 @@ from typing import Any
 
 
 def pair(one: Any, other: Any) -> frozenset[int]:
-    """Return the key of two bodies, in whichever order the plugin names them."""
+    """Return the key of two bodies, in any order."""
     return frozenset((int(one), int(other)))
 
 
 class SceneFailure(RuntimeError):
-    """What the script itself finds wrong with a state; neither time nor temperature is in the sentence.
+    """A failure found by the script itself; the sentence contains neither time nor temperature.
 
     :param joint: name of the joint as result files have it
-    :param remedy: what would help, "" if that is not known
+    :param remedy: remedy, "" if unknown
     :param time_s: time of the state
     """
 
@@ -28,11 +28,11 @@ class SceneFailure(RuntimeError):
 
 @dataclass
 class Names:
-    """What the case calls what the plugin knows by the numbers of two bodies, or of one."""
+    """Names of the case for the plugin's numbers of two bodies, or of one."""
 
     joints: dict[frozenset[int], tuple[str, str]] = field(default_factory=dict)  # joint, words for the sentence
     links: dict[frozenset[int], str] = field(default_factory=dict)
-    # As joints, by the tips of their links.
+    # As for joints, by the tips of their links.
     torsion_springs: dict[frozenset[int], tuple[str, str]] = field(default_factory=dict)
     prismatic_joints: dict[frozenset[int], tuple[str, str]] = field(default_factory=dict)  # as joints
     bodies: dict[int, str] = field(default_factory=dict)
@@ -49,7 +49,7 @@ class Names:
         self.prismatic_joints[bodies] = ("", f"{before[1]} or {words}") if before else (joint, words)
 
     def joint_of(self, body: int) -> str:
-        """Return the joint that a body belongs to, "" where there is none or more than one."""
+        """Return the joint of a body, "" if there is none or more than one."""
         found = {joint for bodies, (joint, _) in self.joints.items() if body in bodies}
         return found.pop() if len(found) == 1 else ""
 
@@ -74,15 +74,14 @@ def described(
     temperature_change: Callable[[float], float], stable_time_step: Callable[[], float],
     step_remedy: Callable[[float], str],
 ) -> dict[str, Any]:
-    """Return a failure by the names of its fields: cause, time, temperature; joint, words for its place and remedy
-    where they are known.
+    """Return the fields of a failure: cause, time, temperature; if known, joint, text for its position and remedy.
 
-    :param error: what ended the run
-    :param taken: what the plugin says of it, see ``statejump_yade.take_failure``; None: it is not the plugin's
-    :param now_s: time of a failure that does not say its own
+    :param error: the error that ended the run
+    :param taken: the plugin's failure, see ``statejump_yade.take_failure``; None: not from the plugin
+    :param now_s: time of a failure without its own
     :param temperature_change: temperature change [K] of the case's (first) program at a time [s]
-    :param stable_time_step: stable step [s] of the whole scene in its present state
-    :param step_remedy: which key of the case file gives a step of at most so many seconds
+    :param stable_time_step: stable step [s] of the whole scene in its current state
+    :param step_remedy: returns the key of the case file for a step of at most this many seconds
     """
     joint, words, remedy, time_s = "", "", "", now_s
     if taken is None:
@@ -106,7 +105,7 @@ def described(
             joint, named = ("", names.links.get(bodies, unknown)) if is_link else known.get(bodies, ("", unknown))
             cause = taken["before"] + named + taken["after"]
         if taken["stable_time_step"] is not None:
-            # One contact or link alone allows more than all that pull at one body.
+            # The limit of one contact or link exceeds that of all contacts and links of one body.
             whole = stable_time_step()
             remedy = step_remedy(min(taken["stable_time_step"], whole if isfinite(whole) and whole > 0 else inf))
     if isinstance(error, SceneFailure):

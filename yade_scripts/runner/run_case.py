@@ -29,10 +29,10 @@ from failures import described
 from states import Recorder
 from statejump.core.samples import names_line, rows_of
 
-# Samples are worked up in blocks, after so long or when they take so much memory.
+# Samples are processed in blocks, after this time or when they need this much memory.
 SECONDS_OF_A_BLOCK, BYTES_OF_A_BLOCK = 0.1, 2**25
-# Between two looks at the samples a run makes a hundredth of its steps, of a small scene so many times bodies: some
-# milliseconds of the JointStepper, whose arrays are filled and given back each time.
+# Between two checks of the samples a run makes a hundredth of its steps, or for a small scene this number over the
+# number of bodies. This takes the JointStepper some milliseconds; its arrays are copied each time.
 STEPS_OF_A_BODY = 100_000
 NO_DISPLAY = 3  # exit status of a view
 
@@ -41,8 +41,8 @@ class CaseFailure(Exception):
     """A failure in the case's names: its fields."""
 
 
-def tell(message):
-    """Tell the caller; YADE may have left a line open."""
+def report(message):
+    """Report to the caller; YADE may have left a line open."""
     print(f"\nSTATEJUMP {json.dumps(message)}", flush=True)
 
 
@@ -57,25 +57,24 @@ def scene_of(name):
 
 
 class Block:
-    """Samples that are not written yet."""
+    """Samples not yet written."""
 
     def __init__(self, case, kind, built, recorder, write):
         self._case, self._kind, self._built, self._recorder, self._write = case, kind, built, recorder, write
         self._written = time.perf_counter()
-        self.refused = None  # what YADE hands on of an error in Python is a traceback
+        self.refused = None  # YADE turns a Python error into a traceback
 
     def record(self):
-        """Write what there is, if it is much or if it has waited long enough for somebody to see it; tell how far the
-        run is."""
+        """Write the samples if they are many or old enough, and report the progress of the run."""
         waited = time.perf_counter() - self._written
         if waited < SECONDS_OF_A_BLOCK and self._recorder.bytes_kept < BYTES_OF_A_BLOCK:
             return
         self.write()
-        tell({"progress": O.iter / self._case["dem"]["number_of_steps"]})
+        report({"progress": O.iter / self._case["dem"]["number_of_steps"]})
         self._written = time.perf_counter()
 
     def write(self):
-        """Write what there is."""
+        """Write all samples."""
         states = self._recorder.take()
         if not len(states):
             return
@@ -91,13 +90,13 @@ def run(case, output):
     """Build the scene, run it, write the history and its summary."""
     kind = scene_of(case["scene"])
     steps = case["dem"]["number_of_steps"]
-    # The caller makes the steps a multiple of the samples, so that the last one is the end.
+    # The caller makes the steps a multiple of the samples, so that the last sample is the end.
     every, rest = divmod(steps, case["number_of_samples"])
     if every == 0 or rest != 0:
         raise ValueError(f"dem.number_of_steps = {steps} is not a multiple of the samples")
     partial = output.with_name(output.name + ".partial")
     with partial.open("wb") as stream:
-        columns = getattr(kind, "columns", None)  # of a kind whose items differ from case to case
+        columns = getattr(kind, "columns", None)  # for a kind whose columns depend on the case
         stream.write(names_line(columns(case) if columns else kind.COLUMNS))
 
         def write(rows):
@@ -118,14 +117,14 @@ def run(case, output):
             O.run(steps + 1, True)  # the end of the program is recorded one step later
             block.write()
             elapsed, elapsed_cpu = time.perf_counter() - started, time.process_time() - started_cpu
-            if O.iter != steps + 1:  # an error in the first steps can end the run without a word
-                O.step()  # which here says it
+            if O.iter != steps + 1:  # an error in the first steps can end the run without a message
+                O.step()  # this call raises it
                 raise RuntimeError(f"YADE stopped after {O.iter} of {steps + 1} steps")
         except Exception as error:
             taken = sj.take_failure()
             if not block.refused:
-                with suppress(Exception):  # which it keeps
-                    block.write()  # a sample from before the failure may be one, too
+                with suppress(Exception):  # the failure may persist
+                    block.write()  # a sample before the failure may raise it, too
             raise CaseFailure(described(
                 block.refused or error, None if block.refused else taken, kind.names(case, built), O.time,
                 built.program.temperatureChange, sj.stable_time_step, lambda stable: kind.step_remedy(case, stable),
@@ -168,7 +167,7 @@ def view(case):
 
 def end(failure):
     """Report a failure; end YADE, or show the traceback and leave the scene to whoever started YADE without -x."""
-    tell({"failure": failure})
+    report({"failure": failure})
     if yade.runtime.opts.exitAfter:
         os._exit(2)
 
@@ -181,7 +180,7 @@ def main():
         view(case)
         return
     run(case, Path(os.environ.get("STATEJUMP_OUTPUT", here / "dem.samples")))
-    tell({"progress": 1.0})
+    report({"progress": 1.0})
 
 
 try:

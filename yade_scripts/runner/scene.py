@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the scenes of all kinds of case share. Imported by scripts that run under ``yade``."""
+"""Shared by the scenes of all kinds of case. Imported by scripts that run under ``yade``."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -29,7 +29,7 @@ def thermal_program(case: dict[str, Any]) -> sj.ThermalProgram:
 
 
 def fixed_point(position: tuple[float, float, float]) -> int:
-    """Append a body without shape that nothing moves, and return its id."""
+    """Append a fixed body without shape, and return its id."""
     body = wrapper.Body()
     body.state.pos = body.state.refPos = position
     body.state.blockedDOFs = "xyzXYZ"
@@ -37,15 +37,15 @@ def fixed_point(position: tuple[float, float, float]) -> int:
 
 
 def start_sticking(slides: Mapping[int, tuple[float, float, float]]) -> None:
-    """Load the contacts of pads by friction: each contact sees one slide of its pad, which itself stays where it is.
-    ``O.engines`` and ``O.dt`` are those of the run. Without slides nothing is done.
+    """Load the contacts of pads by friction: each contact receives one slide, while its pad does not move.
+    ``O.engines`` and ``O.dt`` are those of the run. Without slides this does nothing.
 
     :param slides: of each pad [m], by body
     """
     if not slides:
         return
     tracked, O.trackEnergy = O.trackEnergy, False
-    for share in (0, 1):  # pressed first, then rubbed: partial slip depends on the order
+    for share in (0, 1):  # pressed first, then sheared: partial slip depends on the order
         for body, slide in slides.items():
             O.bodies[body].state.vel = tuple(share * way / O.dt for way in slide)
         for engine in O.engines:

@@ -23,7 +23,7 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class SpringSliderScene:
-    """What a script reads from the scene of a ``spring_slider`` case: body ids, links, program."""
+    """Objects of the scene of a ``spring_slider`` case for scripts: body ids, links, program."""
 
     program: sj.ThermalProgram
     slider: int
@@ -32,28 +32,28 @@ class SpringSliderScene:
     stop_plus: int | None
     link: sj.ThermalLink
     preload_link: sj.ThermalLink | None
-    prismatic: sj.PrismaticJoint | None  # soft stops in place of the faces, and friction with a play
+    prismatic: sj.PrismaticJoint | None  # soft stops instead of faces, and friction with play
     start_height_m: float  # y of the slider at the start, where the floor carries the normal force
     start_energy_J: float  # of bar and preload at the start
 
     @property
     def pairs(self) -> list[Pair]:
-        """The slider with its floor and with its rigid stops."""
+        """Pairs of the slider with its floor and its rigid stops."""
         return [(self.slider, face) for face in (self.floor, self.stop_minus, self.stop_plus) if face is not None]
 
     @property
     def prismatic_joints(self) -> list[sj.PrismaticJoint]:
-        """What stands for soft stops and for friction with a play."""
+        """The joint of soft stops and of friction with play."""
         return [self.prismatic] if self.prismatic is not None else []
 
     @property
     def has_play(self) -> bool:
-        """Whether the prismatic joint rubs, and not the floor."""
+        """Whether the prismatic joint has the friction, not the floor."""
         return self.prismatic is not None and bool(self.prismatic.play > 0)
 
     @property
     def has_soft_stops(self) -> bool:
-        """Whether stops are those of the prismatic joint."""
+        """Whether the prismatic joint has the stops."""
         return self.stop_plus is None
 
 
@@ -103,7 +103,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSlider
             stopPlus=radius + joint["clearance_plus_m"] if soft is None else None,
             halfHeight=radius,
             material=materials["slot"],
-            # As far as with stops.
+            # The same length as with stops.
             halfSize=max(radius, radius + joint["clearance_minus_m"], radius + joint["clearance_plus_m"]),
         )
     )
@@ -121,7 +121,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSlider
     )
     links, preload = [bar], None
     if joint["preload_stiffness_N_per_m"] > 0:
-        # A spring to ground that does not expand, with its far end as far away as the root.
+        # A spring to ground without expansion, with its fixed end as far away as the root.
         far = link["stress_free_length_m"]
         preload = sj.ThermalLink(
             id1=fixed_point((far, 0, 0)),
@@ -152,7 +152,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSlider
 
 
 def prismatic_joint(case: dict[str, Any], slider: int, depth_m: float) -> sj.PrismaticJoint | None:
-    """Return the joint of soft stops and of friction with a play, None of a case that has neither."""
+    """Return the joint of soft stops and of friction with play, None for a case with neither."""
     joint, dem = case["joint"], case["dem"]
     stops: dict[str, float] = {}
     friction: dict[str, float] = {}
@@ -172,12 +172,12 @@ def prismatic_joint(case: dict[str, Any], slider: int, depth_m: float) -> sj.Pri
 
 
 def stored_by_preload(joint: dict[str, Any], displacement: Any) -> Any:
-    """Return what the preload spring stores [J]: k_p x²/2 + P x."""
+    """Return the energy of the preload spring [J]: k_p x²/2 + P x."""
     return (0.5 * joint["preload_stiffness_N_per_m"] * displacement + joint["preload_force_N"]) * displacement
 
 
 def watched(built: SpringSliderScene) -> Watched:
-    """Return what has to be recorded."""
+    """Return the objects to record."""
     return Watched([built.slider], built.pairs, [built.link], [], built.prismatic_joints)
 
 
@@ -200,7 +200,7 @@ def sample(case: dict[str, Any], built: SpringSliderScene, states: States) -> li
             at_stop = pushed != 0
         if built.has_play:
             friction = -between["frictionForce"][:, 0]
-            # The start is at rest, also where friction is at its limit.
+            # The start is at rest, even if friction is at its limit.
             slips = (np.abs(friction) >= built.prismatic.frictionLimit) & (states.times > 0)
             slipping = np.where(slips, 1.0, 0.0)
     x, velocity = slider["position"][:, 0], slider["velocity"]
@@ -228,7 +228,7 @@ def sample(case: dict[str, Any], built: SpringSliderScene, states: States) -> li
 
 
 def names(case: dict[str, Any], built: SpringSliderScene) -> Names:
-    """Return what the case calls contacts and links; contacts as in result files."""
+    """Return the case's names of contacts and links; contacts as in result files."""
     found = Names()
     faces = ("floor",) if built.has_soft_stops else ("floor", "stop_minus", "stop_plus")
     for contact in faces:
@@ -250,5 +250,5 @@ def step_remedy(case: dict[str, Any], stable_s: float) -> str:
 
 
 def summary(case: dict[str, Any], built: SpringSliderScene) -> dict[str, Any]:
-    """Return what else the run has to say, as plain values."""
+    """Return further results of the run, as plain values."""
     return {}

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """YADE scene of ``truss`` cases: nodes are bodies, bars are links, joints are contacts (``truss_joints``).
 
-What the DEM cannot represent has been refused before: ``statejump/kinds/truss/dem.py``, which also says how
-masses are lumped.
+``statejump/kinds/truss/dem.py`` rejects cases that the DEM cannot represent, and documents how masses are lumped.
 """
 from __future__ import annotations
 
@@ -29,7 +28,7 @@ PLAIN = (
 
 @dataclass
 class TrussScene:
-    """What a script reads from the scene: bodies by node, links, springs, joints."""
+    """Objects of the scene for scripts: bodies by node, links, springs, joints."""
 
     program: sj.ThermalProgram
     nodes: list[int]
@@ -99,7 +98,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
         body.state.blockedDOFs = blocked + "XYZ"
         bodies.append(body)
 
-    turning: dict[int, set[int]] = {}  # of each link, the nodes whose bodies turn with it
+    turning: dict[int, set[int]] = {}  # by link: nodes whose bodies rotate with it
     parts_of: dict[tuple[int, float], list[int]] = {}
 
     def turn(link: int, node: int) -> None:
@@ -124,12 +123,12 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
             O.forces.setPermF(ids[place], Vector3(node["force_N"]))
             scene.loaded.append(place)
 
-    carriers = []  # links without stiffness that turn the root of a link that turns its tip as well
+    carriers = []  # links without stiffness; each rotates the root of a link that also rotates its tip
     for place, link in enumerate(links):
         ends = [int(node) for node in link["nodes"]]
         turned = turning.get(place, set())
         if ends[0] in turned and ends[1] not in turned:
-            ends.reverse()  # a ThermalLink turns its tip
+            ends.reverse()  # a ThermalLink rotates its tip
         program = programs.of(link["program"], link["temperature_fraction"])
         scene.links.append(sj.ThermalLink(
             id1=ids[ends[0]], id2=ids[ends[1]], youngModulus=link["young_modulus_Pa"],
@@ -177,7 +176,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
 
 
 def watched(built: TrussScene) -> Watched:
-    """Return what has to be recorded."""
+    """Return the objects to record."""
     return Watched(
         built.nodes, built.pairs, built.links + built.springs,
         [spring for joints in built.joints for spring in joints.torsion_springs()],
@@ -210,14 +209,14 @@ def sample(case: dict[str, Any], built: TrussScene, states: States) -> list[np.n
 
 
 def _bodies(case: dict[str, Any], built: TrussScene) -> dict[int, str]:
-    """Return the words for all bodies that may touch."""
+    """Return the texts for all bodies that may touch."""
     found = {body: f"node {name!r}" for body, name in zip(built.nodes, case["node"]["names"])}
     found.update({face: words for joints in built.joints for face, (_, words) in joints.faces().items()})
     return found
 
 
 def _strangers(case: dict[str, Any], built: TrussScene, states: States) -> Iterator[SceneFailure]:
-    """Yield the first two bodies that touch and may not."""
+    """Yield the first two bodies that touch but must not."""
     strangers = states.strangers()
     touching = strangers[:, 0] >= 0
     if not touching.any():
@@ -233,7 +232,7 @@ def _strangers(case: dict[str, Any], built: TrussScene, states: States) -> Itera
 
 
 def names(case: dict[str, Any], built: TrussScene) -> Names:
-    """Return what the case calls joints, links, springs and bodies."""
+    """Return the case's names of joints, links, springs and bodies."""
     words = _bodies(case, built)
     found = Names(bodies=words)
     for joints in built.joints:
@@ -253,5 +252,5 @@ def step_remedy(case: dict[str, Any], stable_s: float) -> str:
 
 
 def summary(case: dict[str, Any], built: TrussScene) -> dict[str, Any]:
-    """Return what else the run has to say, as plain values."""
+    """Return further results of the run, as plain values."""
     return {"joints": sum(len(joints.rows) for joints in built.joints), "nodes": len(built.nodes)}

@@ -26,7 +26,7 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class UmbrellaScene:
-    """What a script reads from the scene: body ids of the two tips, links, law, program."""
+    """Objects of the scene for scripts: body ids of the two tips, links, law, program."""
 
     program: sj.ThermalProgram
     bearing: int  # tip of AB
@@ -38,7 +38,7 @@ class UmbrellaScene:
 
 
 def joint_law(joint: dict[str, Any]) -> sj.Law2_JointGeom_JointPhys_JointLaw:
-    """Return the contact law that the [joint] section names."""
+    """Return the contact law of the [joint] section."""
     return sj.Law2_JointGeom_JointPhys_JointLaw(
         normalLaw=joint["normal_law"],
         dissipationLaw=joint["dissipation_law"],
@@ -54,7 +54,7 @@ def joint_law(joint: dict[str, Any]) -> sj.Law2_JointGeom_JointPhys_JointLaw:
 
 def tip(shape, link: dict[str, Any], joint: dict[str, Any], expansion: float, start, velocity) -> int:
     """Append the body at the tip of a link and return its id. A uniform rod on a fixed pin is
-    exactly a spring with a third of its mass at the tip; the tip turns with its link."""
+    exactly a spring with a third of its mass at the tip; the tip rotates with its link."""
     body = wrapper.Body()
     body.shape = shape
     body.material = sj.ThermalFrictMat(
@@ -129,7 +129,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> UmbrellaScen
 
 
 def watched(built: UmbrellaScene) -> Watched:
-    """Return what has to be recorded."""
+    """Return the objects to record."""
     return Watched([built.bearing, built.journal], [(built.journal, built.bearing)], [built.link_ab])
 
 
@@ -162,7 +162,7 @@ def sample(case: dict[str, Any], built: UmbrellaScene, states: States) -> list[n
 
 
 def names(case: dict[str, Any], built: UmbrellaScene) -> Names:
-    """Return what the case calls joint, links and spring; the joint as in result files."""
+    """Return the case's names of joint, links and spring; the joint as in result files."""
     found = Names({pair(built.bearing, built.journal): ("joint_b", "joint_b")})
     found.bodies.update({built.bearing: "the bearing of joint_b", built.journal: "the journal of joint_b"})
     found.add_link(built.link_ab, "link_ab")
@@ -180,7 +180,7 @@ def step_remedy(case: dict[str, Any], stable_s: float) -> str:
 
 
 def summary(case: dict[str, Any], built: UmbrellaScene) -> dict[str, Any]:
-    """Return what else the run has to say, as plain values."""
+    """Return further results of the run, as plain values."""
     contacts = built.law.contacts
     first = built.law.firstContactTime if contacts > 0 else None
     return {

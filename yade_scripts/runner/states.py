@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""States of a scene in many steps, as arrays: what a StateRecorder has kept."""
+"""States of a scene in many steps, as arrays: the samples of a StateRecorder."""
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
@@ -12,7 +12,7 @@ from yade import wrapper
 
 Pair = tuple[int, int]
 
-# The numbers of a row, see StateRecorder.
+# Numbers per row, see StateRecorder.
 VECTOR, NUMBER = "3f8", "f8"
 BODY = [("position", VECTOR), ("velocity", VECTOR), ("force", VECTOR)]
 CONTACT = [("real", NUMBER), ("penetrationDepth", NUMBER), ("slipping", NUMBER), ("normal", VECTOR),
@@ -33,8 +33,7 @@ class Watched:
 
 
 class States:
-    """Samples: the first axis of every array; the second one has the parts that are asked for, the third one is that
-    of a vector."""
+    """Samples. The axes of every array are sample, part and, for vectors, component."""
 
     def __init__(self, rows: np.ndarray, places: dict[Any, int]) -> None:
         self._rows, self._places = rows, places
@@ -52,7 +51,7 @@ class States:
         return sum(self._rows[name] for name in names)
 
     def strangers(self) -> np.ndarray:
-        """Return two bodies that touch and whose contact is not watched, -1 where there are none."""
+        """Return two bodies in contact that are not recorded, -1 if there are none."""
         return np.stack([self._rows["stranger1"], self._rows["stranger2"]], axis=1).astype(int)
 
     def _of(self, sort: str, keys: Iterable[Any]) -> np.ndarray:
@@ -88,7 +87,7 @@ class States:
 
 
 class Recorder:
-    """A StateRecorder and the meaning of its rows. ``engine`` is to stand right before the NewtonIntegrator.
+    """A StateRecorder and the meaning of its rows. Place ``engine`` right before the NewtonIntegrator.
 
     :param every: steps from sample to sample
     """
@@ -97,13 +96,13 @@ class Recorder:
         self.engine: wrapper.Engine = sj.StateRecorder(iterPeriod=every)
 
     def watch(self, watched: Watched) -> None:
-        """Say what is recorded from now on."""
+        """Set the objects to record from now on."""
         engine = self.engine
         engine.bodies, engine.contacts = watched.bodies, [body for pair in watched.contacts for body in pair]
         engine.links, engine.springs, engine.joints = watched.links, watched.springs, watched.joints
         keys = {"bodies": watched.bodies, "contacts": watched.contacts, "links": map(id, watched.links),
                 "springs": map(id, watched.springs), "joints": map(id, watched.joints)}
-        self._watched = watched  # its objects have to stay for their ids to be theirs
+        self._watched = watched  # keeps the objects alive, so that their ids stay unique
         self._places = {(sort, key): place for sort, all_keys in keys.items() for place, key in enumerate(all_keys)}
         self._row = np.dtype([(name, NUMBER) for name in engine.scalars()] + [
             (sort, part, (len(getattr(watched, sort)),))
@@ -143,5 +142,5 @@ def in_order(values: np.ndarray) -> np.ndarray:
 
 
 def each(function: Any, *values: np.ndarray) -> np.ndarray:
-    """Return a function of Python's ``math`` of every sample: NumPy's own differ with the processor."""
+    """Return a function of Python's ``math`` of every sample: NumPy's functions differ between processors."""
     return np.array(list(map(function, *(some.tolist() for some in values))))

@@ -24,7 +24,7 @@ std::string variable(const char* name) {
   return value ? value : "";
 }
 
-/// Objects that hold no law.
+/// Objects that contain no law.
 std::vector<std::string>& no_laws() {
   static std::vector<std::string> sentences;
   return sentences;
@@ -52,7 +52,7 @@ bool is_in_the_project(laws::LawKind kind, const std::string& name) {
   return false;
 }
 
-/// The program's own data of the same parameters. @return empty, or the name that it does not know
+/// Replaces the parameters by the program's own data. @return empty, or the first unknown name
 std::string adopt_parameters(laws::LawInfo& info) {
   namespace known = laws::parameter;
   for (const laws::LawParameter*& parameter : info.parameters) {
@@ -111,7 +111,7 @@ std::vector<fs::path> folders() {
 laws::LoadedLaw inspect(const fs::path& file) {
   laws::LoadedLaw law;
   law.origin = file.string();
-  // Laws stay loaded as long as the program runs: tables point into them.
+  // Laws stay loaded until the program ends, because tables point into them.
   void* object = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!object) {
     const char* reason = dlerror();
@@ -154,7 +154,7 @@ void load_user_laws() {
     std::set<fs::path> files;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
       const std::string name = entry.path().filename().string();
-      // One that is being written has a hidden name.
+      // A file that is being written has a hidden name.
       if (name.front() == '.' || entry.path().extension() != ".so") continue;
       files.insert(fs::absolute(entry.path(), error));
     }

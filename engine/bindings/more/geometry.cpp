@@ -72,9 +72,7 @@ py::list to_list(const std::vector<geometry::BoreContact>& contacts) {
   return result;
 }
 
-}  // namespace
-
-void bind_geometry(py::module_& module) {
+void bind_generators(py::module_& module) {
   module.def(
       "bore_triangles",
       [](double radius, double length, int around, int along,
@@ -103,11 +101,14 @@ void bind_geometry(py::module_& module) {
       },
       py::arg("radius_m"), py::arg("opening_rad"), py::arg("around"), py::arg("along"),
       "Mesh of the cup of a ball-and-socket joint about the origin: (vertices [m], faces).");
+}
 
-  py::class_<BoreMesh>(module, "BoreMesh",
-                       "Inner surface of a bore or socket given by triangles, smooth between its\n"
-                       "vertices. Raises ValueError or RuntimeError with one sentence that says\n"
-                       "what is wrong with the mesh, and where.")
+py::class_<BoreMesh> bind_mesh(py::module_& module) {
+  return py::class_<BoreMesh>(
+             module, "BoreMesh",
+             "Inner surface of a bore or socket given by triangles, smooth between its\n"
+             "vertices. Raises ValueError or RuntimeError with one sentence that says\n"
+             "what is wrong with the mesh, and where.")
       .def(py::init([](const Vertices& vertices, const Faces& faces, const std::string& kind,
                        double scale, bool flip, double smallest_radius, double largest_radius,
                        int fit_degree) {
@@ -130,7 +131,11 @@ void bind_geometry(py::module_& module) {
           py::arg("file"), py::arg("kind") = "bore", py::arg("scale") = 1.0,
           py::arg("flip") = false, py::arg("smallest_radius_m") = 1e-5,
           py::arg("largest_radius_m") = 0.5, py::arg("fit_degree") = 4,
-          "Reads OFF, STL (text or binary), PLY or OBJ; scale is the file's unit [m].")
+          "Reads OFF, STL (text or binary), PLY or OBJ; scale is the file's unit [m].");
+}
+
+void bind_contacts(py::class_<BoreMesh>& mesh_class) {
+  mesh_class
       .def(
           "closest_point",
           [](const BoreMesh& mesh, const Eigen::Vector3d& query) {
@@ -153,14 +158,14 @@ void bind_geometry(py::module_& module) {
              double gap) { return to_list(mesh.contacts(centre, axis, radius, gap)); },
           py::arg("journal_centre_m"), py::arg("journal_axis"), py::arg("journal_radius_m"),
           py::arg("maximum_gap_m") = 0.0,
-          "All places where a journal touches the wall, deepest first: a list of dicts.")
+          "All contacts of a journal with the wall, deepest first: a list of dicts.")
       .def(
           "ball_contacts",
           [](const BoreMesh& mesh, const Eigen::Vector3d& centre, double radius, double gap) {
             return to_list(mesh.ball_contacts(centre, radius, gap));
           },
           py::arg("ball_centre_m"), py::arg("ball_radius_m"), py::arg("maximum_gap_m") = 0.0,
-          "All places where a ball touches the wall, deepest first: a list of dicts.")
+          "All contacts of a ball with the wall, deepest first: a list of dicts.")
       .def(
           "section_radii_m",
           [](const BoreMesh& mesh, double z, int count) -> Eigen::VectorXd {
@@ -170,7 +175,16 @@ void bind_geometry(py::module_& module) {
           },
           py::arg("z_m"), py::arg("count"),
           "Radii of the smooth wall about the fitted axis at equal angles from axis_x; NaN where\n"
-          "there is no wall.")
+          "there is no wall.");
+}
+
+}  // namespace
+
+void bind_geometry(py::module_& module) {
+  bind_generators(module);
+  py::class_<BoreMesh> mesh_class = bind_mesh(module);
+  bind_contacts(mesh_class);
+  mesh_class
       .def_property_readonly("vertices_m",
                              [](const BoreMesh& m) { return to_arrays(m.triangles())[0]; })
       .def_property_readonly("faces", [](const BoreMesh& m) { return to_arrays(m.triangles())[1]; })

@@ -38,7 +38,7 @@ py::array_t<double> rows(const std::vector<Vector>& vectors) {
 
 py::dict set_dict(const rest_set::RestSet& set) {
   py::list parts;
-  for (const rest_set::Part& part : set.parts) {
+  for (const rest_set::RestComponent& part : set.parts) {
     py::dict one;
     one["area_m2"] = part.area;
     one["length_m"] = part.length;
@@ -61,7 +61,7 @@ py::dict set_dict(const rest_set::RestSet& set) {
   return result;
 }
 
-py::dict study_dict(const rest_set::Study& study) {
+py::dict study_dict(const rest_set::RestStudy& study) {
   py::list each;
   for (const rest_set::RestSet& set : study.each) each.append(set_dict(set));
   py::dict result;

@@ -11,35 +11,36 @@
 
 namespace statejump {
 
-/// What kept a model, whose input is in range, from giving a result.
+/// Reason why a model with valid input has no result.
 enum class FailureKind : unsigned char {
-  mechanism,           ///< Truss: it has free modes though no joint slips.
-  held_mechanism,      ///< Truss: as drawn, with every joint held.
-  friction_exhausted,  ///< Truss: free modes once the friction of joints is at its bound.
-  overloaded,          ///< Truss: the loads need more friction at the start than a joint has.
-  buckled,             ///< Truss: unstable whatever the joints do.
-  unloaded_joint,      ///< Joint without force at the start: its place in the play is undetermined.
-  jump_across_play,  ///< Revolute whose contact force vanishes on the way.
-  singular,          ///< No equilibrium found: the equations are singular to rounding.
-  not_converged,     ///< No equilibrium found: the iteration does not end.
-  no_continuation,   ///< Truss: no slow continuation, slip runs away or the truss snaps through.
-  several_continuations,  ///< Truss: statics does not choose between several.
-  unsettled_joint,        ///< Truss: a joint's status changes without end.
-  too_many_steps,         ///< Truss: the path is found only in steps without number.
-  law_left_range,         ///< Dynamics: a contact law is asked for what it does not cover.
-  not_finite              ///< Dynamics: the steps are too long.
+  mechanism,           ///< Truss: free modes without any slip.
+  held_mechanism,      ///< Truss: free modes in the reference configuration with every joint
+                       ///< constrained.
+  friction_exhausted,  ///< Truss: free modes once the friction of joints is at its limit.
+  overloaded,          ///< Truss: at the start the loads exceed the friction of a joint.
+  buckled,             ///< Truss: unstable for every status of the joints.
+  unloaded_joint,  ///< Joint without force at the start: its position in the play is undetermined.
+  jump_across_play,       ///< Revolute whose contact force vanishes along the path.
+  singular,               ///< No equilibrium found: the equations are singular to rounding.
+  not_converged,          ///< No equilibrium found: the iteration does not converge.
+  no_continuation,        ///< Truss: no quasi-static continuation; unstable slip or snap-through.
+  several_continuations,  ///< Truss: statics allows several continuations.
+  unsettled_joint,        ///< Truss: the status of a joint cycles.
+  too_many_steps,         ///< Truss: the path needs too many steps.
+  law_left_range,         ///< Dynamics: a contact law is evaluated outside its range.
+  not_finite              ///< Dynamics: the time steps are too long.
 };
 
 /// "mechanism", "held_mechanism", …: the enumerator's name.
 const char* to_string(FailureKind kind);
 
-/// A node and the coordinate direction ('x', 'y' or 'z') in which it mostly moves in a mode.
+/// A node and the coordinate direction ('x', 'y' or 'z') of its largest component in a mode.
 struct ModeNode {
   std::string node;
   char along;
 };
 
-/// The nodes that move most in one mode.
+/// The nodes with the largest motion in one mode.
 using FailureMode = std::vector<ModeNode>;
 
 /// Joint of a truss.
@@ -48,36 +49,36 @@ struct FailureJoint {
   std::string name;
 };
 
-/// A failure as fields. What does not apply is empty.
+/// A failure as fields. Fields that do not apply are empty.
 struct FailureFields {
   FailureKind kind;
-  std::vector<FailureJoint> joints = {};          ///< Those that fail.
+  std::vector<FailureJoint> joints = {};          ///< Joints that fail.
   std::vector<FailureMode> modes = {};            ///< Of a mechanism or of buckling.
-  int mode_count = 0;                             ///< May be more than are described in `modes`.
+  int mode_count = 0;                             ///< May exceed the number described in `modes`.
   bool more_modes = false;                        ///< There may be more than `mode_count`.
   std::optional<double> time = {};                ///< [s]
-  std::optional<double> temperature_change = {};  ///< ΔT [K]; of a truss that of its first program
-  /// What was sought, as "no equilibrium of the drawn shape"; for kinds singular and not_converged,
-  /// and of a motion too_many_steps.
+  std::optional<double> temperature_change = {};  ///< ΔT [K]; for a truss that of its first program
+  /// The result that was not found, e.g. "no equilibrium of the drawn shape"; for the kinds
+  /// singular and not_converged, and for too_many_steps of dynamics.
   std::string sought = {};
-  /// Why, where a part of the program says so itself: the law's own sentence.
+  /// Message of the law or part of the program that detected the failure.
   std::string cause = {};
-  std::string before = {};  ///< Status that a joint changed from, of an unsettled joint.
-  std::string after = {};   ///< Status that it changed to.
+  std::string before = {};  ///< Previous status of an unsettled joint.
+  std::string after = {};   ///< New status of an unsettled joint.
   /// Further numbers: name with unit, value.
   std::vector<std::pair<std::string, double>> numbers = {};
 };
 
-/// The sentence of a failure, rendered from its fields: the one place where it is worded.
+/// Sentence of a failure, rendered from its fields; the only place with its wording.
 std::string sentence(const FailureFields& fields);
 
-/// What can be done about it; "" where nothing general can be said.
+/// Remedy; "" if there is no general one.
 std::string remedy(const FailureFields& fields);
 
-/// Why it happened, the part of the sentence that says so; "" where there is nothing to add.
+/// The part of the sentence that explains the reason; "" if there is none.
 std::string cause(const FailureFields& fields);
 
-/// A model, whose input is in range, gave no result. what() is the sentence.
+/// A model with valid input has no result. what() is the sentence.
 class Failure : public std::runtime_error {
  public:
   explicit Failure(FailureFields fields)
@@ -88,8 +89,8 @@ class Failure : public std::runtime_error {
   FailureFields fields_;
 };
 
-/// The torsion spring of a linkage does not load its joint at the start, which leaves the position
-/// within the play undetermined.
+/// The torsion spring of a linkage does not load its joint at the start, so the position within the
+/// play is undetermined.
 class UnloadedJoint : public kernel::OutOfRange {
  public:
   using OutOfRange::OutOfRange;

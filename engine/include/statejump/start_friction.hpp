@@ -3,16 +3,15 @@
 
 namespace statejump {
 
-/// How a structure gets to its first equilibrium at ΔT = 0, from the reference configuration.
+/// How a structure reaches its first equilibrium at ΔT = 0 from the reference configuration.
 ///
-/// `stuck`: joints hold by friction where the reference configuration has them, before loads and
-/// preloads act. A joint slides only as far as its limit is exceeded; its friction then is the
-/// limit.
-/// `frictionless`: loads and preloads act on joints without friction. Friction begins in that
-/// equilibrium, without force.
+/// `stuck`: before loads and preloads act, joints stick in the reference configuration. A joint
+/// slides only if its friction limit is exceeded; its friction is then the limit.
+/// `frictionless`: loads and preloads act on joints without friction. Friction starts in that
+/// equilibrium with zero force.
 ///
-/// A clearance joint has no contact in the reference configuration that could stick: it finds its
-/// contact without friction in both.
+/// A clearance joint has no contact in the reference configuration that could stick, so it finds
+/// its contact without friction in both cases.
 enum class StartFriction : unsigned char { stuck, frictionless };
 
 }  // namespace statejump

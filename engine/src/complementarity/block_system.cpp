@@ -5,7 +5,8 @@ namespace statejump::complementarity {
 
 namespace {
 
-/// Rows of a singular sparse matrix that is still factored as a dense one: 72 MB, some seconds.
+/// Largest number of rows of a singular sparse matrix that is factored as a dense one: 72 MB, some
+/// seconds.
 constexpr Eigen::Index most_dense_rows = 3000;
 
 }  // namespace

@@ -12,23 +12,23 @@
 
 namespace statejump::complementarity {
 
-/// Contacts with their blocks of A and B, in order.
+/// The contacts with their blocks of A and B, in order.
 struct BlockRows {
   std::vector<Eigen::Index> contacts;
   std::vector<BlockMatrix> a;
   std::vector<BlockMatrix> b;
 };
 
-/// Factors of A W + B among some contacts, A and B block diagonal: dense where W is, else sparse.
-/// Sparse factors that are singular to rounding are replaced by dense ones, whose pivots are sought
-/// in whole columns, up to a size.
+/// Factors of A W + B for some contacts, with block-diagonal A and B; dense if W is dense, else
+/// sparse. If sparse factors are singular to rounding, dense ones with full row pivoting replace
+/// them, up to a size.
 class BlockSystem {
  public:
   BlockSystem(const ScaledProblem& problem, const BlockRows& rows);
 
-  /// Solution r of (A W + B) r = c, with zero for the contacts that take no part; nothing if the
+  /// Solution r of (A W + B) r = c, with zero for contacts outside the system; empty if the
   /// equations are singular to rounding.
-  /// @param c one block for each contact that takes part
+  /// @param c one block for each contact in the system
   std::optional<Eigen::VectorXd> solve(const std::vector<Block>& c) const;
 
  private:

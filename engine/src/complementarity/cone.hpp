@@ -6,34 +6,34 @@
 
 namespace statejump::complementarity {
 
-/// Numbers of one contact, normal component first; in the plane the second tangential one is zero.
+/// Components of one contact, normal first; in the plane the second tangential one is zero.
 using Block = Eigen::Vector3d;
-/// Matrix of one contact.
+/// 3 x 3 matrix of one contact.
 using BlockMatrix = Eigen::Matrix3d;
 
-/// Numbers of a contact among those of all.
+/// Block of a contact in a vector of all contacts.
 inline Block block_of(const Eigen::VectorXd& all, Eigen::Index contact, int dimension) {
   return {all[contact * dimension], all[contact * dimension + 1],
           dimension == 3 ? all[contact * dimension + 2] : 0.0};
 }
 
-/// Writes the numbers of a contact among those of all.
+/// Writes the block of a contact into a vector of all contacts.
 inline void set_block(Eigen::VectorXd& all, Eigen::Index contact, int dimension,
                       const Block& block) {
   all.segment(contact * dimension, dimension) = block.head(dimension);
 }
 
-/// r - P_K(r - û) of one contact: zero where Coulomb's law holds. P_K projects onto the cone
-/// |x_t| <= mu x_n. Each branch is written so that a small û does not vanish beside a large r.
+/// r - P_K(r - û) of one contact: zero if Coulomb's law holds. P_K projects onto the cone |x_t| <=
+/// mu x_n. Each branch is written so that a small û is not lost beside a large r.
 inline Block natural_map(const Block& r, const Block& u, double mu) {
   Block modified = u;
   modified[0] += mu * u.tail<2>().norm();
   const Block x = r - modified;
   const double size = x.tail<2>().norm();
-  // Without friction the cone is a ray: what lies behind its tip has no tangential part either.
+  // Without friction the cone is a ray: points behind its tip have no tangential part either.
   if (x[0] >= 0.0 && size <= mu * x[0]) return modified;
   if (mu * size <= -x[0]) return r;
-  // Onto the edge: with size = 0 one of the two above has returned.
+  // Projection onto the edge; for size = 0 one of the branches above has returned.
   Block edge(1.0, mu * x[1] / size, mu * x[2] / size);
   edge /= std::sqrt(1.0 + mu * mu);
   return r - edge * edge.dot(r) + edge * edge.dot(modified);

@@ -9,11 +9,10 @@ namespace statejump::complementarity {
 
 namespace {
 
-/// A contact whose own normal compliance is less than rounding of the mean one cannot be solved
-/// alone.
+/// A contact whose normal compliance is below the rounding of the mean one cannot be solved alone.
 constexpr double least_compliance = 1e-15;
-/// Sweeps between two looks at the merit, which costs as much as a sweep.
-constexpr int sweeps_per_look = 5;
+/// Sweeps between two evaluations of the merit, each of which costs a sweep.
+constexpr int sweeps_per_check = 5;
 
 }  // namespace
 
@@ -34,11 +33,11 @@ Iterate gauss_seidel(const ScaledProblem& problem, Iterate from, int sweeps, dou
       problem.add_columns(i, after - before, u);
       set_block(r, i, d, after);
     }
-    if (sweep % sweeps_per_look == 0 || sweep == sweeps) {
+    if (sweep % sweeps_per_check == 0 || sweep == sweeps) {
       if (problem.merit(r, u) <= tolerance) break;
     }
   }
-  // Anew, without the rounding of many updates.
+  // Recomputed, to remove the rounding of many updates.
   return Iterate(problem, std::move(r));
 }
 

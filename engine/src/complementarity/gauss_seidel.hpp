@@ -5,10 +5,11 @@
 
 namespace statejump::complementarity {
 
-/// Sweeps over the contacts in turn, each solved exactly with the others held (Jourdan, Alart,
-/// Jean 1998). No theory of convergence where W has less than full rank or friction is large, yet
-/// it rarely diverges; the rate is linear and poor where forces pass through many contacts.
-/// @returns after `sweeps`, or as soon as the merit is within the tolerance
+/// Sweeps over the contacts; each contact is solved exactly with fixed reactions of the others
+/// (Jourdan, Alart, Jean 1998). Convergence is not proved if W is rank-deficient or friction is
+/// large, but divergence is rare. The rate is linear, and slow if forces pass through many
+/// contacts.
+/// @returns the iterate after `sweeps`, or earlier if the merit is within the tolerance
 Iterate gauss_seidel(const ScaledProblem& problem, Iterate from, int sweeps, double tolerance,
                      int& counted);
 

@@ -13,18 +13,19 @@ namespace statejump::complementarity {
 
 namespace {
 
-/// Share of the way to the cone's boundary that a step goes.
-constexpr double share_of_way = 0.995;
-/// Least share of the present gap that a corrector aims at.
+/// Fraction of the distance to the cone's boundary that a step covers.
+constexpr double boundary_fraction = 0.995;
+/// Smallest fraction of the current gap that a corrector aims at.
 constexpr double least_centring = 1e-3;
-/// A shorter step is taken for a sign of contacts that are off the centre.
+/// A shorter step indicates contacts far from the central path.
 constexpr double short_step = 0.1;
-/// Share of the present gap that is then aimed at.
+/// Fraction of the current gap that the centring step then aims at.
 constexpr double centring_after_short_step = 0.5;
-/// Steps with lagged friction after the first short step; twice as many after the next.
+/// Number of steps with lagged friction after the first short step; it doubles after each further
+/// one.
 constexpr int first_lag = 5;
-/// Largest residual of a contact's velocity times its reaction, over the gap, at which a lagged
-/// step lowers the gap.
+/// Largest ratio of a contact's velocity residual times its reaction to the gap, at which a lagged
+/// step reduces the gap.
 constexpr double residual_per_gap = 10.0;
 
 /// Determinant of Lorentz' cone, without cancellation of squares.
@@ -33,7 +34,7 @@ double determinant(const Block& x) {
   return (x[0] - size) * (x[0] + size);
 }
 
-/// x, with x_n a few roundings larger where rounding has put it on the boundary.
+/// x with x_n increased by a few roundings if rounding put x on the boundary.
 Block kept_inside(Block x) {
   constexpr double roundings = 8.0 * std::numeric_limits<double>::epsilon();
   x[0] = std::max(x[0], x.tail<2>().norm() * (1.0 + roundings));
@@ -47,7 +48,7 @@ Block product(const Block& x, const Block& y) {
   return result;
 }
 
-/// y with x∘y = right.
+/// The y with x∘y = right.
 Block quotient(const Block& right, const Block& x) {
   Block result;
   const double along = x.tail<2>().dot(right.tail<2>());
@@ -127,78 +128,95 @@ Eigen::VectorXd InteriorPoint::reactions() const {
   return r;
 }
 
-double InteriorPoint::advance() {
+InteriorPoint::Linearised InteriorPoint::linearised(bool lagged) const {
   const std::size_t count = cones_.size();
-  const int d = problem_.dimension();
-  const bool lagged = lag_ > 0;
   const Eigen::VectorXd u = problem_.times(reactions()) + problem_.q();
-  std::vector<Scaling> scalings;
-  std::vector<Block> residuals(count);
-  std::vector<BlockMatrix> a(count);
-  std::vector<Block> squares(count);
-  double gap = 0.0;
-  double reaction_squares = 0.0;
-  double residual_squares = 0.0;
+  Linearised at{{},
+                std::vector<BlockMatrix>(count),
+                std::vector<Block>(count),
+                std::vector<Block>(count),
+                0.0,
+                0.0,
+                0.0};
   for (std::size_t i = 0; i < count; ++i) {
     const Cone& cone = cones_[i];
-    scalings.emplace_back(cone.x, cone.z);
-    squares[i] = product(scalings[i].lambda, scalings[i].lambda);
-    gap += cone.x.dot(cone.z);
+    at.scalings.emplace_back(cone.x, cone.z);
+    at.squares[i] = product(at.scalings[i].lambda, at.scalings[i].lambda);
+    at.gap += cone.x.dot(cone.z);
     const double slip = cone.z.tail<2>().norm();
-    residuals[i] = cone.z - cone.d.cwiseProduct(block_of(u, static_cast<Eigen::Index>(i), d));
-    residuals[i].tail(3 - cone.size).setZero();
-    residuals[i][0] -= slip;
-    reaction_squares += cone.x.squaredNorm();
-    residual_squares += residuals[i].squaredNorm();
-    a[i] = BlockMatrix::Identity();
-    if (slip > 0.0 && !lagged) a[i].row(0).tail<2>() -= cone.z.tail<2>() / slip;
+    Block& residual = at.residuals[i];
+    residual = cone.z -
+               cone.d.cwiseProduct(block_of(u, static_cast<Eigen::Index>(i), problem_.dimension()));
+    residual.tail(3 - cone.size).setZero();
+    residual[0] -= slip;
+    at.reaction_squares += cone.x.squaredNorm();
+    at.residual_squares += residual.squaredNorm();
+    at.a[i] = BlockMatrix::Identity();
+    if (slip > 0.0 && !lagged) at.a[i].row(0).tail<2>() -= cone.z.tail<2>() / slip;
   }
-  gap /= static_cast<double>(count);
-  const BlockSystem system = factored(scalings, a);
+  at.gap /= static_cast<double>(count);
+  return at;
+}
 
-  // Predictor: straight to the boundary.
-  std::vector<Block> aims(count);
-  for (std::size_t i = 0; i < count; ++i) aims[i] = -squares[i];
+double InteriorPoint::advance() {
+  const std::size_t count = cones_.size();
+  const bool lagged = lag_ > 0;
+  const Linearised at = linearised(lagged);
+  const BlockSystem system = factored(at.scalings, at.a);
+  const auto solve_for = [&](const std::vector<Block>& targets, Direction& direction) {
+    return solve(system, at.scalings, at.a, at.residuals, targets, direction);
+  };
+
+  // Predictor: direction to the boundary.
+  std::vector<Block> targets(count);
+  for (std::size_t i = 0; i < count; ++i) targets[i] = -at.squares[i];
   Direction direction;
-  if (!solve(system, scalings, a, residuals, aims, direction)) return 0.0;
-  const double affine = std::min(1.0, longest_step(direction));
-  double affine_gap = 0.0;
-  for (std::size_t i = 0; i < count; ++i) {
-    affine_gap +=
-        (cones_[i].x + affine * direction.dx[i]).dot(cones_[i].z + affine * direction.dz[i]);
-  }
-  affine_gap /= static_cast<double>(count);
+  if (!solve_for(targets, direction)) return 0.0;
 
-  // Corrector: centred the more, the less of the way the predictor went.
-  const double ratio = std::clamp(affine_gap / gap, 0.0, 1.0);
+  // Corrector: the shorter the predictor step, the more centring.
+  const double ratio = std::clamp(gap_after_predictor(direction) / at.gap, 0.0, 1.0);
   double sigma = std::max(ratio * ratio * ratio, least_centring);
-  // Lagged friction moves on only as fast as the gap lets it.
-  const double size = std::sqrt(reaction_squares / static_cast<double>(count));
-  const double error = std::sqrt(residual_squares / static_cast<double>(count));
-  if (lagged && error * size > residual_per_gap * gap) sigma = 1.0;
+  // The gap limits the progress of lagged friction.
+  const double size = std::sqrt(at.reaction_squares / static_cast<double>(count));
+  const double error = std::sqrt(at.residual_squares / static_cast<double>(count));
+  if (lagged && error * size > residual_per_gap * at.gap) sigma = 1.0;
   for (std::size_t i = 0; i < count; ++i) {
-    const Block scaled_dx = scalings[i].p * direction.dx[i];
-    // P^-1 dz = v - P dx, with v of the predictor -lambda.
-    aims[i] -= product(scaled_dx, -scalings[i].lambda - scaled_dx);
-    aims[i][0] += sigma * gap;
+    const Block scaled_dx = at.scalings[i].p * direction.dx[i];
+    // P^-1 dz = v - P dx, with v = -lambda of the predictor.
+    targets[i] -= product(scaled_dx, -at.scalings[i].lambda - scaled_dx);
+    targets[i][0] += sigma * at.gap;
   }
-  if (!solve(system, scalings, a, residuals, aims, direction)) return 0.0;
-  double step = std::min(1.0, share_of_way * longest_step(direction));
+  if (!solve_for(targets, direction)) return 0.0;
+  double step = std::min(1.0, boundary_fraction * longest_step(direction));
   if (step < short_step) {
-    // Some contacts have come too close to the boundary: back to the centre, without second order.
+    // Some contacts are too close to the boundary: recentre without second-order terms.
     for (std::size_t i = 0; i < count; ++i) {
-      aims[i] = -squares[i];
-      aims[i][0] += centring_after_short_step * gap;
+      targets[i] = -at.squares[i];
+      targets[i][0] += centring_after_short_step * at.gap;
     }
     Direction centring;
-    if (!solve(system, scalings, a, residuals, aims, centring)) return 0.0;
-    const double other = std::min(1.0, share_of_way * longest_step(centring));
+    if (!solve_for(targets, centring)) return 0.0;
+    const double other = std::min(1.0, boundary_fraction * longest_step(centring));
     if (other > step) {
       step = other;
       direction = std::move(centring);
     }
   }
-  for (std::size_t i = 0; i < count; ++i) {
+  move(direction, step, lagged);
+  return step;
+}
+
+double InteriorPoint::gap_after_predictor(const Direction& direction) const {
+  const double affine = std::min(1.0, longest_step(direction));
+  double gap = 0.0;
+  for (std::size_t i = 0; i < cones_.size(); ++i) {
+    gap += (cones_[i].x + affine * direction.dx[i]).dot(cones_[i].z + affine * direction.dz[i]);
+  }
+  return gap / static_cast<double>(cones_.size());
+}
+
+void InteriorPoint::move(const Direction& direction, double step, bool lagged) {
+  for (std::size_t i = 0; i < cones_.size(); ++i) {
     cones_[i].x = kept_inside(cones_[i].x + step * direction.dx[i]);
     cones_[i].z = kept_inside(cones_[i].z + step * direction.dz[i]);
   }
@@ -208,7 +226,6 @@ double InteriorPoint::advance() {
     lag_length_ = lag_length_ == 0 ? first_lag : 2 * lag_length_;
     lag_ = lag_length_;
   }
-  return step;
 }
 
 BlockSystem InteriorPoint::factored(const std::vector<Scaling>& scalings,
@@ -227,12 +244,12 @@ BlockSystem InteriorPoint::factored(const std::vector<Scaling>& scalings,
 
 bool InteriorPoint::solve(const BlockSystem& system, const std::vector<Scaling>& scalings,
                           const std::vector<BlockMatrix>& a, const std::vector<Block>& residuals,
-                          const std::vector<Block>& aims, Direction& direction) const {
+                          const std::vector<Block>& targets, Direction& direction) const {
   const std::size_t count = cones_.size();
   std::vector<Block> v(count);
   std::vector<Block> right(count);
   for (std::size_t i = 0; i < count; ++i) {
-    v[i] = quotient(aims[i], scalings[i].lambda);
+    v[i] = quotient(targets[i], scalings[i].lambda);
     right[i] = a[i] * (scalings[i].p * v[i]) + residuals[i];
   }
   const std::optional<Eigen::VectorXd> dr = system.solve(right);
@@ -248,7 +265,7 @@ bool InteriorPoint::solve(const BlockSystem& system, const std::vector<Scaling>&
 }
 
 double InteriorPoint::longest_step(const Direction& direction) const {
-  double step = 1.0 / share_of_way;
+  double step = 1.0 / boundary_fraction;
   for (std::size_t i = 0; i < cones_.size(); ++i) {
     step = std::min(step, step_to_boundary(cones_[i].x, direction.dx[i], step));
     step = std::min(step, step_to_boundary(cones_[i].z, direction.dz[i], step));

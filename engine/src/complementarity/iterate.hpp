@@ -8,7 +8,7 @@
 
 namespace statejump::complementarity {
 
-/// Reactions with what follows from them.
+/// Reactions and the quantities derived from them.
 struct Iterate {
   Iterate(const ScaledProblem& problem, Eigen::VectorXd reactions)
       : r(std::move(reactions)), u(problem.times(r) + problem.q()), merit(problem.merit(r, u)) {}

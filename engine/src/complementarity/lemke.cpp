@@ -13,10 +13,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A pivot is more than the rounding of some hundred eliminations of entries about one.
+/// Smallest pivot: larger than the rounding of some hundred eliminations of entries of order one.
 constexpr double least_pivot = 1e-11;
-/// Ratios and entries that differ by less are the same but for rounding.
-constexpr double same = 1e-12;
+/// Ratios and entries that differ by less are equal up to rounding.
+constexpr double tie_tolerance = 1e-12;
 
 /// Matrix of the linear complementarity problem; z = (r_n, p, m, lambda) of each contact.
 MatrixXd lcp_matrix(const ScaledProblem& problem) {
@@ -63,7 +63,7 @@ class Table {
     return variable < size_ ? variable + size_ : variable - size_;
   }
 
-  /// Row that is negative the most; -1 if none is.
+  /// Row with the most negative value; -1 if there is none.
   Index most_negative() const {
     Index worst = -1;
     for (Index i = 0; i < size_; ++i) {
@@ -72,7 +72,7 @@ class Table {
     return worst;
   }
 
-  /// Row that leaves when `entering` grows from zero: the lexicographically least ratio, the
+  /// Leaving row when `entering` grows from zero: the lexicographically smallest ratio, the
   /// artificial variable first; -1 on a ray.
   Index leaving(Index entering) const {
     Index best = -1;
@@ -82,7 +82,7 @@ class Table {
     return best;
   }
 
-  /// Exchanges; the variable that left.
+  /// Exchanges the variables. @return the variable that left the basis
   Index pivot(Index row, Index entering) {
     rows_.row(row) /= rows_(row, entering);
     for (Index i = 0; i < size_; ++i) {
@@ -118,11 +118,11 @@ class Table {
     const double a = rows_(i, entering);
     const double b = rows_(j, entering);
     const double difference = value(i) / a - value(j) / b;
-    if (std::abs(difference) > same) return difference < 0.0;
+    if (std::abs(difference) > tie_tolerance) return difference < 0.0;
     if (is_artificial(i) || is_artificial(j)) return is_artificial(i);
     for (Index k = 0; k < size_; ++k) {
       const double step = rows_(i, k) / a - rows_(j, k) / b;
-      if (std::abs(step) > same) return step < 0.0;
+      if (std::abs(step) > tie_tolerance) return step < 0.0;
     }
     return false;
   }

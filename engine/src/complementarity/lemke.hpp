@@ -13,12 +13,12 @@ namespace statejump::complementarity {
 ///     0 <= r_n ⟂ u_n >= 0,          0 <= p ⟂ lambda + u_t >= 0,
 ///     0 <= m   ⟂ lambda - u_t >= 0,  0 <= lambda ⟂ mu r_n - p - m >= 0,      r_t = p - m,
 ///
-/// where lambda becomes the slip |u_t| (Stewart and Trinkle 1996). With W positive semidefinite its
-/// matrix is copositive, for which the method ends at a solution or on a ray; the lexicographic
-/// choice of the leaving variable keeps it from cycling. The table has (4 contacts) x (8 contacts)
-/// numbers and the number of pivots grows with the contacts: for small problems.
+/// where lambda becomes the slip |u_t| (Stewart and Trinkle 1996). If W is positive semidefinite,
+/// the matrix is copositive and the method ends at a solution or on a ray. The lexicographic choice
+/// of the leaving variable prevents cycling. The table has (4 contacts) x (8 contacts) entries and
+/// the number of pivots grows with the contacts, so the method suits small problems.
 /// @param problem of dimension 2
-/// @returns reactions; nothing where it ends on a ray or after `most` pivots
+/// @returns reactions; empty if it ends on a ray or after `most` pivots
 std::optional<Eigen::VectorXd> lemke(const ScaledProblem& problem, int most, int& counted);
 
 }  // namespace statejump::complementarity

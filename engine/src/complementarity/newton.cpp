@@ -13,15 +13,15 @@ namespace statejump::complementarity {
 
 namespace {
 
-/// Proximal term over the mean compliance. Errors of the factors, 1e-16 of the largest compliance,
-/// must stay below it, and it below the compliances that are not zero.
+/// Proximal term relative to the mean compliance. It must be larger than the errors of the factors,
+/// 1e-16 of the largest compliance, and smaller than all nonzero compliances.
 constexpr double proximal = 1e-10;
-/// Merits that a step is measured against: the largest of so many.
+/// A step is compared with the largest of this many merits.
 constexpr std::size_t memory = 5;
 /// Shortest step of the line search.
 constexpr double shortest_step = 1.0 / 64.0;
 
-/// The linear equations about an iterate, solved; nothing if they are singular.
+/// Solution of the linearised equations at an iterate; empty if they are singular.
 std::optional<Eigen::VectorXd> newton_target(const ScaledProblem& problem, const Iterate& at) {
   const int d = problem.dimension();
   BlockRows rows;

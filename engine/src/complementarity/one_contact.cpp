@@ -12,7 +12,7 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-/// The tangential problem in the eigenvectors of S.
+/// The tangential problem in the eigenvector basis of S.
 struct Sliding {
   Vector2d stiffness;  ///< Eigenvalues of S.
   Vector2d load;       ///< b
@@ -37,7 +37,7 @@ struct Sliding {
   }
 };
 
-/// Root of f in lambda > 0 by Newton between bounds that close in.
+/// Root of f in lambda > 0 by Newton's method inside a shrinking bracket.
 double slip_rate(const Sliding& sliding) {
   double low = 0.0;
   double high = std::max(sliding.stiffness.maxCoeff(), sliding.normal_stiffness);
@@ -46,7 +46,7 @@ double slip_rate(const Sliding& sliding) {
     high *= 8.0;
   }
   double lambda = low > 0.0 ? std::sqrt(low * high) : 0.5 * high;
-  // Bisection alone ends after about 1100 halvings of the exponent; Newton takes five.
+  // Bisection alone ends after about 1100 halvings of the exponent; Newton's method needs five.
   for (int k = 0; k < 200 && low < high; ++k) {
     const auto [value, rate] = sliding.excess(lambda);
     if (value == 0.0) break;
@@ -79,7 +79,7 @@ bool solve_one_contact(const BlockMatrix& w, const Block& q, double mu, double l
   const double angle = 0.5 * std::atan2(s(0, 1), half);
   Matrix2d axes;
   axes << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
-  // Rounding of a W of less than full rank must not push in the direction of sliding.
+  // If W is rank-deficient, rounding must not give a negative stiffness in the sliding direction.
   const Vector2d stiffness = Vector2d(mean + radius, mean - radius).cwiseMax(0.0);
   const Sliding sliding{
       stiffness, axes.transpose() * load, axes.transpose() * coupling, q[0], w(0, 0), mu};
@@ -98,7 +98,7 @@ bool solve_one_contact(const BlockMatrix& w, const Block& q, double mu, double l
   }
   const Vector2d slid = sliding.tangential(slip_rate(sliding));
   r[0] = std::max(0.0, sliding.normal(slid));
-  // The cone's edge to the last digit.
+  // Exactly on the edge of the cone.
   const double size = slid.norm();
   if (size > 0.0) r.tail<2>() = axes * slid * (mu * r[0] / size);
   return true;

@@ -17,9 +17,9 @@ namespace {
 using kernel::OutOfRange;
 using kernel::require;
 
-/// A dense matrix with fewer entries that are not zero, as a share of all, is factored faster as a
-/// sparse one, if it is not small. Measured on piles of bodies: at 0.05 the factors are as fast.
-constexpr double most_sparse_share = 0.05;
+/// Largest fraction of nonzero entries of a dense matrix that is factored as a sparse one, unless
+/// it is small. Measured on piles of bodies: at 0.05 both take the same time.
+constexpr double largest_sparse_fraction = 0.05;
 constexpr Eigen::Index least_sparse_size = 200;
 
 bool all_finite(const Delassus& delassus) {
@@ -92,7 +92,7 @@ ScaledProblem::ScaledProblem(const Problem& problem)
       },
       delassus_);
   const double compliance = size > 0.0 ? size : 1.0;
-  // Units in which the entries of q are about one.
+  // Scales the entries of q to order one.
   const double size_of_q =
       q_.size() > 0 ? q_.norm() / std::sqrt(static_cast<double>(q_.size())) : 0.0;
   velocity_unit_ = size_of_q > 0.0 ? size_of_q : 1.0;
@@ -103,7 +103,7 @@ ScaledProblem::ScaledProblem(const Problem& problem)
   if (const auto* dense = std::get_if<Eigen::MatrixXd>(&delassus_)) {
     const auto entries = static_cast<double>((dense->array() != 0.0).count());
     if (dense->rows() >= least_sparse_size &&
-        entries < most_sparse_share * static_cast<double>(dense->size())) {
+        entries < largest_sparse_fraction * static_cast<double>(dense->size())) {
       delassus_ = Eigen::SparseMatrix<double>(dense->sparseView());
     }
   }
@@ -111,7 +111,7 @@ ScaledProblem::ScaledProblem(const Problem& problem)
   blocks_.reserve(static_cast<std::size_t>(contacts()));
   for (Eigen::Index i = 0; i < contacts(); ++i) {
     const Eigen::Index at = i * dimension_;
-    // The tangent that is not there in the plane has a compliance of its own and no load.
+    // In the plane, the second tangential component has unit compliance and no load.
     BlockMatrix block = BlockMatrix::Identity();
     for (int row = 0; row < dimension_; ++row) {
       for (int column = 0; column < dimension_; ++column) {

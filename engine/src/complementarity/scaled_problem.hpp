@@ -13,8 +13,8 @@ namespace statejump::complementarity {
 double natural_map_merit(const Problem& problem, const Eigen::VectorXd& reactions,
                          const Eigen::VectorXd& velocities);
 
-/// A problem without units: W over its mean diagonal, q over its mean entry. Coulomb's cones
-/// stay what they are.
+/// A dimensionless problem: W divided by its mean diagonal, q by its mean entry. Coulomb's cones do
+/// not change.
 class ScaledProblem {
  public:
   /// @param problem valid
@@ -32,15 +32,15 @@ class ScaledProblem {
   Eigen::VectorXd times(const Eigen::VectorXd& r) const;
   /// Adds W's columns of a contact times `delta` to u.
   void add_columns(Eigen::Index contact, const Block& delta, Eigen::VectorXd& u) const;
-  /// Natural map by |q|.
+  /// Natural map divided by |q|.
   double merit(const Eigen::VectorXd& r, const Eigen::VectorXd& u) const {
     const double norm = natural_map_norm(dimension_, mu_, r, u);
     return norm > 0.0 ? norm / size_of_q_ : 0.0;
   }
 
-  /// Reactions of the problem per reaction here.
+  /// Ratio of the problem's reactions to the scaled ones.
   double reaction_unit() const { return reaction_unit_; }
-  /// Velocities of the problem per velocity here.
+  /// Ratio of the problem's velocities to the scaled ones.
   double velocity_unit() const { return velocity_unit_; }
 
  private:

@@ -18,31 +18,30 @@ namespace {
 
 using kernel::require;
 
-/// Sweeps before Newton is tried: enough to know most contacts' statuses, cheaper than one of
-/// Newton's linear systems.
+/// Sweeps before the first Newton attempt: enough to find most contacts' statuses, cheaper than one
+/// linear system.
 constexpr int first_sweeps = 20;
-/// Sweeps after the other methods have failed; twice as many each time.
+/// Sweeps after the other methods have failed; doubled each time.
 constexpr int more_sweeps = 200;
-/// Linear systems of one attempt of Newton's: it converges within ten or not from there.
+/// Linear systems of one Newton attempt: from a good start it converges within ten.
 constexpr int newton_systems = 30;
-/// Factorisations of the interior point: twenty are usual, with lagged friction up to a hundred.
+/// Factorisations of the interior point: twenty are usual, up to a hundred with lagged friction.
 constexpr int interior_factors = 300;
-/// Steps in which its merit is not halved, after which it is given up.
+/// The interior point stops if its merit is not halved in this many steps.
 constexpr int steps_without_progress = 100;
-/// Contacts up to which Lemke's table is smaller work than the interior point, those up to which it
-/// is tried at all (seconds), and the pivots per contact after which it is given up: ten are many.
+/// Number of contacts up to which Lemke's table is cheaper than the interior point, number up to
+/// which it is tried at all (seconds), and largest number of pivots per contact; ten are many.
 constexpr Eigen::Index few_contacts = 40;
 constexpr Eigen::Index many_contacts = 250;
 constexpr int pivots_per_contact = 50;
-/// Merit of the interior point at which it is first seen whether Newton converges from there, the
-/// ratio of merits or the steps until it is seen again, and the linear systems that it may then
-/// take.
+/// Merit of the interior point at the first Newton attempt, ratio of merits and number of steps
+/// before the next attempt, and number of linear systems per attempt.
 constexpr double first_handover = 1e-2;
 constexpr double handover_ratio = 0.1;
 constexpr int steps_per_handover = 10;
 constexpr int handover_systems = 4;
 
-/// The methods in turn, with the best that any of them found.
+/// Runs the methods in turn and keeps the best result.
 class Driver {
  public:
   Driver(const Problem& problem, const Options& options)
@@ -96,15 +95,15 @@ class Driver {
     if (!ended()) run_interior_point();
     if (!ended() && !is_small && planar_contacts > 0 && planar_contacts <= many_contacts)
       run_lemke();
-    // From the best that was found a few sweeps may settle what Newton could not, and from where
-    // they had stopped many.
+    // From the best result, a few sweeps may decide what Newton could not. From the end of the
+    // earlier sweeps, many may be needed.
     if (!ended()) finish(best_, more_sweeps);
     for (int sweeps = more_sweeps; !ended() && sweeps_left() > 0; sweeps *= 2) {
       swept = finish(std::move(swept), sweeps);
     }
   }
 
-  /// Sweeps on and tries Newton from there; returns where the sweeps ended.
+  /// Sweeps, then tries Newton from there. @return the iterate after the sweeps
   Iterate finish(Iterate from, int sweeps) {
     Iterate swept = sweep(std::move(from), std::min(sweeps, sweeps_left()));
     if (!ended()) run_newton(swept, newton_systems);
@@ -112,12 +111,13 @@ class Driver {
   }
   int sweeps_left() const { return options_.most_sweeps - counted_.gauss_seidel; }
 
-  /// Sweeps on from an iterate; returns where it ends.
+  /// Sweeps from an iterate. @return the last iterate
   Iterate sweep(Iterate from, int sweeps) {
     constexpr int sweeps_per_report = 500;
     while (sweeps > 0 && !ended()) {
       const int now = std::min(sweeps, sweeps_per_report);
-      Iterate next = gauss_seidel(scaled_, std::move(from), now, aim(), counted_.gauss_seidel);
+      Iterate next =
+          gauss_seidel(scaled_, std::move(from), now, scaled_tolerance(), counted_.gauss_seidel);
       from = next;
       judge(std::move(next), Method::gauss_seidel);
       sweeps -= now;
@@ -125,14 +125,15 @@ class Driver {
     return from;
   }
   void run_newton(Iterate from, int systems) {
-    judge(newton(scaled_, std::move(from), systems, aim(), counted_.newton), Method::newton);
+    judge(newton(scaled_, std::move(from), systems, scaled_tolerance(), counted_.newton),
+          Method::newton);
   }
   void run_lemke() {
     const int most = pivots_per_contact * static_cast<int>(problem_.contacts());
     if (std::optional<Eigen::VectorXd> r = lemke(scaled_, most, counted_.pivots)) {
       Iterate now(scaled_, std::move(*r));
       judge(now, Method::lemke);
-      // Takes off the rounding of the pivots.
+      // Removes the rounding of the pivots.
       if (!ended()) run_newton(std::move(now), handover_systems);
     }
   }
@@ -162,8 +163,9 @@ class Driver {
     }
   }
 
-  /// Tolerance of the scaled merit: a tenth leaves room for the natural map in the caller's units.
-  double aim() const { return 0.1 * options_.tolerance; }
+  /// Tolerance of the scaled merit; the factor leaves room for the natural map in the caller's
+  /// units.
+  double scaled_tolerance() const { return 0.1 * options_.tolerance; }
 
   void judge(Iterate iterate, Method method) {
     const Eigen::VectorXd r = iterate.r * scaled_.reaction_unit();

@@ -26,11 +26,11 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int halving_limit = 40;
-/// Part of μ F_N by which F_t may miss the limit and count as at it: above the errors of Newton's
-/// criterion and of roots, so that a path which only grazes the limit does not slip.
+/// Relative distance of F_t from μ F_N that counts as at the limit. It exceeds the errors of
+/// Newton's method and of roots, so that a path that only touches the limit does not slip.
 constexpr double limit_rounding = 1e-10;
 
-/// Refuses a law of the catalogue that the equations here do not have.
+/// Rejects a law of the catalogue that these equations do not contain.
 void validate_laws(const linkage::Linkage& model) {
   using namespace kernel::laws;
   const NormalLaw& normal = model.law.normal;
@@ -50,7 +50,7 @@ bool slips_at_the_rim(const linkage::Linkage& model) {
   return std::holds_alternative<kernel::laws::MindlinDeresiewiczFriction>(model.law.friction);
 }
 
-/// The equations solve a point contact as Hertz's: a law that says it is one is held to its word.
+/// Verifies that a law with the trait point_contact has Hertz's force, which the equations assume.
 /// @param p at ΔT = 0
 void require_hertz(const linkage::Linkage& model, const Parameters& p) {
   const double depth = 1e-3 * model.radial_clearance();
@@ -63,7 +63,7 @@ void require_hertz(const linkage::Linkage& model, const Parameters& p) {
                {model.journal_radius, model.bearing_radius, model.law.contact_length},
                {pair.effective_young_modulus})
           .force;
-  // Rounding of R2 - R1 leaves some 1e-14.
+  // Rounding of R2 - R1 leaves about 1e-14.
   if (std::abs(found - expected) <= 1e-9 * expected) return;
   char text[120];
   std::snprintf(text, sizeof text,
@@ -85,7 +85,7 @@ Equilibrium start(const linkage::Linkage& model, const Equations& equations, dou
   model.validate();
   validate_laws(model);
   const int side = loaded_side(model, contact_angle);
-  // Rigid bodies first; then the force (f, 0) of moments about A, and what it does to each spring.
+  // Rigid bodies first; then the effect of the force (f, 0), from moments about A, on each spring.
   const JointPoint rigid = joint_point(model, 0.0, side, contact_angle);
   Equilibrium at;
   at.p = parameters(model, 0.0);
@@ -107,7 +107,7 @@ Equilibrium start(const linkage::Linkage& model, const Equations& equations, dou
 }
 
 /// Root of a function that is < 0 at `before` and >= 0 at `after`: false position (Illinois).
-/// `value(x, y)` says whether y could be had. Returns a point on the far side, or NaN.
+/// `value(x, y)` returns whether y could be computed. Returns a point with value >= 0, or NaN.
 template <class Value>
 double root(double before, double value_before, double after, double value_after, Value&& value) {
   double low = std::min(value_before, 0.0);
@@ -137,11 +137,11 @@ double root(double before, double value_before, double after, double value_after
   return after;
 }
 
-/// Walks along the path.
-class Walk {
+/// Follows the path.
+class PathFollower {
  public:
-  Walk(const linkage::Linkage& model, const ElasticLoopOptions& options, double contact_angle,
-       ElasticLoop& loop)
+  PathFollower(const linkage::Linkage& model, const ElasticLoopOptions& options,
+               double contact_angle, ElasticLoop& loop)
       : model_(model),
         equations_(model),
         compliance_(options.compliance),
@@ -152,7 +152,7 @@ class Walk {
     sign_ = contact_angle < 0.0 ? -1.0 : 1.0;
     side_ = equations_.moment(now_.z) < 0.0 ? -1.0 : 1.0;
     if (compliance_ == TangentialCompliance::mindlin && slips_at_the_rim(model)) {
-      // Loaded at a constant ratio of both forces, as loaded_state() is: no ring has slipped.
+      // Loaded at a constant ratio of both forces, like loaded_state(): no annulus has slipped.
       partial_.friction_coefficient = mu_;
       partial_.step(now_.p, now_.z[dep], -1.5 * now_.z[ft] / now_.stiffness(), partial_.memory);
       is_partial_ = true;
@@ -162,7 +162,7 @@ class Walk {
     loop_.points.push_back(point());
   }
 
-  /// Settles which way the joint goes when ΔT starts to change towards `to`.
+  /// Decides between stick and slip when ΔT starts to change towards `to`.
   void turn(double to) {
     heading_ = to > now_.p.temperature_change ? 1.0 : -1.0;
     if (is_partial_) {
@@ -174,7 +174,7 @@ class Walk {
     event();
   }
 
-  /// Goes to ΔT = `to`; false if contact is lost on the way.
+  /// Continues to ΔT = `to`; false if contact is lost before.
   bool advance(double to) {
     double target = to;
     int failures = 0;
@@ -192,12 +192,12 @@ class Walk {
       accept(next);
       target = to;
       if (outcome == Outcome::arrives) {
-        if (slips_ != slipped) event();  // of partial slip; what else changes has an instant
+        if (slips_ != slipped) event();  // for partial slip; other changes have their own event
         continue;
       }
       if (outcome == Outcome::separates) loop_.separated = true;
       if (outcome == Outcome::turns) {
-        if (++failures > halving_limit) fail(next);  // turns on the spot
+        if (++failures > halving_limit) fail(next);  // the status alternates without progress
         slips_ = !slips_;
       }
       if (next.p.temperature_change != from) {
@@ -229,7 +229,7 @@ class Walk {
 
   enum class Outcome : unsigned char { arrives, turns, separates, fails };
 
-  /// Step towards `to` in the present motion, up to the first event; sets sign_ where slip starts.
+  /// One step towards `to` in the current motion, up to the first event; sets sign_ if slip starts.
   Outcome attempt(double to, Equilibrium& next) {
     next = now_;
     if (!reach(to, next)) return Outcome::fails;
@@ -247,12 +247,12 @@ class Walk {
       }
       return find(next, [this](const Equilibrium& at) { return slip_rate(at); });
     }
-    // Of the limit that is exceeded: at the start the force may stand at the other one.
+    // Sign of the exceeded limit: at the start the force may be at the other one.
     const double sign = next.z[ft] < 0.0 ? -1.0 : 1.0;
     if (!(excess(sign, next) > limit_rounding * mu_ * next.normal())) return outcome;
     sign_ = sign;
     if (excess(sign, now_) > -limit_rounding * mu_ * now_.normal()) {
-      // At the limit already: it slips from here, or first leaves the limit and comes back.
+      // Already at the limit: either slips from here, or leaves the limit and returns later.
       if (!(slip_rate(now_) < 0.0)) return Outcome::fails;
       next = now_;
       return Outcome::turns;
@@ -260,7 +260,7 @@ class Walk {
     return find(next, [&](const Equilibrium& at) { return excess(sign, at); });
   }
 
-  /// Equilibrium at ΔT = `to` from the guess in `next`.
+  /// Equilibrium at ΔT = `to`, with `next` as initial guess.
   bool reach(double to, Equilibrium& next) const {
     next.p = parameters(model_, to);
     return equations_.solve(line(), next);
@@ -271,7 +271,8 @@ class Walk {
     return sign * at.z[ft] - mu_ * at.normal();
   }
 
-  /// Plastic slide along F_t per kelvin of travel [m/K]; friction resists, so it is < 0 in slip.
+  /// Plastic slide along F_t per kelvin of temperature change [m/K]; < 0 in slip, because friction
+  /// resists.
   double slip_rate(const Equilibrium& at) const {
     const double ratio = sign_ * mu_;
     const Vector rate = equations_.slipping_rate(ratio, at);
@@ -287,8 +288,8 @@ class Walk {
     return sign_ * heading_ * slide;
   }
 
-  /// Last point in contact on the way to `to`, by bisection. The force's direction loses its
-  /// meaning with the force: no convergence counts as no contact.
+  /// Last point in contact before `to`, by bisection. Without force its direction is undefined, so
+  /// no convergence counts as no contact.
   Equilibrium last_contact(double to) const {
     Equilibrium last = now_;
     const auto parts = [&](double change) {
@@ -301,7 +302,7 @@ class Walk {
     return last;
   }
 
-  /// Replaces `next`, where `value` >= 0, by the point where it ceases to be < 0.
+  /// Replaces `next`, where `value` >= 0, by the first such point.
   template <class Value>
   Outcome find(Equilibrium& next, Value&& value) const {
     Equilibrium trial = now_;
@@ -387,7 +388,7 @@ linkage::State loaded_state(const linkage::Linkage& model, double contact_angle)
   state.journal_centre =
       Vector2d(model.frame_length, 0.0) + (at.p.l2.value + at.z[e2]) * direction(at.z[th4]);
   const kernel::Vector3 friction(at.z[ft], 0.0, 0.0);
-  state.contact = kernel::laws::loaded_history(
+  state.contact = kernel::laws::preloaded_history(
       model.law.friction, model.law.friction_parameters, friction,
       {at.normal(), at.stiffness(), kernel::Vector3::Zero(), 1.0, kernel::Vector3::UnitY()});
   state.impact_speed = model.law.smallest_impact_speed;
@@ -406,19 +407,19 @@ ElasticLoop elastic_loop(const linkage::Linkage& model, const thermal::Program& 
             "> 0 m at every temperature of the program");
   }
   ElasticLoop loop;
-  Walk walk(model, options, contact_angle, loop);
+  PathFollower follower(model, options, contact_angle, loop);
   for (const thermal::Branch& branch : branches) {
     if (branch.end == branch.start) continue;
-    walk.turn(branch.end);
+    follower.turn(branch.end);
     for (int i = 1; i <= options.samples; ++i) {
       const double part = static_cast<double>(i) / options.samples;
       const double to =
           i == options.samples ? branch.end : branch.start + part * (branch.end - branch.start);
-      if (!walk.advance(to)) return loop;
-      walk.sample();
+      if (!follower.advance(to)) return loop;
+      follower.sample();
     }
   }
-  walk.event();
+  follower.event();
   return loop;
 }
 

@@ -38,7 +38,7 @@ Parameters parameters(const linkage::Linkage& model, double temperature_change) 
   p.k2 = axial(bc, p.l2);
   p.r1 = thermal(model.journal_radius, model.journal_thermal_expansion, temperature_change);
   p.r2 = thermal(model.bearing_radius, model.bearing_thermal_expansion, temperature_change);
-  // The curvature of the bearing counts with its sign, or as the paper prints it.
+  // The curvature of the bearing has its sign, or that printed in the paper.
   const bool internal = has(model.law.normal, kernel::laws::Trait::accepts_bulging_wall);
   const double sign = internal ? -1.0 : 1.0;
   const double sum = p.r2.value + sign * p.r1.value;
@@ -74,7 +74,7 @@ bool Equations::solve(const FrictionLine& line, Equilibrium& at) const {
     evaluate(line, at.p, at.z, residual, jacobian);
     const bool good = judge(line, residual, at);
     at.iterations = i;
-    if (converged) {  // this was the polishing step
+    if (converged) {  // this was the additional iteration
       if (!good) at = best;
       return true;
     }
@@ -130,7 +130,7 @@ void Equations::evaluate(const FrictionLine& line, const Parameters& p, const Ve
   const double arm2 = p.r2.value + 0.5 * z[dep];
   const double distance = p.clearance() + z[dep];
   const double normal = normal_force(p, z[dep]);
-  const double normal_slope = 1.5 * p.hertz.value * std::sqrt(std::abs(z[dep]));
+  const double normal_slope = normal_force_slope(p, z[dep]);
   const Vector2d force = normal * n - z[ft] * t;
   const Vector2d force_psi = normal * t + z[ft] * n;
   const double couple1 = moment(z) - arm2 * z[ft];
@@ -172,9 +172,14 @@ void Equations::evaluate(const FrictionLine& line, const Parameters& p, const Ve
   jacobian.block<2, 1>(closure_x, dep) = -n;
   jacobian.block<2, 1>(closure_x, psi) = -distance * t;
 
+  evaluate_friction(line, p, z, residual, jacobian);
+}
+
+void Equations::evaluate_friction(const FrictionLine& line, const Parameters& p, const Vector& z,
+                                  Vector& residual, Matrix& jacobian) const {
   if (!line.sticks) {
-    residual[friction] = z[ft] - line.ratio * normal;
-    jacobian(friction, dep) = -line.ratio * normal_slope;
+    residual[friction] = z[ft] - line.ratio * normal_force(p, z[dep]);
+    jacobian(friction, dep) = -line.ratio * normal_force_slope(p, z[dep]);
     jacobian(friction, ft) = 1.0;
     return;
   }
@@ -201,9 +206,9 @@ void Equations::evaluate(const FrictionLine& line, const Parameters& p, const Ve
   }
 }
 
-/// F_t is that of the law, in metres by the stiffness at the start of the step. The law is straight
-/// between many kinks: differences over a millionth of its own measures are its derivatives to that
-/// share, and Newton's method loses no more than that of its speed.
+/// F_t follows the law, in metres by the stiffness at the start of the step. The law is linear
+/// between many kinks. Differences over a millionth of its own scales equal its derivatives to that
+/// accuracy, which costs Newton's method no more speed.
 void Equations::evaluate_partial(const FrictionLine& line, const Parameters& p, const Vector& z,
                                  double slide, Vector& residual, Matrix& jacobian) {
   constexpr double share = 1e-6;

@@ -11,7 +11,7 @@
 
 namespace statejump::joint_loop::detail {
 
-/// Unknowns, in this order; the equations are in that of elastic_loop()'s documentation with the
+/// Unknowns, in this order. The equations are in the order of elastic_loop()'s documentation, the
 /// axial ones first.
 enum Unknown { e1, e2, th2, th4, dep, psi, ft };
 enum Equation { axial1, axial2, across1, across2, closure_x, closure_y, friction };
@@ -41,10 +41,14 @@ inline Eigen::Vector2d across(const Eigen::Vector2d& u) {
   return {-u.y(), u.x()};
 }
 
-/// Hertz's force. A negative depth gives the mirrored pull: it has no meaning but a root, which
-/// shows that contact was lost on the way.
+/// Hertz's force. A negative depth gives the mirrored tension, which only serves root finding: it
+/// shows that contact was lost.
 inline double normal_force(const Parameters& p, double depth) {
   return p.hertz.value * depth * std::sqrt(std::abs(depth));
+}
+/// dF_N/dδ [N/m].
+inline double normal_force_slope(const Parameters& p, double depth) {
+  return 1.5 * p.hertz.value * std::sqrt(std::abs(depth));
 }
 inline double tangential_stiffness(const Parameters& p, double depth) {
   return p.shear.value * std::sqrt(std::abs(depth));
@@ -61,9 +65,9 @@ struct Equilibrium {
   double stiffness() const { return tangential_stiffness(p, z[dep]); }
 };
 
-/// Slide of journal against bearing, ∫ (R2 − R1 + δ) dψ + (R1 − δ/2) dθ4 − (R2 + δ/2) dθ2, with its
-/// derivatives at the end. The part with the radii at ΔT = 0 is a function of the state and taken
-/// as one: no rounding piles up. The rest is small; trapezium's rule.
+/// Slide of journal relative to bearing, ∫ (R2 − R1 + δ) dψ + (R1 − δ/2) dθ4 − (R2 + δ/2) dθ2, with
+/// its derivatives at the end. The part with the radii at ΔT = 0 is a function of the state, so no
+/// rounding accumulates. The rest is small and uses the trapezoidal rule.
 class Slide {
  public:
   explicit Slide(const linkage::Linkage& model)
@@ -98,7 +102,7 @@ class Slide {
   struct Weights {
     double psi, th4, th2;
   };
-  /// Beyond the radii at ΔT = 0.
+  /// Contribution beyond the radii at ΔT = 0.
   Weights weights(const Parameters& p, const Vector& z) const {
     const double grow1 = p.r1.value - r1_;
     const double grow2 = p.r2.value - r2_;
@@ -132,7 +136,7 @@ struct FrictionLine {
   double ratio = 0.0;
   TangentialCompliance compliance = TangentialCompliance::rigid;
   const Equilibrium* from = nullptr;  ///< start of the step
-  double arc = 0.0;                   ///< Slide::arc() that counts as no slide
+  double arc = 0.0;                   ///< Slide::arc() without slide
   double past = 0.0;                  ///< Slide::rest() since then, up to `from` [m]
   const PartialSlip* partial = nullptr;
 };
@@ -141,8 +145,8 @@ class Equations {
  public:
   explicit Equations(const linkage::Linkage& model);
 
-  /// Whether the bodies press on each other, by more than rounding: with a hundred times the
-  /// rounding of the spring's force its direction is known to a hundredth.
+  /// Whether the contact force exceeds rounding: at a hundred times the rounding of the spring's
+  /// force its direction has an error of one percent.
   bool touches(const Equilibrium& at) const { return at.normal() > 100.0 * force_rounding_; }
 
   const Slide& slide() const { return slide_; }
@@ -157,6 +161,9 @@ class Equations {
  private:
   void evaluate(const FrictionLine& line, const Parameters& p, const Vector& z, Vector& residual,
                 Matrix& jacobian) const;
+  /// The friction line alone; the other entries of its row must be 0.
+  void evaluate_friction(const FrictionLine& line, const Parameters& p, const Vector& z,
+                         Vector& residual, Matrix& jacobian) const;
   static void evaluate_partial(const FrictionLine& line, const Parameters& p, const Vector& z,
                                double slide, Vector& residual, Matrix& jacobian);
   bool judge(const FrictionLine& line, const Vector& residual, Equilibrium& at) const;

@@ -15,22 +15,22 @@ using numerics::change_between;
 
 namespace {
 
-/// Walks along the path; `arc` is the constant of the roll in progress.
-class Walk {
+/// Follows the path; `arc` is the constant of the current roll.
+class PathFollower {
  public:
-  Walk(const linkage::Linkage& model, int side, double contact_angle)
+  PathFollower(const linkage::Linkage& model, int side, double contact_angle)
       : model_(model), side_(side), limit_(std::atan(model.friction_coefficient())) {
     now_ = joint_point(model_, 0.0, side_, contact_angle);
     arc_ = rolling_arc(model_, now_);
   }
 
-  /// State at ΔT if it is reached from the present one by a step so small that φ moves one way.
+  /// State at ΔT after a step so small that φ is monotone.
   JointPoint next(double temperature_change) const {
     const double wanted = std::clamp(rolling_angle(temperature_change), -limit_, limit_);
     return joint_point(model_, temperature_change, side_, wanted);
   }
 
-  /// Whether rolling from the present state to ΔT would leave the friction cone.
+  /// Whether rolling from the current state to ΔT would leave the friction cone.
   bool slips(double temperature_change) const {
     return arc_at(temperature_change, limit_) < arc_ || arc_at(temperature_change, -limit_) > arc_;
   }
@@ -50,7 +50,7 @@ class Walk {
     return rolling_arc(model_, joint_point(model_, temperature_change, side_, angle));
   }
 
-  /// φ in the cone at which the arc is that of the roll; s grows with φ there.
+  /// φ in the cone with the arc of the roll; s grows with φ there.
   double rolling_angle(double temperature_change) const {
     if (arc_at(temperature_change, limit_) <= arc_) return limit_;
     if (arc_at(temperature_change, -limit_) >= arc_) return -limit_;
@@ -89,7 +89,7 @@ JointPoint joint_point(const linkage::Linkage& model, double temperature_change,
   const Vector2d d(c * std::cos(contact_angle), c * std::sin(contact_angle));
   const Vector2d w = Vector2d(model.frame_length, 0.0) - d;
   const double length = w.norm();
-  // Foot of B on w and height above it: no arc cosine near its ends.
+  // Foot of B on w and its height: no arc cosine near its ends.
   const double x = (length * length + (l1 - l2) * (l1 + l2)) / (2.0 * length);
   const double y = std::sqrt((l1 - x) * (l1 + x));
   const Vector2d along = w / length;
@@ -120,7 +120,7 @@ int loaded_side(const linkage::Linkage& model, double contact_angle) {
           "> 0 N m/rad, else statics leaves the position within the play undetermined");
   require(std::abs(contact_angle) <= std::atan(model.friction_coefficient()), "contact_angle",
           contact_angle, "[-atan(mu), atan(mu)] rad");
-  // The sense of M must be that of the side assumed; between the two the contact is not loaded.
+  // The sign of M must be the assumed one; between the two the contact is unloaded.
   int side = 0;
   for (const int candidate : {-1, 1}) {
     if (candidate * joint_point(model, 0.0, candidate, contact_angle).spring_moment > 0.0) {
@@ -148,42 +148,42 @@ RigidLoop rigid_loop(const linkage::Linkage& model, const thermal::Program& prog
   const int side = loaded_side(model, contact_angle);
 
   RigidLoop loop;
-  Walk walk(model, side, contact_angle);
-  loop.points.push_back(walk.now());
+  PathFollower follower(model, side, contact_angle);
+  loop.points.push_back(follower.now());
   bool first = true;
   const auto event = [&loop](const JointPoint& point) { loop.events.push_back(point); };
   for (const thermal::Branch& branch : thermal::monotone_branches(program)) {
     // Rolling resumes at every corner: a reversal brings φ back into the cone.
     bool fresh = true;
     for (int i = 1; i <= samples; ++i) {
-      const double from = walk.now().temperature_change;
+      const double from = follower.now().temperature_change;
       const double part = static_cast<double>(i) / samples;
       const double to =
           i == samples ? branch.end : branch.start + part * (branch.end - branch.start);
-      const JointMotion before = walk.now().motion;
-      const bool slips = walk.slips(to);
-      const JointPoint reached = walk.next(to);
-      if (!walk.loaded(reached)) {
+      const JointMotion before = follower.now().motion;
+      const bool slips = follower.slips(to);
+      const JointPoint reached = follower.next(to);
+      if (!follower.loaded(reached)) {
         const double at = change_between(from, to, [&](double heat) {
-                            return !walk.loaded(walk.next(heat));
+                            return !follower.loaded(follower.next(heat));
                           }).after;
-        walk.accept(walk.next(at), JointMotion::separated);
-        event(walk.now());
-        loop.points.push_back(walk.now());
+        follower.accept(follower.next(at), JointMotion::separated);
+        event(follower.now());
+        loop.points.push_back(follower.now());
         loop.separated = true;
         return loop;
       }
       const JointMotion motion = slips ? JointMotion::slip : JointMotion::roll;
       if (fresh || motion != before) {
-        JointPoint change = walk.now();
+        JointPoint change = follower.now();
         change.motion = motion;
-        if (slips && std::abs(walk.now().contact_angle) < limit) {
+        if (slips && std::abs(follower.now().contact_angle) < limit) {
           if (fresh) {
             change.motion = JointMotion::roll;
             event(change);
           }
-          const auto slips_at = [&](double heat) { return walk.slips(heat); };
-          change = walk.next(change_between(from, to, slips_at).after);
+          const auto slips_at = [&](double heat) { return follower.slips(heat); };
+          change = follower.next(change_between(from, to, slips_at).after);
           change.motion = JointMotion::slip;
           loop.points.push_back(change);
         }
@@ -191,11 +191,11 @@ RigidLoop rigid_loop(const linkage::Linkage& model, const thermal::Program& prog
         if (first) loop.points.front().motion = loop.events.front().motion;
       }
       first = fresh = false;
-      walk.accept(reached, motion);
-      loop.points.push_back(walk.now());
+      follower.accept(reached, motion);
+      loop.points.push_back(follower.now());
     }
   }
-  event(walk.now());
+  event(follower.now());
   return loop;
 }
 

@@ -8,8 +8,8 @@
 
 namespace statejump::linear {
 
-/// LU factors of a sparse complex matrix whose pattern never changes: see SparseFactor, of which
-/// this is the complex one.
+/// LU factors of a sparse complex matrix with a constant pattern; the complex counterpart of
+/// SparseFactor.
 class ComplexFactor {
  public:
   ComplexFactor();
@@ -19,10 +19,10 @@ class ComplexFactor {
   ComplexFactor(const ComplexFactor&) = delete;
   ComplexFactor& operator=(const ComplexFactor&) = delete;
 
-  /// Orders a square pattern, compressed. False if no order leaves a diagonal.
+  /// Orders a square, compressed pattern. False if every order leaves a zero diagonal.
   bool analyze(const Eigen::SparseMatrix<double>& pattern);
-  /// Factors of the values of the pattern's entries, in their order. Pivots are those of the first
-  /// values. False if one of them is zero.
+  /// Factors a matrix with these entries of the pattern, in order. The pivots are those of the
+  /// first values. False if one of them is zero.
   bool factorize(const std::complex<double>* values);
   /// Solves in place.
   void solve(Eigen::VectorXcd& x) const;

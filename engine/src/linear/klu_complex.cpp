@@ -9,7 +9,7 @@ namespace statejump::linear {
 
 namespace {
 
-/// KLU takes complex numbers as pairs, without const, but writes to none that it factors.
+/// KLU takes complex numbers as pairs, without const, but does not write to them.
 double* pairs(const std::complex<double>* values) {
   return const_cast<double*>(reinterpret_cast<const double*>(values));
 }
@@ -30,7 +30,7 @@ struct ComplexFactor::Factors {
     klu_free_symbolic(&symbolic, &common);
   }
 
-  // KLU's C interface allocates and frees what it makes itself.
+  // KLU's C interface allocates and frees its own objects.
   klu_common common{};
   klu_symbolic* symbolic = nullptr;
   klu_numeric* numeric = nullptr;

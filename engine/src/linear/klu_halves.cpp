@@ -17,22 +17,23 @@ namespace statejump::linear {
 
 namespace {
 
-/// Of so many columns one may be in the separator, whose columns are long and wait for both halves.
+/// One column per this many may be in the separator, whose columns are long and wait for both
+/// halves.
 constexpr int columns_of_one = 1000;
 
 std::size_t index(int i) {
   return static_cast<std::size_t>(i);
 }
 
-enum Part : unsigned char { first_half, second_half, separator };
+enum ColumnSet : unsigned char { first_half, second_half, separator };
 
-/// Which part every column is in: those of the second half that share a row with the first separate
-/// them.
-std::vector<Part> cut(int size, const int* columns, const int* rows) {
+/// Part of every column: columns of the second half that share a row with the first form the
+/// separator.
+std::vector<ColumnSet> cut(int size, const int* columns, const int* rows) {
   const numerics::Lists rows_of({columns, columns + size + 1}, {rows, rows + columns[size]});
   const numerics::Lists columns_of = rows_of.inverted(index(size));
   const std::vector<int> order = numerics::breadth_first(rows_of, columns_of);
-  std::vector<Part> part(index(size), second_half);
+  std::vector<ColumnSet> part(index(size), second_half);
   for (int k = 0; k < size / 2; ++k) part[index(order[index(k)])] = first_half;
   const auto of_first = [&](int column) { return part[index(column)] == first_half; };
   for (std::size_t row = 0; row < columns_of.size(); ++row) {
@@ -69,7 +70,7 @@ int* order_columns(const std::vector<int>& which, int size, const int* columns, 
   return order + count;
 }
 
-/// The factors of a matrix of one block.
+/// The factors of a matrix with one block.
 struct Factored {
   explicit Factored(klu_numeric& of)
       : numeric(of),
@@ -87,11 +88,11 @@ struct Factored {
 }  // namespace
 
 int order_in_halves(int size, int* columns, int* rows, int* order, klu_common* common) {
-  auto& told = *static_cast<HalvedOrder*>(common->user_data);
-  told = {};
+  auto& halved = *static_cast<HalvedOrder*>(common->user_data);
+  halved = {};
   std::array<std::vector<int>, 3> parts;
   if (size >= HalvedOrder::least_columns) {
-    const std::vector<Part> part = cut(size, columns, rows);
+    const std::vector<ColumnSet> part = cut(size, columns, rows);
     for (int k = 0; k < size; ++k) parts[part[index(k)]].push_back(k);
   }
   const bool is_narrow = parts[separator].size() * columns_of_one <= index(size);
@@ -100,13 +101,13 @@ int order_in_halves(int size, int* columns, int* rows, int* order, klu_common* c
     parts[first_half].resize(index(size));
     std::iota(parts[first_half].begin(), parts[first_half].end(), 0);
   } else {
-    told.second = static_cast<int>(parts[first_half].size());
-    told.separator = told.second + static_cast<int>(parts[second_half].size());
+    halved.second = static_cast<int>(parts[first_half].size());
+    halved.separator = halved.second + static_cast<int>(parts[second_half].size());
   }
   for (const std::vector<int>& part : parts) {
     order = order_columns(part, size, columns, rows, order);
   }
-  return -1;  // it is not known how many entries the factors will have
+  return -1;  // the number of entries of the factors is unknown
 }
 
 void HalvedFactors::begin(klu_numeric& numeric, const klu_symbolic& symbolic,

@@ -8,26 +8,26 @@
 
 namespace statejump::linear {
 
-/// Order of the columns of a large matrix in two halves that share no row, and then what separates
-/// them: of a ring two cross-sections. Neither half's factors depend on the other's, so that two
-/// threads work at once where KLU has one; what each adds up in which order depends on the matrix
-/// alone, not on the number of threads.
+/// Column order of a large matrix: two halves that share no row, then their separator (two
+/// cross-sections for a ring). The factors of the halves are independent, so two threads can
+/// compute them, unlike in KLU. The order of all sums depends only on the matrix, not on the number
+/// of threads.
 struct HalvedOrder {
-  int second = 0;     ///< Where the second half begins among the pivots.
-  int separator = 0;  ///< Where the separator begins; 0: the matrix is not cut.
+  int second = 0;     ///< First pivot of the second half.
+  int separator = 0;  ///< First pivot of the separator; 0: the matrix is not divided.
 
   bool is_cut() const { return separator > 0; }
 
-  /// Columns below which a factorization takes less than some ten times as long as starting a
-  /// thread.
+  /// For fewer columns, a factorization takes less than about ten times the start of a thread.
   static constexpr int least_columns = 10000;
 };
 
-/// Orders a block for KLU (`user_order`): in two halves, each by COLAMD, if it is large and its
-/// separator narrow. @param common whose `user_data` is a HalvedOrder that is told of the cut
+/// Orders a block for KLU (`user_order`). A large block with a narrow separator is divided into two
+/// halves, each ordered by COLAMD. @param common its `user_data` is a HalvedOrder that receives the
+/// result
 int order_in_halves(int size, int* columns, int* rows, int* order, klu_common* common);
 
-/// A column of L or U as KLU keeps it: first the rows, then the entries.
+/// A column of L or U in KLU's storage: first the rows, then the entries.
 struct FactorColumn {
   int length;
   const int* rows;
@@ -42,18 +42,18 @@ struct FactorColumn {
   }
 };
 
-/// Makes and uses factors of a matrix that was ordered in halves, by the formulas and in the
-/// storage of KLU (T. A. Davis, E. Palamadai Natarajan, ACM Trans. Math. Softw. 37 (2010) 36):
-/// refactor() gives what klu_refactor() gives, to the last bit.
+/// Factors of a matrix ordered in halves, with the formulas and the storage of KLU (T. A. Davis, E.
+/// Palamadai Natarajan, ACM Trans. Math. Softw. 37 (2010) 36). The result of refactor() is that of
+/// klu_refactor(), bit for bit.
 class HalvedFactors {
  public:
-  /// Looks at factors that klu_factor() has made. Where pivots do not keep to the halves, or there
-  /// are none, all is left to KLU.
+  /// Examines factors of klu_factor(). If pivots leave their half, or there are no halves, KLU does
+  /// all the work.
   void begin(klu_numeric& numeric, const klu_symbolic& symbolic, const HalvedOrder& order);
   void end() { order_ = {}; }
   bool are_halved() const { return order_.is_cut(); }
 
-  /// Factors a matrix of the same pattern with the pivots there are; false if one is 0.
+  /// Factors a matrix of the same pattern with the existing pivots; false if one is 0.
   bool refactor(const int* columns, const int* rows, const double* values, klu_numeric& numeric,
                 const klu_symbolic& symbolic);
   /// Solves for the right-hand side in x.
@@ -62,7 +62,7 @@ class HalvedFactors {
  private:
   HalvedOrder order_;
   std::vector<double> row_size_;  // the largest entry of every row
-  std::vector<double> work_;      // of the second half; KLU has one itself
+  std::vector<double> work_;      // for the second half; KLU has its own
 };
 
 }  // namespace statejump::linear

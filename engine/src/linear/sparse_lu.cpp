@@ -12,9 +12,9 @@ namespace {
 
 using Matrix = Eigen::Ref<const Eigen::SparseMatrix<double>>;
 
-/// Eigen's factors, whose pivots are inside.
+/// Eigen's factors with access to the pivots.
 struct Lu : Eigen::SparseLU<Eigen::SparseMatrix<double>> {
-  /// Whether every pivot is more than rounding of its column.
+  /// Whether every pivot exceeds the rounding of its column.
   bool has_pivots(const Matrix& matrix) const {
     for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
       double largest = 0.0;

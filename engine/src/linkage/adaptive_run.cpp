@@ -17,16 +17,16 @@ namespace detail {
 namespace {
 
 namespace odeint = boost::numeric::odeint;
-using Vector = Rich::Vector;
+using Vector = AllTerms::Vector;
 
-/// Components in units of what matters, so that one tolerance serves all: the play, the play times
-/// the angular frequency of the stiffer link, E A times the play.
+/// Scales of the components, so that one tolerance serves all: the play, the play times the angular
+/// frequency of the stiffer link, E A times the play.
 Vector scales(const Constants& k, double clearance, double angular_frequency) {
   Vector result;
   result.fill(k.ab.rigidity * clearance);
   for (std::size_t i = 0; i < 4; ++i) result[i] = clearance;
   for (std::size_t i = 4; i < 8; ++i) result[i] = clearance * angular_frequency;
-  result[slide] = 1.0;  // not integrated: no law here remembers
+  result[slide] = 1.0;  // not integrated: no law here has a memory
   return result;
 }
 
@@ -37,20 +37,20 @@ class AdaptiveRun {
     const double fastest = std::max(angular_frequency(k_.ab), angular_frequency(k_.bc));
     scales_ = scales(k_, model.radial_clearance(), fastest);
     largest_step_ = 0.5 / fastest;
-    y_ = pack<Rich>(start);
+    y_ = pack<AllTerms>(start);
   }
 
   Run integrate(const thermal::Program& program, int samples) {
     interval_ = samples > 0 ? program.duration() / samples : program.duration();
     const double heat = program.temperature_change(0.0);
     record(0.0, heat, y_);
-    touching_ = overlap<Rich>(k_, y_, heat) > 0.0;
+    touching_ = overlap<AllTerms>(k_, y_, heat) > 0.0;
     if (touching_) {
       run_.first_contact = FirstContact{0.0, heat};
       memory_.impact_speed = std::max(memory_.impact_speed, k_.law.smallest_impact_speed);
     }
     for (const Branch& branch : thermal::monotone_branches(program)) integrate(branch);
-    // The last of evenly spaced samples may lie a rounding before the end, or beyond it.
+    // The last of evenly spaced samples may be one rounding before or after the end.
     if (run_.samples.back().time < time_ * (1.0 - 1e-12)) record(time_, heat_, y_);
     run_.energy_residue = energy_residue(model_, run_.samples.front(), run_.samples.back());
     return std::move(run_);
@@ -58,9 +58,9 @@ class AdaptiveRun {
 
  private:
   void integrate(const Branch& branch) {
-    const Course course(branch);
+    const Trajectory trajectory(branch);
     const auto system = [&](const Vector& scaled, Vector& rate, double time) {
-      rates<Rich>(k_, physical(scaled), course(time), memory_, rate);
+      rates<AllTerms>(k_, physical(scaled), trajectory(time), memory_, rate);
       for (std::size_t i = 0; i < rate.size(); ++i) rate[i] /= scales_[i];
     };
     auto stepper = odeint::make_dense_output(tolerance_, 0.0, largest_step_,
@@ -71,7 +71,7 @@ class AdaptiveRun {
       try {
         stepper.do_step(system);
       } catch (const std::domain_error& error) {
-        throw failure(error, time_, course(time_).change);
+        throw failure(error, time_, trajectory(time_).change);
       }
       ++run_.steps;
       const double begin = time_;
@@ -82,55 +82,55 @@ class AdaptiveRun {
         return physical(state);
       };
       const auto beyond = [&](double time, const Vector& y) {
-        return overlap<Rich>(k_, y, course(time).change);
+        return overlap<AllTerms>(k_, y, trajectory(time).change);
       };
       Vector y = at(end);
       if (!std::isfinite(beyond(end, y))) {
-        throw failure(NotFinite(), begin, course(begin).change);
+        throw failure(NotFinite(), begin, trajectory(begin).change);
       }
       bool touches = beyond(end, y) > 0.0;
       const bool changes = touches != touching_;
-      if (changes) {  // the step ends at the edge of contact, where the law's memory changes
+      if (changes) {  // the step ends at the edge of contact, where the law's state changes
         const auto changed = [&](double time) { return (beyond(time, at(time)) > 0.0) == touches; };
         end = numerics::change_between(begin, end, changed, numerics::fine * (end - begin)).after;
         y = at(end);
       }
-      sample(course, at, end);
-      if (changes) change(course, end, y, touches);
+      sample(trajectory, at, end);
+      if (changes) change(trajectory, end, y, touches);
       y_ = y;
       time_ = end;
-      heat_ = end == branch.end_time ? branch.end : course(end).change;
+      heat_ = end == branch.end_time ? branch.end : trajectory(end).change;
       if (changes) {
         stepper.initialize(scaled(y_), time_, std::min(largest_step_, stepper.current_time_step()));
       }
     }
   }
 
-  void change(const Course& course, double time, const Vector& y, bool touches) {
+  void change(const Trajectory& trajectory, double time, const Vector& y, bool touches) {
     touching_ = touches;
     memory_.impact_speed = 0.0;
     if (!touches) return;
-    const Temperature heat = course(time);
+    const Temperature heat = trajectory(time);
     ++run_.contacts;
     if (!run_.first_contact) run_.first_contact = FirstContact{time, heat.change};
     memory_.impact_speed =
-        std::max(contact_point<Rich>(k_, y, heat, radii_at(k_, heat.change)).approach_speed,
+        std::max(contact_point<AllTerms>(k_, y, heat, radii_at(k_, heat.change)).approach_speed,
                  k_.law.smallest_impact_speed);
   }
 
   template <class State>
-  void sample(const Course& course, const State& at, double end) {
+  void sample(const Trajectory& trajectory, const State& at, double end) {
     for (;;) {
       const double time = static_cast<double>(run_.samples.size()) * interval_;
-      if (time > end || time > course.branch.end_time) return;
-      record(time, course(time).change, at(time));
+      if (time > end || time > trajectory.branch.end_time) return;
+      record(time, trajectory(time).change, at(time));
     }
   }
 
   void record(double time, double heat, const Vector& y) {
     State state = memory_;
     unpack(y, state);
-    run_.samples.push_back({time, heat, state, account<Rich>(y, 0.0)});
+    run_.samples.push_back({time, heat, state, account<AllTerms>(y, 0.0)});
   }
 
   Vector physical(Vector y) const {
@@ -144,7 +144,7 @@ class AdaptiveRun {
 
   const Linkage& model_;
   Constants k_;
-  State memory_;  // its impact speed counts
+  State memory_;  // its impact speed is used
   double tolerance_;
   Vector scales_, y_;
   double largest_step_ = 0.0;

@@ -129,10 +129,10 @@ Joint joint_state(const Linkage& model, const State& state, double temperature_c
                   double temperature_rate) {
   using namespace detail;
   const Constants k = constants(model);
-  const Rich::Vector y = pack<Rich>(state);
+  const AllTerms::Vector y = pack<AllTerms>(state);
   const Temperature heat{temperature_change, temperature_rate};
   const Radii radii = radii_at(k, temperature_change);
-  const ContactPoint at = contact_point<Rich>(k, y, heat, radii);
+  const ContactPoint at = contact_point<AllTerms>(k, y, heat, radii);
   Joint joint{at.depth, at.approach_speed, 0.0, 0.0, false};
   if (at.depth > 0.0) {
     const NormalForce normal = normal_force(k, at, radii, state.impact_speed);
@@ -142,7 +142,7 @@ Joint joint_state(const Linkage& model, const State& state, double temperature_c
       joint.slipping = state.contact.slipping;
     } else {
       kernel::ContactHistory none;
-      const SpatialContact<Rich> spatial(y, at, radii, turn_rates<Rich>(k, y));
+      const SpatialContact<AllTerms> spatial(y, at, radii, turn_rates<AllTerms>(k, y));
       const double speed = sliding_speed(k, spatial, at);
       joint.tangential_force = friction(k, normal, speed, none).force_on_1.x();
     }
@@ -163,8 +163,7 @@ Energy energy(const Linkage& model, const State& state, double temperature_chang
           axial_energy(model.link_ab, q.length_ab, temperature_change) +
               axial_energy(model.link_bc, q.length_bc, temperature_change),
           depth > 0.0 ? detail::normal_state(k, depth, radii).elastic_energy : 0.0,
-          kernel::elastic_energy(state.contact),
-          0.5 * model.torsion_stiffness * bend * bend};
+          kernel::elastic_energy(state.contact), 0.5 * model.torsion_stiffness * bend * bend};
 }
 
 double first_contact_temperature(const Linkage& model) {

@@ -25,18 +25,18 @@ enum Component : std::size_t {
   pin_heat = 10,
   friction_heat = 11,  ///< of a friction law without memory
   impact_heat = 12,
-  slide = 13,  ///< of journal against bearing in this step; for a friction law that remembers
+  slide = 13,  ///< of journal relative to bearing in this step; for a friction law with memory
 };
 
-/// Links and elastic contact alone, no couple on a link: the case that runs most often.
-struct Plain {
-  static constexpr bool rich = false;
+/// Links and elastic contact only, no couple on a link: the most frequent case.
+struct BasicTerms {
+  static constexpr bool all_terms = false;
   using Vector = std::array<double, 10>;
 };
 
-/// Everything.
-struct Rich {
-  static constexpr bool rich = true;
+/// All terms.
+struct AllTerms {
+  static constexpr bool all_terms = true;
   using Vector = std::array<double, 14>;
 };
 
@@ -44,12 +44,12 @@ struct LinkConstants {
   double pin_x, length, expansion, rigidity, inverse_rigidity, inverse_mass, damping;
 };
 
-/// Of the axial motion at ΔT = 0 [rad/s].
+/// Angular frequency of the axial motion at ΔT = 0 [rad/s].
 inline double angular_frequency(const LinkConstants& link) {
   return std::sqrt(link.rigidity / link.length * link.inverse_mass);
 }
 
-/// A Linkage with everything computed that does not change during a run.
+/// A Linkage with its constants over a run precomputed.
 struct Constants {
   LinkConstants ab, bc;
   kernel::ElasticPair pair;
@@ -57,22 +57,22 @@ struct Constants {
   kernel::laws::JointLaw law;
   double pin_damping, torsion, free_angle;
   bool friction, friction_has_memory, dissipation, couples, expanding;
-  bool rich() const { return couples || dissipation; }
+  bool all_terms() const { return couples || dissipation; }
 };
 
-/// Checks nothing.
+/// Does not check the model.
 Constants constants(const Linkage& model);
 
 struct Temperature {
   double change, rate;
 };
 
-/// A branch of the program with its slope at hand.
-struct Course {
+/// A branch of the temperature program with its slope precomputed.
+struct Trajectory {
   const thermal::Branch& branch;
-  double slope;  // [K/s] of a straight branch
+  double slope;  // [K/s], if the branch is straight
 
-  explicit Course(const thermal::Branch& b)
+  explicit Trajectory(const thermal::Branch& b)
       : branch(b), slope((b.end - b.start) / (b.end_time - b.start_time)) {}
 
   Temperature operator()(double time) const {
@@ -112,16 +112,16 @@ struct ContactPoint {
 };
 
 /// |d|² − c², > 0 in contact; no square root.
-template <class Kind>
-double overlap(const Constants& k, const typename Kind::Vector& y, double temperature_change) {
+template <class Terms>
+double overlap(const Constants& k, const typename Terms::Vector& y, double temperature_change) {
   const double c = radii_at(k, temperature_change).clearance();
   const double dx = y[2] - y[0];
   const double dy = y[3] - y[1];
   return dx * dx + dy * dy - c * c;
 }
 
-template <class Kind>
-ContactPoint contact_point(const Constants& k, const typename Kind::Vector& y,
+template <class Terms>
+ContactPoint contact_point(const Constants& k, const typename Terms::Vector& y,
                            const Temperature& heat, const Radii& radii) {
   const double dx = y[2] - y[0];
   const double dy = y[3] - y[1];
@@ -138,7 +138,7 @@ struct NormalForce {
   double force;  ///< with dissipation
 };
 
-/// @param impact_speed 0: the contact begins here, at its present approach speed
+/// @param impact_speed 0: the contact begins here, at its current approach speed
 inline NormalForce normal_force(const Constants& k, const ContactPoint& at, const Radii& radii,
                                 double impact_speed) {
   const kernel::laws::NormalState elastic = normal_state(k, at.depth, radii);
@@ -152,20 +152,20 @@ struct TurnRates {
   double ab, bc;
 };
 
-template <class Kind>
-TurnRates turn_rates(const Constants& k, const typename Kind::Vector& y) {
+template <class Terms>
+TurnRates turn_rates(const Constants& k, const typename Terms::Vector& y) {
   const double bx = y[2] - k.bc.pin_x;
   return {(y[0] * y[5] - y[1] * y[4]) / (y[0] * y[0] + y[1] * y[1]),
           (bx * y[7] - y[3] * y[6]) / (bx * bx + y[3] * y[3])};
 }
 
-/// The contact in the plane as the kernel's tangential velocity laws want it.
-template <class Kind>
+/// The contact in the plane, in the form of the kernel's tangential velocity laws.
+template <class Terms>
 struct SpatialContact {
   kernel::JointContact contact;
   kernel::BodyMotion journal, bearing;
 
-  SpatialContact(const typename Kind::Vector& y, const ContactPoint& at, const Radii& radii,
+  SpatialContact(const typename Terms::Vector& y, const ContactPoint& at, const Radii& radii,
                  const TurnRates& turn) {
     const kernel::Vector3 normal(at.nx, at.ny, 0.0);
     journal = {{y[2], y[3], 0.0}, {y[6], y[7], 0.0}, {0.0, 0.0, turn.bc}};
@@ -176,7 +176,7 @@ struct SpatialContact {
     contact.arm_2 = (radii.bearing + 0.5 * at.depth) * normal;
     contact.relative_velocity =
         material_velocity(journal, contact.arm_1) - material_velocity(bearing, contact.arm_2);
-    contact.effective_radius = 0.0;  // the normal laws take the two radii
+    contact.effective_radius = 0.0;  // the normal laws use the two radii
     contact.eccentricity = at.depth + radii.clearance();
   }
 };
@@ -186,9 +186,9 @@ inline const kernel::Vector3& joint_axis() {
   return z;
 }
 
-/// Speed [m/s] of journal against bearing along (−n_y, n_x), as the tangential velocity law has it.
-template <class Kind>
-double sliding_speed(const Constants& k, const SpatialContact<Kind>& spatial,
+/// Speed [m/s] of journal relative to bearing along (−n_y, n_x), by the tangential velocity law.
+template <class Terms>
+double sliding_speed(const Constants& k, const SpatialContact<Terms>& spatial,
                      const ContactPoint& at) {
   const kernel::Vector3 v = std::visit(
       [&](const auto& law) {
@@ -198,8 +198,8 @@ double sliding_speed(const Constants& k, const SpatialContact<Kind>& spatial,
   return -at.ny * v.x() + at.nx * v.y();
 }
 
-/// Friction along (−n_y, n_x), first component. @param motion slide of the step [m] for a law that
-/// remembers (dissipation in J), else speed [m/s] (dissipation in W)
+/// Friction along (−n_y, n_x), first component. @param motion slide of the step [m] for a law with
+/// memory (dissipation in J), else speed [m/s] (dissipation in W)
 inline kernel::laws::FrictionResponse friction(const Constants& k, const NormalForce& normal,
                                                double motion, kernel::ContactHistory& history) {
   return kernel::laws::evaluate(
@@ -234,22 +234,23 @@ LinkForces link_forces(const LinkConstants& k, double x, double y, double vx, do
 }
 
 /// ∂V/∂ΔT [J/K] of the normal law at fixed depth, through the radii: central difference over a
-/// hundredth of a kelvin. Its error, 1e-9 of V per kelvin, enters the energy account alone.
+/// hundredth of a kelvin. Its error, 1e-9 of V per kelvin, affects only the energy balance.
 double radii_energy_rate(const Constants& k, double depth, double temperature_change);
 
-/// What the contact does to the two links.
+/// Forces and couples of the contact on the two links.
 struct ContactEffect {
   double fx = 0.0, fy = 0.0;                ///< on the bearing [N]; the journal gets the opposite
   double couple_ab = 0.0, couple_bc = 0.0;  ///< [N m]
 };
 
-/// Apart from rates(), which is short while the joint is open. Adds to the account's rates.
-template <class Kind>
-[[gnu::noinline]] ContactEffect contact_effect(const Constants& k, const typename Kind::Vector& y,
+/// Separate from rates(), which is short while the joint is open. Adds to the energy rates.
+template <class Terms>
+[[gnu::noinline]] ContactEffect contact_effect(const Constants& k, const typename Terms::Vector& y,
                                                const Temperature& heat, const State& memory,
-                                               const TurnRates& turn, typename Kind::Vector& rate) {
+                                               const TurnRates& turn,
+                                               typename Terms::Vector& rate) {
   const Radii radii = radii_at(k, heat.change);
-  const ContactPoint at = contact_point<Kind>(k, y, heat, radii);
+  const ContactPoint at = contact_point<Terms>(k, y, heat, radii);
   const NormalForce normal = normal_force(k, at, radii, memory.impact_speed);
   ContactEffect effect;
   effect.fx = normal.force * at.nx;
@@ -259,10 +260,10 @@ template <class Kind>
         (radii_energy_rate(k, at.depth, heat.change) - normal.force * (k.r2_rate - k.r1_rate)) *
         heat.rate;
   }
-  if constexpr (Kind::rich) {
+  if constexpr (Terms::all_terms) {
     rate[impact_heat] = (normal.force - normal.elastic.force) * at.approach_speed;
     if (k.friction) {
-      const SpatialContact<Kind> spatial(y, at, radii, turn);
+      const SpatialContact<Terms> spatial(y, at, radii, turn);
       const double speed = sliding_speed(k, spatial, at);
       rate[slide] = speed;
       kernel::ContactHistory trial = memory.contact;
@@ -283,26 +284,26 @@ template <class Kind>
   return effect;
 }
 
-template <class Kind>
-void rates(const Constants& k, const typename Kind::Vector& y, const Temperature& heat,
-           const State& memory, typename Kind::Vector& rate) {
+template <class Terms>
+void rates(const Constants& k, const typename Terms::Vector& y, const Temperature& heat,
+           const State& memory, typename Terms::Vector& rate) {
   for (std::size_t i = thermal_work; i < rate.size(); ++i) rate[i] = 0.0;
   LinkForces ab = link_forces(k.ab, y[0], y[1], y[4], y[5], heat, rate);
   LinkForces bc = link_forces(k.bc, y[2], y[3], y[6], y[7], heat, rate);
   TurnRates turn{};
-  if constexpr (Kind::rich) {
+  if constexpr (Terms::all_terms) {
     turn = {(ab.ux * y[5] - ab.uy * y[4]) * ab.inverse_length,
             (bc.ux * y[7] - bc.uy * y[6]) * bc.inverse_length};
   }
   ContactEffect joint;
-  if (overlap<Kind>(k, y, heat.change) > 0.0) {
-    joint = contact_effect<Kind>(k, y, heat, memory, turn, rate);
+  if (overlap<Terms>(k, y, heat.change) > 0.0) {
+    joint = contact_effect<Terms>(k, y, heat, memory, turn, rate);
     ab.fx += joint.fx;
     ab.fy += joint.fy;
     bc.fx -= joint.fx;
     bc.fy -= joint.fy;
   }
-  if constexpr (Kind::rich) {
+  if constexpr (Terms::all_terms) {
     double moment = 0.0;
     if (k.torsion > 0.0) {
       moment =
@@ -329,9 +330,9 @@ void rates(const Constants& k, const typename Kind::Vector& y, const Temperature
   rate[7] = bc.fy * k.bc.inverse_mass;
 }
 
-template <class Kind>
-typename Kind::Vector pack(const State& state) {
-  typename Kind::Vector y{};
+template <class Terms>
+typename Terms::Vector pack(const State& state) {
+  typename Terms::Vector y{};
   for (Eigen::Index i = 0; i < 2; ++i) {
     const auto j = static_cast<std::size_t>(i);
     y[j] = state.bearing_centre[i];
@@ -342,7 +343,7 @@ typename Kind::Vector pack(const State& state) {
   return y;
 }
 
-/// Positions and velocities; what friction remembers stays.
+/// Copies positions and velocities; the friction history stays.
 template <class Vector>
 void unpack(const Vector& y, State& state) {
   state.bearing_centre = {y[0], y[1]};
@@ -351,10 +352,10 @@ void unpack(const Vector& y, State& state) {
   state.journal_velocity = {y[6], y[7]};
 }
 
-template <class Kind>
-Account account(const typename Kind::Vector& y, double remembered_friction_heat) {
+template <class Terms>
+Account account(const typename Terms::Vector& y, double remembered_friction_heat) {
   Account result{y[thermal_work], y[axial_heat], 0.0, remembered_friction_heat, 0.0};
-  if constexpr (Kind::rich) {
+  if constexpr (Terms::all_terms) {
     result.pin_dissipation = y[pin_heat];
     result.friction_dissipation += y[friction_heat];
     result.impact_dissipation = y[impact_heat];
@@ -362,7 +363,7 @@ Account account(const typename Kind::Vector& y, double remembered_friction_heat)
   return result;
 }
 
-/// The message with the instant of a run appended.
+/// The failure with time and temperature appended to the message.
 Failure failure(const std::domain_error& error, double time, double temperature_change);
 
 /// Thermal work − dissipation − change of energy [J].

@@ -18,45 +18,46 @@ using thermal::Branch;
 namespace detail {
 namespace {
 
-template <class Kind>
-typename Kind::Vector step(const Constants& k, const Course& course, double t, double h,
-                           const typename Kind::Vector& y, const State& memory) {
-  typename Kind::Vector k1, k2, k3, k4, stage;
-  const Temperature middle = course(t + 0.5 * h);
-  rates<Kind>(k, y, course(t), memory, k1);
+template <class Terms>
+typename Terms::Vector step(const Constants& k, const Trajectory& trajectory, double t, double h,
+                            const typename Terms::Vector& y, const State& memory) {
+  typename Terms::Vector k1, k2, k3, k4, stage;
+  const Temperature middle = trajectory(t + 0.5 * h);
+  rates<Terms>(k, y, trajectory(t), memory, k1);
   for (std::size_t i = 0; i < y.size(); ++i) stage[i] = y[i] + 0.5 * h * k1[i];
-  rates<Kind>(k, stage, middle, memory, k2);
+  rates<Terms>(k, stage, middle, memory, k2);
   for (std::size_t i = 0; i < y.size(); ++i) stage[i] = y[i] + 0.5 * h * k2[i];
-  rates<Kind>(k, stage, middle, memory, k3);
+  rates<Terms>(k, stage, middle, memory, k3);
   for (std::size_t i = 0; i < y.size(); ++i) stage[i] = y[i] + h * k3[i];
-  rates<Kind>(k, stage, course(t + h), memory, k4);
+  rates<Terms>(k, stage, trajectory(t + h), memory, k4);
   for (std::size_t i = 0; i < y.size(); ++i) {
     stage[i] = y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
   }
   return stage;
 }
 
-/// Root of |d| = c within a step that starts out of contact, by bisection on its length.
-template <class Kind>
-FirstContact locate(const Constants& k, const Course& course, double t, double h,
-                    const typename Kind::Vector& y) {
+/// Root of |d| = c within a step that starts without contact, by bisection on its length.
+template <class Terms>
+FirstContact locate(const Constants& k, const Trajectory& trajectory, double t, double h,
+                    const typename Terms::Vector& y) {
   const auto touches = [&](double tau) {
-    return overlap<Kind>(k, step<Kind>(k, course, t, tau, y, {}), course(t + tau).change) > 0.0;
+    return overlap<Terms>(k, step<Terms>(k, trajectory, t, tau, y, {}),
+                          trajectory(t + tau).change) > 0.0;
   };
   const double after = numerics::change_between(0.0, h, touches, numerics::fine * h).after;
-  return {t + after, course(t + after).change};
+  return {t + after, trajectory(t + after).change};
 }
 
-template <class Kind>
+template <class Terms>
 class FixedStepRun {
  public:
   FixedStepRun(const Linkage& model, const State& start)
-      : model_(model), k_(constants(model)), memory_(start), y_(pack<Kind>(start)) {}
+      : model_(model), k_(constants(model)), memory_(start), y_(pack<Terms>(start)) {}
 
   Run integrate(const thermal::Program& program, const RunOptions& options) {
     heat_ = program.temperature_change(0.0);
     record();
-    touching_ = overlap<Kind>(k_, y_, heat_) > 0.0;
+    touching_ = overlap<Terms>(k_, y_, heat_) > 0.0;
     if (touching_) {
       run_.first_contact = FirstContact{0.0, heat_};
       memory_.impact_speed = std::max(memory_.impact_speed, k_.law.smallest_impact_speed);
@@ -64,13 +65,13 @@ class FixedStepRun {
     long done = 0;
     try {
       for (const Branch& branch : thermal::monotone_branches(program)) {
-        const Course course(branch);
+        const Trajectory trajectory(branch);
         const double length = branch.end_time - branch.start_time;
         const long steps = std::max(1L, std::lround(options.steps * (length / program.duration())));
         const double h = length / static_cast<double>(steps);
         run_.steps += steps;
         for (long i = 0; i < steps; ++i) {
-          advance(course, branch.start_time + static_cast<double>(i) * h, h, i + 1 == steps);
+          advance(trajectory, branch.start_time + static_cast<double>(i) * h, h, i + 1 == steps);
           ++done;
           if (options.sample_every > 0 && done % options.sample_every == 0) record();
         }
@@ -84,24 +85,24 @@ class FixedStepRun {
   }
 
  private:
-  void advance(const Course& course, double from, double h, bool last) {
-    const auto next = step<Kind>(k_, course, from, h, y_, memory_);
-    const Temperature before = course(from);
-    time_ = last ? course.branch.end_time : from + h;
-    heat_ = last ? course.branch.end : course(time_).change;
-    const double beyond = overlap<Kind>(k_, next, heat_);
+  void advance(const Trajectory& trajectory, double from, double h, bool last) {
+    const auto next = step<Terms>(k_, trajectory, from, h, y_, memory_);
+    const Temperature before = trajectory(from);
+    time_ = last ? trajectory.branch.end_time : from + h;
+    heat_ = last ? trajectory.branch.end : trajectory(time_).change;
+    const double beyond = overlap<Terms>(k_, next, heat_);
     if (!std::isfinite(beyond)) {
       throw NotFinite();
     }
     const bool touches = beyond > 0.0;
     if (touches && !touching_) {
       ++run_.contacts;
-      if (!run_.first_contact) run_.first_contact = locate<Kind>(k_, course, from, h, y_);
+      if (!run_.first_contact) run_.first_contact = locate<Terms>(k_, trajectory, from, h, y_);
       memory_.impact_speed =
-          std::max(contact_point<Kind>(k_, y_, before, radii_at(k_, before.change)).approach_speed,
+          std::max(contact_point<Terms>(k_, y_, before, radii_at(k_, before.change)).approach_speed,
                    k_.law.smallest_impact_speed);
     }
-    if constexpr (Kind::rich) {
+    if constexpr (Terms::all_terms) {
       if (k_.friction_has_memory && (touches || touching_)) remember(next, touches, before.rate);
     }
     if (!touches) {
@@ -109,15 +110,15 @@ class FixedStepRun {
       memory_.impact_speed = 0.0;
     }
     y_ = next;
-    if constexpr (Kind::rich) y_[slide] = 0.0;
+    if constexpr (Terms::all_terms) y_[slide] = 0.0;
     touching_ = touches;
   }
 
-  void remember(const typename Kind::Vector& next, bool touches, double rate) {
+  void remember(const typename Terms::Vector& next, bool touches, double rate) {
     NormalForce normal{};
     if (touches) {
       const Radii radii = radii_at(k_, heat_);
-      const ContactPoint at = contact_point<Kind>(k_, next, {heat_, rate}, radii);
+      const ContactPoint at = contact_point<Terms>(k_, next, {heat_, rate}, radii);
       normal = normal_force(k_, at, radii, memory_.impact_speed);
     }
     friction_heat_ += friction(k_, normal, next[slide], memory_.contact).dissipation;
@@ -125,24 +126,24 @@ class FixedStepRun {
 
   void record() {
     unpack(y_, memory_);
-    run_.samples.push_back({time_, heat_, memory_, account<Kind>(y_, friction_heat_)});
+    run_.samples.push_back({time_, heat_, memory_, account<Terms>(y_, friction_heat_)});
   }
 
   const Linkage& model_;
   Constants k_;
   State memory_;  // positions and velocities only as of the last sample
-  typename Kind::Vector y_;
+  typename Terms::Vector y_;
   Run run_;
   double time_ = 0.0;
   double heat_ = 0.0;
-  double friction_heat_ = 0.0;  // of a law that remembers
+  double friction_heat_ = 0.0;  // for a law with memory
   bool touching_ = false;
 };
 
 }  // namespace
 
-/// Largest step [s] at which the method does not amplify the links' axial motion: |λ| h <= 2.78, a
-/// little inside its bounds on the real (2.785) and the imaginary axis (2.828).
+/// Largest step [s] for which the method does not amplify the links' axial motion: |λ| h <= 2.78,
+/// slightly inside its bounds on the real (2.785) and the imaginary axis (2.828).
 double stable_step(const Linkage& model) {
   const Constants k = constants(model);
   const double zeta = model.axial_damping_ratio;
@@ -177,10 +178,10 @@ Run simulate(const Linkage& model, const thermal::Program& program, const State&
   char range[64];
   std::snprintf(range, sizeof range, "at least %.0f, or the links' ringing is unstable", needed);
   require(options.steps >= needed, "steps", options.steps, range);
-  if (detail::constants(model).rich()) {
-    return detail::FixedStepRun<detail::Rich>(model, start).integrate(program, options);
+  if (detail::constants(model).all_terms()) {
+    return detail::FixedStepRun<detail::AllTerms>(model, start).integrate(program, options);
   }
-  return detail::FixedStepRun<detail::Plain>(model, start).integrate(program, options);
+  return detail::FixedStepRun<detail::BasicTerms>(model, start).integrate(program, options);
 }
 
 }  // namespace statejump::linkage

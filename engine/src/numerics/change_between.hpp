@@ -9,21 +9,22 @@
 
 namespace statejump::numerics {
 
-/// Where a condition changes: the last place found where it does not hold, the first where it does.
+/// Where a condition changes: the last point found where it does not hold, the first where it
+/// holds.
 struct Change {
   double before;
   double after;
 };
 
-/// Halvings of an interval that leave 2^-60 of it: below the rounding of what was measured over it.
+/// Sixty halvings of an interval: below the rounding of a quantity measured over it.
 constexpr double fine = 0x1p-60;
 
-/// Halves the interval between `before`, where a condition does not hold, and `after`, where it
-/// does, until both are neighbours or no further apart than `tolerance` (Boost.Math's bisection, at
-/// most 200 halvings: an interval of doubles about zero takes more only for roots below 1e-60 of
-/// it). `after` may be smaller than `before`.
-/// @param holds condition(x); not asked at the ends, which the caller knows
-/// @param tolerance in the unit of the ends; 0: neighbours
+/// Bisects between `before`, where a condition does not hold, and `after`, where it holds. Ends
+/// when both are neighbouring numbers or at most `tolerance` apart. `after` may be smaller than
+/// `before`. Uses Boost.Math's bisection with at most 200 halvings; an interval about zero needs
+/// more only for roots below 1e-60 of it.
+/// @param holds condition(x); not evaluated at the ends
+/// @param tolerance in the unit of the ends; 0: neighbouring numbers
 /// @throws std::logic_error if an end is not finite
 template <class Condition>
 Change change_between(double before, double after, Condition&& holds, double tolerance = 0.0) {

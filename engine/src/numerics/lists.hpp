@@ -8,11 +8,11 @@
 
 namespace statejump::numerics {
 
-/// Lists of numbers, one behind the other.
+/// Lists of numbers in one contiguous array.
 class Lists {
  public:
   Lists() = default;
-  /// @param begins of the lists among the numbers, then their end
+  /// @param begins first index of each list, then the end of the last
   Lists(std::vector<std::size_t> begins, std::vector<int> numbers)
       : numbers_(std::move(numbers)), begin_(std::move(begins)) {}
 
@@ -23,14 +23,15 @@ class Lists {
   const int* end(std::size_t list) const { return numbers_.data() + begin_[list + 1]; }
   std::size_t numbers() const { return numbers_.size(); }
 
-  /// For every number below `count` the lists that it is in.
+  /// For every number below `count`, the lists that contain it.
   Lists inverted(std::size_t count) const {
     std::vector<std::size_t> begins(count + 1, 0);
     for (const int number : numbers_) ++begins[static_cast<std::size_t>(number) + 1];
     std::partial_sum(begins.begin(), begins.end(), begins.begin());
     std::vector<int> lists(numbers_.size());
     std::vector<std::size_t> next(begins.begin(), begins.end() - 1);
-    for (std::size_t list = 0; list < size(); ++list) {  // NOLINT(build/include_what_you_use): a number
+    for (std::size_t list = 0; list < size();
+         ++list) {  // NOLINT(build/include_what_you_use): a number
       for (const int* number = begin(list); number != end(list); ++number) {
         lists[next[static_cast<std::size_t>(*number)]++] = static_cast<int>(list);
       }
@@ -43,8 +44,7 @@ class Lists {
   std::vector<std::size_t> begin_{0};
 };
 
-/// Items in the order in which a breadth-first search meets them, from the first item that it has
-/// not met where it comes to an end.
+/// Items in breadth-first order. When a search ends, it restarts at the first item not yet visited.
 /// @param groups_of the groups of every item, @param items_of the items of every group
 inline std::vector<int> breadth_first(const Lists& groups_of, const Lists& items_of) {
   std::vector<int> order;

@@ -5,7 +5,7 @@
 
 namespace statejump::numerics {
 
-/// The larger of a number and those before it, or one that is none, which has to show.
+/// Sets `largest` to the maximum of both; a NaN stays.
 inline void raise(double& largest, double value) {
   if (!(value <= largest) && !std::isnan(largest)) largest = value;
 }

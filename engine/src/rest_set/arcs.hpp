@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sets of arcs on a circle, and rest sets put together from their parts; not installed.
+// Sets of arcs on a circle, and rest sets assembled from their components; not installed.
 #pragma once
 
 #include <cmath>
@@ -13,19 +13,19 @@ inline Eigen::Vector3d on_circle(double radius, double angle, double z = 0.0) {
   return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
 
-/// Sums over the parts; the caller has set diameter and farthest.
+/// Sums over the components; the caller has set diameter and farthest.
 inline void add_up(RestSet& set) {
-  for (const Part& part : set.parts) {
+  for (const RestComponent& part : set.parts) {
     set.area += part.area;
     set.length += part.length;
   }
 }
 
-/// Each, any and all of sets that know union and intersection; `describe` turns one into a RestSet.
+/// RestStudy of sets with union and intersection; `describe` converts one into a RestSet.
 template <class Set, class Describe, class Unite, class Intersect>
-Study study_of(const std::vector<Set>& sets, Describe&& describe, Unite&& unite,
-               Intersect&& intersect) {
-  Study study;
+RestStudy study_of(const std::vector<Set>& sets, Describe&& describe, Unite&& unite,
+                   Intersect&& intersect) {
+  RestStudy study;
   Set any = sets.front(), all = sets.front();
   for (const Set& set : sets) {
     study.each.push_back(describe(set));

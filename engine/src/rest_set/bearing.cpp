@@ -13,7 +13,7 @@ namespace {
 RestSet arcs(const Intervals& set, double c) {
   RestSet result;
   for (const Interval& i : set.list()) {
-    Part part;
+    RestComponent part;
     part.angle = i.width();
     part.length = c * i.width();
     part.diameter = 2.0 * c * std::sin(0.5 * std::min(i.width(), pi));
@@ -35,7 +35,7 @@ RestSet arcs(const Intervals& set, double c) {
 
 }  // namespace
 
-Study rest_in_bearing(double clearance, const std::vector<Vector2d>& forces, double mu) {
+RestStudy rest_in_bearing(double clearance, const std::vector<Vector2d>& forces, double mu) {
   check_length(clearance, "clearance");
   check(forces, mu);
   std::vector<Intervals> sets;

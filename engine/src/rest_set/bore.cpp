@@ -71,7 +71,7 @@ CanSet can_set(const Vector3d& force, double mu) {
     } else if (radial > 0.0 && push >= -mu * radial) {
       const auto is_free = [&](double phi) { return !held(phi); };
       double inside = numerics::change_between(0.0, pi, is_free).before;
-      if (mu == 0.0) inside = 0.0;  // what rounding lets through
+      if (mu == 0.0) inside = 0.0;  // removes rounding
       rim.add(direction - inside, direction + inside);
     }
   }
@@ -88,7 +88,7 @@ CanSet common(const CanSet& a, const CanSet& b) {
           a.low_disc && b.low_disc, a.high_disc && b.high_disc};
 }
 
-/// The band is part of both rims, so these decide the diameter.
+/// The band is part of both rims, so the rims determine the diameter.
 double can_diameter(const CanSet& set, double c, double b, std::array<Vector3d, 2>* farthest) {
   double best = 0.0;
   const auto consider = [&](const Intervals& one, double z1, const Intervals& other, double z2) {
@@ -129,7 +129,7 @@ RestSet can(const CanSet& set, double c, double b) {
   for (std::size_t root = 0; root < nodes.size(); ++root) {
     if (components.find(root) != root) continue;
     CanSet own;
-    Part part;
+    RestComponent part;
     part.angle = 0.0;
     const std::array<Intervals*, 3> own_rows = {&own.band, &own.low_rim, &own.high_rim};
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -152,7 +152,7 @@ RestSet can(const CanSet& set, double c, double b) {
       if ((high ? set.high_disc : set.low_disc) && rim.full()) {
         part.area += pi * c * c;
       } else if (!rim.list().empty()) {
-        // Both are found to rounding; what is common must not leave a length.
+        // Both are found to rounding; their overlap must not leave a length.
         const double beyond = width(rim) - band;
         if (beyond > 1e-12) part.length += c * beyond;
       }
@@ -188,8 +188,8 @@ RestSet can(const CanSet& set, double c, double b) {
 
 }  // namespace
 
-Study rest_in_bore(double clearance, double axial_play, const std::vector<Vector3d>& forces,
-                   double mu) {
+RestStudy rest_in_bore(double clearance, double axial_play, const std::vector<Vector3d>& forces,
+                       double mu) {
   check_length(clearance, "clearance");
   check_length(axial_play, "axial_play");
   check(forces, mu);

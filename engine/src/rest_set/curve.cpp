@@ -36,7 +36,7 @@ Vector3d lifted(const Vector2d& p) {
 
 // Implicit curves.
 
-/// Γ with its checks.
+/// Γ with checks.
 struct Implicit {
   PlaneFunction gamma;
   PlaneGradient gradient;
@@ -86,7 +86,7 @@ struct Implicit {
   }
 };
 
-/// A grid line's piece: its lower end (i, j), along x (0) or y (1).
+/// A segment of a grid line: its lower end (i, j), along x (0) or y (1).
 using GridEdge = std::array<int, 3>;
 
 // Rest sets.
@@ -108,7 +108,7 @@ Intervals rest_on_curve(const Curve& curve, const Vector2d& force, double alpha)
   for (std::size_t i = 0; i < n; ++i) {
     const double start = angle[i];
     const double stop = start + wrapped(angle[(i + 1) % angle.size()] - start);
-    // Levels of the angle between both nodes, in the order in which they are met.
+    // Levels of the angle between both nodes, in order.
     std::vector<double> levels;
     for (int turn = -1; turn <= 1; ++turn) {
       for (const double level : {2.0 * pi * turn - alpha, 2.0 * pi * turn + alpha}) {
@@ -144,7 +144,7 @@ Vector2d position(const Curve& curve, double t) {
   return curve.at(t).position;
 }
 
-/// A position with where it came from.
+/// A position with its curve and parameter.
 struct Mark {
   std::size_t curve;
   Interval allowed;
@@ -152,7 +152,7 @@ struct Mark {
 };
 
 /// Length, points and marks of one interval.
-void walk(const Curve& curve, std::size_t index, const Interval& i, Part& part,
+void walk(const Curve& curve, std::size_t index, const Interval& i, RestComponent& part,
           std::vector<Mark>& marks) {
   std::vector<double> stations = {i.a};
   for (double t = std::floor(i.a) + 1.0; t < i.b; t += 1.0) stations.push_back(t);
@@ -211,9 +211,9 @@ RestSet described(const std::vector<Curve>& curves, const std::vector<Intervals>
   std::vector<Mark> marks;
   for (std::size_t c = 0; c < curves.size(); ++c) {
     for (const Interval& i : sets[c].list()) {
-      Part part;
+      RestComponent part;
       std::vector<Mark> own;
-      // A set that is one point but for rounding.
+      // A set that is a point up to rounding.
       const bool point = i.width() <= 1e-9;
       walk(curves[c], c, point ? Interval{i.a, i.a} : i, part, own);
       std::array<Vector3d, 2> pair;
@@ -224,6 +224,61 @@ RestSet described(const std::vector<Curve>& curves, const std::vector<Intervals>
     }
   }
   result.diameter = farthest(curves, marks, result.farthest);
+  return result;
+}
+
+/// Grid of marching squares.
+struct CurveGrid {
+  const Implicit& surface;
+  Vector2d low, extent;
+  int nx, ny;
+  std::vector<bool> free;  ///< of every node
+
+  CurveGrid(const Implicit& its_surface, const Vector2d& its_low, const Vector2d& its_extent)
+      : surface(its_surface),
+        low(its_low),
+        extent(its_extent),
+        nx(std::max(1, static_cast<int>(std::lround(extent.x() / surface.size)))),
+        ny(std::max(1, static_cast<int>(std::lround(extent.y() / surface.size)))),
+        free(static_cast<std::size_t>(nx + 1) * (ny + 1)) {
+    for (int j = 0; j <= ny; ++j) {
+      for (int i = 0; i <= nx; ++i) {
+        free[static_cast<std::size_t>(j) * (nx + 1) + i] = surface.value(node(i, j)) < 0.0;
+      }
+    }
+  }
+  Vector2d node(int i, int j) const {
+    return Vector2d(low.x() + extent.x() * i / nx, low.y() + extent.y() * j / ny);
+  }
+  bool is_free(int i, int j) const { return free[static_cast<std::size_t>(j) * (nx + 1) + i]; }
+  std::map<GridEdge, std::vector<GridEdge>> neighbours() const;
+};
+
+/// Each cell joins the roots on its sides in pairs, so every root has at most two neighbours.
+std::map<GridEdge, std::vector<GridEdge>> CurveGrid::neighbours() const {
+  std::map<GridEdge, std::vector<GridEdge>> result;
+  for (int j = 0; j < ny; ++j) {
+    for (int i = 0; i < nx; ++i) {
+      const std::array<bool, 4> corner = {is_free(i, j), is_free(i + 1, j), is_free(i + 1, j + 1),
+                                          is_free(i, j + 1)};
+      const std::array<GridEdge, 4> side = {GridEdge{i, j, 0}, GridEdge{i + 1, j, 1},
+                                            GridEdge{i, j + 1, 0}, GridEdge{i, j, 1}};
+      std::vector<int> crossed;
+      for (int k = 0; k < 4; ++k) {
+        if (corner[k] != corner[(k + 1) % 4]) crossed.push_back(k);
+      }
+      if (crossed.size() == 4 &&
+          (surface.value(0.5 * (node(i, j) + node(i + 1, j + 1))) < 0.0) == corner[0]) {
+        // The middle belongs to corners 0 and 2: separate corners 1 and 3, as listed; else rotate.
+      } else if (crossed.size() == 4) {
+        crossed = {3, 0, 1, 2};
+      }
+      for (std::size_t k = 0; k + 1 < crossed.size(); k += 2) {
+        result[side[crossed[k]]].push_back(side[crossed[k + 1]]);
+        result[side[crossed[k + 1]]].push_back(side[crossed[k]]);
+      }
+    }
+  }
   return result;
 }
 
@@ -238,45 +293,9 @@ std::vector<Curve> implicit_curves(const PlaneFunction& gamma, const PlaneGradie
   }
   require(cells >= 4 && cells <= 4000, "cells", cells, "4 to 4000");
   const double step = extent.maxCoeff() / cells;
-  const int nx = std::max(1, static_cast<int>(std::lround(extent.x() / step)));
-  const int ny = std::max(1, static_cast<int>(std::lround(extent.y() / step)));
   const Implicit surface{gamma, gradient, step};
-  const auto node = [&](int i, int j) {
-    return Vector2d(low.x() + extent.x() * i / nx, low.y() + extent.y() * j / ny);
-  };
-  std::vector<bool> free(static_cast<std::size_t>(nx + 1) * (ny + 1));
-  const auto is_free = [&](int i, int j) {
-    return free[static_cast<std::size_t>(j) * (nx + 1) + i];
-  };
-  for (int j = 0; j <= ny; ++j) {
-    for (int i = 0; i <= nx; ++i) {
-      free[static_cast<std::size_t>(j) * (nx + 1) + i] = surface.value(node(i, j)) < 0.0;
-    }
-  }
-  // Each cell joins the roots on its sides in pairs; every root then has at most two neighbours.
-  std::map<GridEdge, std::vector<GridEdge>> neighbours;
-  for (int j = 0; j < ny; ++j) {
-    for (int i = 0; i < nx; ++i) {
-      const std::array<bool, 4> corner = {is_free(i, j), is_free(i + 1, j), is_free(i + 1, j + 1),
-                                          is_free(i, j + 1)};
-      const std::array<GridEdge, 4> side = {GridEdge{i, j, 0}, GridEdge{i + 1, j, 1},
-                                            GridEdge{i, j + 1, 0}, GridEdge{i, j, 1}};
-      std::vector<int> crossed;
-      for (int k = 0; k < 4; ++k) {
-        if (corner[k] != corner[(k + 1) % 4]) crossed.push_back(k);
-      }
-      if (crossed.size() == 4 &&
-          (surface.value(0.5 * (node(i, j) + node(i + 1, j + 1))) < 0.0) == corner[0]) {
-        // The middle belongs to corners 0 and 2: cut corners 1 and 3 off, as listed; else rotate.
-      } else if (crossed.size() == 4) {
-        crossed = {3, 0, 1, 2};
-      }
-      for (std::size_t k = 0; k + 1 < crossed.size(); k += 2) {
-        neighbours[side[crossed[k]]].push_back(side[crossed[k + 1]]);
-        neighbours[side[crossed[k + 1]]].push_back(side[crossed[k]]);
-      }
-    }
-  }
+  const CurveGrid grid(surface, low, extent);
+  std::map<GridEdge, std::vector<GridEdge>> neighbours = grid.neighbours();
   require(!neighbours.empty(), "number of curves gamma = 0 in the box", 0.0,
           "at least 1: gamma must change its sign between grid points");
 
@@ -299,8 +318,9 @@ std::vector<Curve> implicit_curves(const PlaneFunction& gamma, const PlaneGradie
       now = *free_one;
     }
     for (const auto& [i, j, along_y] : chain) {
-      const Vector2d a = node(i, j), b = along_y ? node(i, j + 1) : node(i + 1, j);
-      const Vector2d p = is_free(i, j) ? surface.root(a, b) : surface.root(b, a);
+      const Vector2d a = grid.node(i, j);
+      const Vector2d b = along_y ? grid.node(i, j + 1) : grid.node(i + 1, j);
+      const Vector2d p = grid.is_free(i, j) ? surface.root(a, b) : surface.root(b, a);
       // Roots on either side of a grid point may coincide.
       if (!curve.nodes.empty() && (curve.nodes.back().position - p).norm() < 1e-9 * step) continue;
       curve.nodes.push_back({p, -surface.slope(p).normalized()});
@@ -351,101 +371,130 @@ Curve lobed_curve(double clearance, double amplitude, int lobes, int samples) {
       samples);
 }
 
-Curve journal_in_profile(const std::function<double(double)>& rho, double journal_radius,
-                         int samples) {
-  check_length(journal_radius, "journal_radius");
-  require(samples >= 16, "samples", samples, "at least 16");
-  const auto wall = [rho](double theta) {
+namespace {
+
+/// A bore's wall and the journal in it.
+struct Profile {
+  std::function<double(double)> rho;
+  double journal_radius;
+  int samples;
+
+  double step() const { return 2.0 * pi / samples; }
+  double wall(double theta) const {
     const double value = rho(theta);
     require(std::isfinite(value) && value > 0.0, ("rho(" + std::to_string(theta) + ")").c_str(),
             value, "finite, > 0 m");
     return value;
+  }
+  /// Distance r of the centre in direction phi at contact with the wall at theta; else infinity.
+  double first_touch(double theta, double phi) const {
+    const double value = wall(theta);
+    const double side = value * std::sin(theta - phi);
+    if (std::cos(theta - phi) <= 0.0 || std::abs(side) > journal_radius) {
+      return std::numeric_limits<double>::infinity();
+    }
+    return value * std::cos(theta - phi) -
+           std::sqrt((journal_radius - side) * (journal_radius + side));
+  }
+  double nearest_contact(double phi, double& least) const;
+  double refined_contact(const Vector2d& centre, double contact) const;
+};
+
+/// The wall point that limits the position most, refined by golden section.
+/// @param least in: first_touch(phi, phi); out: smallest distance on the grid of samples
+double Profile::nearest_contact(double phi, double& least) const {
+  double contact = phi;
+  for (int i = -samples / 4; i <= samples / 4; ++i) {
+    const double r = first_touch(phi + i * step(), phi);
+    if (r < least) {
+      least = r;
+      contact = phi + i * step();
+    }
+  }
+  double low = contact - step(), high = contact + step();
+  const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
+  double a = high - ratio * (high - low), b = low + ratio * (high - low);
+  double fa = first_touch(a, phi), fb = first_touch(b, phi);
+  for (int i = 0; i < 80; ++i) {
+    if (fa < fb) {
+      high = b;
+      b = a;
+      fb = fa;
+      a = high - ratio * (high - low);
+      fa = first_touch(a, phi);
+    } else {
+      low = a;
+      a = b;
+      fa = fb;
+      b = low + ratio * (high - low);
+      fb = first_touch(b, phi);
+    }
+  }
+  return 0.5 * (low + high);
+}
+
+/// A minimum is known only to the square root of rounding, which is too coarse for the normal. The
+/// direction from wall to centre is the wall's normal, so the secant method on the tangency
+/// condition refines it.
+double Profile::refined_contact(const Vector2d& centre, double contact) const {
+  const auto tangency = [&](double theta) {
+    const double h = 1e-4;
+    const double value = wall(theta);
+    const double slope = (8.0 * (wall(theta + h) - wall(theta - h)) -
+                          (wall(theta + 2.0 * h) - wall(theta - 2.0 * h))) /
+                         (12.0 * h);
+    const Vector2d e(std::cos(theta), std::sin(theta)), across(-e.y(), e.x());
+    return (centre - value * e).dot(slope * e + value * across);
   };
+  double t0 = contact - 1e-6, t1 = contact + 1e-6;
+  double f0 = tangency(t0), f1 = tangency(t1);
+  for (int i = 0; i < 20 && f1 != f0; ++i) {
+    const double t2 = t1 - f1 * (t1 - t0) / (f1 - f0);
+    if (!(std::abs(t2 - contact) < step())) break;
+    t0 = t1;
+    f0 = f1;
+    t1 = t2;
+    f1 = tangency(t1);
+    if (t1 == t0) break;
+  }
+  return std::abs(t1 - contact) < 1e-4 ? t1 : contact;
+}
+
+}  // namespace
+
+Curve journal_in_profile(const std::function<double(double)>& rho, double journal_radius,
+                         int samples) {
+  check_length(journal_radius, "journal_radius");
+  require(samples >= 16, "samples", samples, "at least 16");
+  const Profile profile{rho, journal_radius, samples};
   for (int i = 0; i < samples; ++i) {
-    const double value = wall(2.0 * pi * i / samples);
+    const double value = profile.wall(2.0 * pi * i / samples);
     require(value > journal_radius, ("rho(" + std::to_string(2.0 * pi * i / samples) + ")").c_str(),
             value, "above journal_radius [m]: the journal must fit at the origin");
   }
-  const double infinite = std::numeric_limits<double>::infinity();
-  const auto first_touch = [wall, journal_radius, infinite](double theta, double phi) {
-    const double value = wall(theta);
-    const double side = value * std::sin(theta - phi);
-    if (std::cos(theta - phi) <= 0.0 || std::abs(side) > journal_radius) return infinite;
-    return value * std::cos(theta - phi) -
-           std::sqrt((journal_radius - side) * (journal_radius + side));
-  };
-  const double step = 2.0 * pi / samples;
   return by_angle(
-      [=](double phi) {
-        // The wall point most in the way, then a golden section around it.
-        double contact = phi, least = first_touch(phi, phi);
-        for (int i = -samples / 4; i <= samples / 4; ++i) {
-          const double r = first_touch(phi + i * step, phi);
-          if (r < least) {
-            least = r;
-            contact = phi + i * step;
-          }
-        }
-        double low = contact - step, high = contact + step;
-        const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
-        double a = high - ratio * (high - low), b = low + ratio * (high - low);
-        double fa = first_touch(a, phi), fb = first_touch(b, phi);
-        for (int i = 0; i < 80; ++i) {
-          if (fa < fb) {
-            high = b;
-            b = a;
-            fb = fa;
-            a = high - ratio * (high - low);
-            fa = first_touch(a, phi);
-          } else {
-            low = a;
-            a = b;
-            fa = fb;
-            b = low + ratio * (high - low);
-            fb = first_touch(b, phi);
-          }
-        }
-        contact = 0.5 * (low + high);
-        const double r = std::min(first_touch(contact, phi), least);
+      [profile](double phi) {
+        double least = profile.first_touch(phi, phi);
+        double contact = profile.nearest_contact(phi, least);
+        const double r = std::min(profile.first_touch(contact, phi), least);
         const Vector2d centre = r * Vector2d(std::cos(phi), std::sin(phi));
-        // A minimum is known to the root of rounding only; the normal needs more: the direction
-        // from wall to centre is that of the wall's normal. Newton on the tangent of the wall.
-        const auto tangency = [&](double theta) {
-          const double h = 1e-4;
-          const double value = wall(theta);
-          const double slope = (8.0 * (wall(theta + h) - wall(theta - h)) -
-                                (wall(theta + 2.0 * h) - wall(theta - 2.0 * h))) /
-                               (12.0 * h);
-          const Vector2d e(std::cos(theta), std::sin(theta)), across(-e.y(), e.x());
-          return (centre - value * e).dot(slope * e + value * across);
-        };
-        double t0 = contact - 1e-6, t1 = contact + 1e-6;
-        double f0 = tangency(t0), f1 = tangency(t1);
-        for (int i = 0; i < 20 && f1 != f0; ++i) {
-          const double t2 = t1 - f1 * (t1 - t0) / (f1 - f0);
-          if (!(std::abs(t2 - contact) < step)) break;
-          t0 = t1;
-          f0 = f1;
-          t1 = t2;
-          f1 = tangency(t1);
-          if (t1 == t0) break;
-        }
-        if (std::abs(t1 - contact) < 1e-4) contact = t1;
-        const Vector2d touching = wall(contact) * Vector2d(std::cos(contact), std::sin(contact));
+        contact = profile.refined_contact(centre, contact);
+        const Vector2d touching =
+            profile.wall(contact) * Vector2d(std::cos(contact), std::sin(contact));
         return CurvePoint{centre, (centre - touching).normalized()};
       },
       samples);
 }
 
-Study rest_on_curves(const std::vector<Curve>& curves, const std::vector<Vector2d>& forces,
-                     double mu) {
+RestStudy rest_on_curves(const std::vector<Curve>& curves, const std::vector<Vector2d>& forces,
+                         double mu) {
   check(forces, mu);
   require(!curves.empty(), "number of curves", 0.0, "at least 1");
   for (const Curve& curve : curves) {
     require(curve.nodes.size() >= 2, "number of nodes", static_cast<double>(curve.nodes.size()),
             "at least 2");
   }
-  Study study;
+  RestStudy study;
   std::vector<Intervals> any, all;
   for (const Vector2d& force : forces) {
     std::vector<Intervals> sets;

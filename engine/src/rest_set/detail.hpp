@@ -81,7 +81,7 @@ class Intervals {
     return result;
   }
 
-  /// What is between the intervals, with its ends.
+  /// The gaps between the intervals, with their ends.
   Intervals complement() const {
     Intervals result(period_, tolerance_);
     if (list_.empty()) {
@@ -122,7 +122,7 @@ class Intervals {
         joined.push_back(i);
       }
     }
-    // The last one may reach around to the first ones.
+    // The last interval may reach around to the first ones.
     while (period_ > 0.0 && joined.size() > 1 &&
            joined.front().a + period_ <= joined.back().b + tolerance_) {
       joined.back().b = std::max(joined.back().b, joined.front().b + period_);
@@ -138,7 +138,7 @@ class Intervals {
   std::vector<Interval> list_;
 };
 
-/// Farthest pair by pruning with the distance from the centre of the box: exact.
+/// Farthest pair, exact; pruned by the distance from the centre of the box.
 template <class Points>
 double farthest_pair(const Points& points, std::size_t& first, std::size_t& second) {
   first = second = 0;

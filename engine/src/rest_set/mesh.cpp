@@ -37,7 +37,7 @@ Mesh welded(const Mesh& mesh, double tolerance) {
   Mesh result;
   result.project = mesh.project;
   result.normal = mesh.normal;
-  // Buckets as large as the tolerance; a neighbour may lie in the next one.
+  // Buckets as large as the tolerance; a neighbour may be in an adjacent one.
   const double bucket = tolerance > 0.0 ? tolerance : 1.0;
   std::map<std::array<double, 3>, std::vector<int>> known;
   std::vector<int> index;
@@ -77,6 +77,99 @@ Mesh welded(const Mesh& mesh, double tolerance) {
   return result;
 }
 
+namespace {
+
+/// Marching tetrahedra: the grid and the mesh so far.
+class MarchingTetrahedra {
+ public:
+  MarchingTetrahedra(const SpaceFunction& value, const SpaceGradient& slope,
+                     const std::array<int, 3>& cells, const Vector3d& low, const Vector3d& extent)
+      : value_(value), slope_(slope), n_(cells) {
+    grid_.resize(number(n_[0], n_[1], n_[2]) + 1);
+    free_.resize(grid_.size());
+    for (int k = 0; k <= n_[2]; ++k) {
+      for (int j = 0; j <= n_[1]; ++j) {
+        for (int i = 0; i <= n_[0]; ++i) {
+          Vector3d& p = grid_[number(i, j, k)];
+          p = low +
+              Vector3d(extent.x() * i / n_[0], extent.y() * j / n_[1], extent.z() * k / n_[2]);
+          free_[number(i, j, k)] = value_(p) < 0.0;
+        }
+      }
+    }
+  }
+
+  Mesh mesh() {
+    for (int k = 0; k < n_[2]; ++k) {
+      for (int j = 0; j < n_[1]; ++j) {
+        for (int i = 0; i < n_[0]; ++i) add_cell({i, j, k});
+      }
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  std::size_t number(int i, int j, int k) const {
+    return (static_cast<std::size_t>(k) * (n_[1] + 1) + j) * (n_[0] + 1) + i;
+  }
+
+  int vertex(std::size_t a, std::size_t b) {
+    const auto [found, fresh] =
+        on_edge_.try_emplace(std::minmax(a, b), static_cast<int>(mesh_.vertices.size()));
+    if (fresh) {
+      const Vector3d& inside = grid_[free_[a] ? a : b];
+      const Vector3d edge = grid_[free_[a] ? b : a] - inside;
+      const auto is_outside = [&](double t) { return !(value_(inside + t * edge) < 0.0); };
+      const auto crossing = numerics::change_between(0.0, 1.0, is_outside, numerics::fine);
+      mesh_.vertices.push_back(inside + 0.5 * (crossing.before + crossing.after) * edge);
+      mesh_.normals.push_back(-slope_(mesh_.vertices.back()).normalized());
+    }
+    return found->second;
+  }
+
+  /// Six tetrahedra around the diagonal of a cell, one per order of the three axes.
+  void add_cell(const std::array<int, 3>& cell) {
+    static constexpr int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2},
+                                         {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+    for (const auto& order : orders) {
+      std::array<int, 3> at = cell;
+      std::array<std::size_t, 4> corner;
+      corner[0] = number(at[0], at[1], at[2]);
+      for (int c = 0; c < 3; ++c) {
+        ++at[order[c]];
+        corner[c + 1] = number(at[0], at[1], at[2]);
+      }
+      add_tetrahedron(corner);
+    }
+  }
+
+  void add_tetrahedron(const std::array<std::size_t, 4>& corner) {
+    std::vector<std::size_t> in, out;
+    for (const std::size_t c : corner) (free_[c] ? in : out).push_back(c);
+    if (in.empty() || out.empty()) return;
+    if (in.size() == 2) {
+      const std::array<int, 4> q = {vertex(in[0], out[0]), vertex(in[0], out[1]),
+                                    vertex(in[1], out[1]), vertex(in[1], out[0])};
+      mesh_.triangles.push_back({q[0], q[1], q[2]});
+      mesh_.triangles.push_back({q[0], q[2], q[3]});
+    } else {
+      const std::size_t tip = in.size() == 1 ? in[0] : out[0];
+      const auto& base = in.size() == 1 ? out : in;
+      mesh_.triangles.push_back({vertex(tip, base[0]), vertex(tip, base[1]), vertex(tip, base[2])});
+    }
+  }
+
+  const SpaceFunction& value_;
+  const SpaceGradient& slope_;
+  std::array<int, 3> n_;
+  std::vector<Vector3d> grid_;
+  std::vector<bool> free_;
+  std::map<std::pair<std::size_t, std::size_t>, int> on_edge_;
+  Mesh mesh_;
+};
+
+}  // namespace
+
 Mesh implicit_surface(const SpaceFunction& gamma, const SpaceGradient& gradient,
                       const Vector3d& low, const Vector3d& high, int cells) {
   const Vector3d extent = high - low;
@@ -88,80 +181,19 @@ Mesh implicit_surface(const SpaceFunction& gamma, const SpaceGradient& gradient,
   const double step = extent.maxCoeff() / cells;
   std::array<int, 3> n;
   for (int i = 0; i < 3; ++i) n[i] = std::max(1, static_cast<int>(std::lround(extent[i] / step)));
-  const auto value = [gamma](const Vector3d& p) {
+  const SpaceFunction value = [gamma](const Vector3d& p) {
     const double result = gamma(p);
     require(std::isfinite(result), "gamma", result, "finite in the whole box");
     return result;
   };
-  const auto slope = [gradient](const Vector3d& p) -> Vector3d {
+  const SpaceGradient slope = [gradient](const Vector3d& p) -> Vector3d {
     Vector3d result = gradient(p);
     const double norm = result.norm();
     require(std::isfinite(norm) && norm > 0.0, "size of the gradient of gamma on the surface", norm,
             "finite, > 0");
     return result;
   };
-  const auto number = [&](int i, int j, int k) {
-    return (static_cast<std::size_t>(k) * (n[1] + 1) + j) * (n[0] + 1) + i;
-  };
-  const std::size_t points = number(n[0], n[1], n[2]) + 1;
-  std::vector<Vector3d> grid(points);
-  std::vector<bool> free(points);
-  for (int k = 0; k <= n[2]; ++k) {
-    for (int j = 0; j <= n[1]; ++j) {
-      for (int i = 0; i <= n[0]; ++i) {
-        Vector3d& p = grid[number(i, j, k)];
-        p = low + Vector3d(extent.x() * i / n[0], extent.y() * j / n[1], extent.z() * k / n[2]);
-        free[number(i, j, k)] = value(p) < 0.0;
-      }
-    }
-  }
-  Mesh mesh;
-  std::map<std::pair<std::size_t, std::size_t>, int> on_edge;
-  const auto vertex = [&](std::size_t a, std::size_t b) {
-    const auto [found, fresh] =
-        on_edge.try_emplace(std::minmax(a, b), static_cast<int>(mesh.vertices.size()));
-    if (fresh) {
-      const Vector3d& inside = grid[free[a] ? a : b];
-      const Vector3d edge = grid[free[a] ? b : a] - inside;
-      const auto is_outside = [&](double t) { return !(value(inside + t * edge) < 0.0); };
-      const auto crossing = numerics::change_between(0.0, 1.0, is_outside, numerics::fine);
-      mesh.vertices.push_back(inside + 0.5 * (crossing.before + crossing.after) * edge);
-      mesh.normals.push_back(-slope(mesh.vertices.back()).normalized());
-    }
-    return found->second;
-  };
-  // Six tetrahedra around the diagonal of each cell, one per order of the three axes.
-  static constexpr int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2},
-                                       {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
-  for (int k = 0; k < n[2]; ++k) {
-    for (int j = 0; j < n[1]; ++j) {
-      for (int i = 0; i < n[0]; ++i) {
-        for (const auto& order : orders) {
-          std::array<int, 3> at = {i, j, k};
-          std::array<std::size_t, 4> corner;
-          corner[0] = number(at[0], at[1], at[2]);
-          for (int c = 0; c < 3; ++c) {
-            ++at[order[c]];
-            corner[c + 1] = number(at[0], at[1], at[2]);
-          }
-          std::vector<std::size_t> in, out;
-          for (const std::size_t c : corner) (free[c] ? in : out).push_back(c);
-          if (in.empty() || out.empty()) continue;
-          if (in.size() == 2) {
-            const std::array<int, 4> q = {vertex(in[0], out[0]), vertex(in[0], out[1]),
-                                          vertex(in[1], out[1]), vertex(in[1], out[0])};
-            mesh.triangles.push_back({q[0], q[1], q[2]});
-            mesh.triangles.push_back({q[0], q[2], q[3]});
-          } else {
-            const std::size_t tip = in.size() == 1 ? in[0] : out[0];
-            const auto& base = in.size() == 1 ? out : in;
-            mesh.triangles.push_back(
-                {vertex(tip, base[0]), vertex(tip, base[1]), vertex(tip, base[2])});
-          }
-        }
-      }
-    }
-  }
+  Mesh mesh = MarchingTetrahedra(value, slope, n, low, extent).mesh();
   require(!mesh.triangles.empty(), "number of triangles of gamma = 0 in the box", 0.0,
           "at least 1: gamma must change its sign between grid points");
   // Right-hand normals on the side of N.

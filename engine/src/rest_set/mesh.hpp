@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What making a mesh and resting on it share; not installed.
+// Shared by mesh generation and rest_on_mesh(); not installed.
 #pragma once
 
 #include <utility>

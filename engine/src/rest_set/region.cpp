@@ -25,7 +25,7 @@ std::vector<double> roots(const Cone& cone, const Vector3d& a, const Vector3d& b
   return result;
 }
 
-/// The side of the line through a and b that is left (sign 1) or right (−1) of it.
+/// The part left (sign 1) or right (−1) of the line through a and b.
 Polygon clipped(const Polygon& polygon, const Plane& a, const Plane& b, double sign) {
   Polygon result;
   const auto side = [&](const Plane& p) { return sign * cross(b - a, p - a); };
@@ -72,7 +72,7 @@ void cut(const Polygon& polygon, const Polygon& region, double least, Polygon& i
   for (std::size_t i = 0; i < region.size() && !inside.empty(); ++i) {
     const Plane &a = region[i], &b = region[(i + 1) % region.size()];
     const Polygon off = clipped(inside, a, b, -1.0);
-    if (area_of(off) <= least) continue;  // nothing of it is beyond this side
+    if (area_of(off) <= least) continue;  // nothing is beyond this side
     outside.push_back(off);
     inside = clipped(inside, a, b, 1.0);
     if (area_of(inside) <= least) inside.clear();
@@ -143,9 +143,9 @@ void Region::arc(const Plane& a, const Plane& b, int depth, Polygon& result) con
   const Plane from = 0.5 * (a + b);
   if (!cone_.holds(at(from))) return;
   const double distance = reach(from, outward);
-  if (!(distance < 4.0)) return;  // flat or nearly: the chord is it
+  if (!(distance < 4.0)) return;  // nearly flat: the chord suffices
   Plane middle = from + distance * outward;
-  // Roots on the smooth surface may lie beside the conic of the linear normals.
+  // Roots on the smooth surface may be off the conic of the linear normals.
   middle = middle.cwiseMax(0.0);
   if (middle.sum() > 1.0) middle /= middle.sum();
   arc(a, middle, depth - 1, result);

@@ -34,7 +34,7 @@ struct Span {
 
 Span span_of(const Cone& cone, const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
-/// A point of a triangle: its weights of vertices 1 and 2.
+/// A point of a triangle: its weights for vertices 1 and 2.
 using Plane = Eigen::Vector2d;
 using Polygon = std::vector<Plane>;
 
@@ -44,7 +44,7 @@ inline double cross(const Plane& a, const Plane& b) {
 
 double area_of(const Polygon& polygon);
 
-/// Cuts a convex polygon by a convex region: what is inside, and convex pieces of the rest.
+/// Divides a convex polygon by a convex region: the part inside, and convex pieces of the rest.
 void cut(const Polygon& polygon, const Polygon& region, double least, Polygon& inside,
          std::vector<Polygon>& outside);
 
@@ -58,7 +58,7 @@ class Region {
     return n_[0] + p.x() * (n_[1] - n_[0]) + p.y() * (n_[2] - n_[0]);
   }
 
-  /// Where the normal is parallel to the cone's axis, if that is one point of the triangle.
+  /// Point where the normal is parallel to the cone's axis, if it is unique in the triangle.
   bool axis_point(Plane& point) const;
 
   /// @param spans of the sides 0-1, 1-2, 2-0

@@ -14,7 +14,7 @@ namespace {
 RestSet segments(const Intervals& set) {
   RestSet result;
   for (const Interval& i : set.list()) {
-    Part part;
+    RestComponent part;
     part.length = part.diameter = i.width();
     part.representative = {0.5 * (i.a + i.b), 0.0, 0.0};
     part.points = {{i.a, 0.0, 0.0}};
@@ -31,7 +31,7 @@ RestSet segments(const Intervals& set) {
 
 }  // namespace
 
-Study rest_in_slot(double clearance, const std::vector<Vector3d>& forces, double mu) {
+RestStudy rest_in_slot(double clearance, const std::vector<Vector3d>& forces, double mu) {
   check_length(clearance, "clearance");
   check(forces, mu);
   std::vector<Intervals> sets;

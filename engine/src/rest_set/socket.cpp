@@ -38,7 +38,7 @@ struct CapCircle {
   }
 };
 
-/// A piece of a cap's circle on the boundary of a union or an intersection.
+/// An arc of a cap's circle on the boundary of a union or an intersection.
 struct BoundaryArc {
   std::size_t circle;
   Interval psi;
@@ -60,7 +60,7 @@ class Caps {
   RestSet all() const;
 
  private:
-  /// Where circle i lies in cap j: cos(psi - psi_j) >= tan(gamma/2)/tan(alpha).
+  /// Part of circle i inside cap j: cos(psi - psi_j) >= tan(gamma/2)/tan(alpha).
   Intervals inside(std::size_t i, std::size_t j) const {
     Intervals result = circle_set();
     const double gamma = angle_between(circles_[i].axis, circles_[j].axis);
@@ -75,7 +75,7 @@ class Caps {
   Vector3d start(const BoundaryArc& arc) const { return circles_[arc.circle].at(arc.psi.a); }
   Vector3d end(const BoundaryArc& arc) const { return circles_[arc.circle].at(arc.psi.b); }
 
-  /// The arc that begins where this one ends.
+  /// The arc that begins at the end of this one.
   std::size_t next(const std::vector<BoundaryArc>& arcs, std::size_t i) const {
     std::size_t best = i;
     double nearest = std::numeric_limits<double>::infinity();
@@ -96,8 +96,8 @@ class Caps {
                          circles_[following.circle].axis.cross(point));
   }
 
-  Part cap(const Vector3d& axis) const {
-    Part part;
+  RestComponent cap(const Vector3d& axis) const {
+    RestComponent part;
     const double half = std::sin(0.5 * alpha_);
     part.area = 4.0 * pi * c_ * c_ * half * half;
     part.angle = 2.0 * alpha_;
@@ -109,7 +109,7 @@ class Caps {
   RestSet points() const {
     RestSet result;
     for (const CapCircle& circle : circles_) {
-      Part part = cap(circle.axis);
+      RestComponent part = cap(circle.axis);
       part.points = {part.representative};
       result.parts.push_back(part);
     }
@@ -154,7 +154,7 @@ RestSet Caps::any() const {
         k = following;
       }
     }
-    Part part = cap(circles_[root].axis);
+    RestComponent part = cap(circles_[root].axis);
     bool alone = true;
     for (std::size_t i = 0; i < n; ++i) {
       if (components.find(i) != root) continue;
@@ -208,7 +208,7 @@ RestSet Caps::all() const {
   }
   if (arcs.empty()) return result;
 
-  Part part;
+  RestComponent part;
   double area = 2.0 * pi;
   Vector3d middle = Vector3d::Zero();
   std::vector<Vector3d> candidates;
@@ -221,7 +221,8 @@ RestSet Caps::all() const {
     middle += circles_[arcs[k].circle].at(0.5 * (arcs[k].psi.a + arcs[k].psi.b));
   }
   part.area = c_ * c_ * std::max(0.0, area);
-  // A farthest point is a corner or lies on an arc, across the arc's centre from its partner.
+  // A farthest point is a corner, or it is on an arc, opposite its partner relative to the arc's
+  // centre.
   const std::size_t corners = candidates.size();
   for (std::size_t i = 0; i < n; ++i) {
     const auto add = [&](double psi) {
@@ -251,11 +252,11 @@ RestSet Caps::all() const {
 
 }  // namespace
 
-Study rest_in_socket(double clearance, const std::vector<Vector3d>& forces, double mu) {
+RestStudy rest_in_socket(double clearance, const std::vector<Vector3d>& forces, double mu) {
   check_length(clearance, "clearance");
   check(forces, mu);
   const double alpha = std::atan(mu);
-  Study study;
+  RestStudy study;
   for (const Vector3d& force : forces) {
     study.each.push_back(Caps({force}, alpha, clearance).any());
   }

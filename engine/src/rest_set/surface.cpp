@@ -20,7 +20,7 @@ using namespace detail;
 namespace {
 
 constexpr int most_forces = 256;
-constexpr double point_cone = 1e-6;  // tan of the cone that stands for mu = 0
+constexpr double point_cone = 1e-6;  // tan of the cone used for mu = 0
 using Mask = std::bitset<most_forces>;
 
 std::vector<Vector3d> unit_normals(const Mesh& mesh) {
@@ -52,7 +52,7 @@ std::vector<Vector3d> unit_normals(const Mesh& mesh) {
   return result;
 }
 
-/// Everything about one mesh and all forces.
+/// Data of one mesh and all forces.
 class Cutter {
  public:
   Cutter(const Mesh& mesh, const std::vector<Vector3d>& forces, double mu)
@@ -132,7 +132,7 @@ class Cutter {
     return (1.0 - p.x() - p.y()) * normals_[t[0]] + p.x() * normals_[t[1]] + p.y() * normals_[t[2]];
   }
 
-  /// A root of the linear normals, moved to that of the smooth surface.
+  /// Moves a root of the linear normals to the root of the smooth surface.
   double refined(const Cone& cone, const EdgeKey& edge, double s) const {
     if (!mesh_.normal || s <= 0.0 || s >= 1.0) return s;
     const Vector3d &a = mesh_.vertices[edge.first], &b = mesh_.vertices[edge.second];
@@ -209,7 +209,7 @@ class Cutter {
 
   /// Nodes are (triangle, sort).
   /// @param sort_of sort of a piece by its mask, −1: not in the set
-  /// @param linked whether sort k is connected through an edge with the given forces on it
+  /// @param linked whether sort k is connected through an edge with the given forces
   template <class SortOf, class Linked>
   RestSet described(int sorts, SortOf&& sort_of, Linked&& linked, bool every = false) const {
     const std::size_t triangles = mesh_.triangles.size();
@@ -247,7 +247,7 @@ class Cutter {
       }
     }
     struct Collected {
-      Part part;
+      RestComponent part;
       std::vector<Vector3d> points;
       double least = std::numeric_limits<double>::infinity();
     };
@@ -261,7 +261,7 @@ class Cutter {
       const Vector3d b = place(piece.triangle, Plane(0, 1)) - p0;
       to.part.area += area_of(piece.polygon) * a.cross(b).norm();
       const auto consider = [&](const Plane& p) {
-        // For several forces: the worst of those that hold it.
+        // For several forces: the worst of those under which it rests.
         double worst = 0.0;
         for (std::size_t k = 0; k < cones_.size(); ++k) {
           if (!piece.mask[k]) continue;
@@ -292,7 +292,7 @@ class Cutter {
     RestSet result;
     std::vector<Vector3d> all_points;
     for (auto& [root, collected] : parts) {
-      Part part = collected.part;
+      RestComponent part = collected.part;
       std::vector<Vector3d>& points = collected.points;
       if (mesh_.project) {
         part.representative = mesh_.project(part.representative);

@@ -11,9 +11,9 @@ namespace statejump::spring_slider {
 
 namespace {
 
-/// Segment that holds `time`: the one with start_time <= time < end_time, after the end of all the
-/// last. Tried first is `hint`, the answer for the time before, because times usually ascend.
-/// Throws std::invalid_argument for a time in a cycle that the path has left out.
+/// Segment that contains `time`: start_time <= time < end_time, or the last one after the end.
+/// `hint`, the result for the previous time, is tried first because times usually ascend. Throws
+/// std::invalid_argument for a time in an omitted cycle.
 const Segment& segment_at(const std::vector<Segment>& segments, double time, std::size_t& hint) {
   const auto holds = [&](std::size_t i) {
     return segments[i].start_time <= time && time < segments[i].end_time;
@@ -30,12 +30,13 @@ const Segment& segment_at(const std::vector<Segment>& segments, double time, std
 
 }  // namespace
 
-void tell_temperatures_of(thermal::Program told, Path& path) {
-  told.validate();
-  for (Event& event : path.events) event.temperature_change = told.temperature_change(event.time);
+void report_temperatures_of(thermal::Program reported, Path& path) {
+  reported.validate();
+  for (Event& event : path.events)
+    event.temperature_change = reported.temperature_change(event.time);
   path.largest_compression_temperature_change =
-      told.temperature_change(path.largest_compression_time);
-  path.told = std::move(told);
+      reported.temperature_change(path.largest_compression_time);
+  path.reported = std::move(reported);
 }
 
 History sample(const Path& path, const Eigen::Ref<const Eigen::VectorXd>& times) {
@@ -65,21 +66,23 @@ History sample(const Path& path, const Eigen::Ref<const Eigen::VectorXd>& times)
     const double time = times[i];
     kernel::require(std::isfinite(time) && time >= 0.0, "time", time, "finite, >= 0 s");
     const Segment& segment = segment_at(path.segments, time, hint);
-    const auto [change, x, force] = place_at(model, path.program, segment, time);
+    const auto [change, x, force] = point_at(model, path.program, segment, time);
     const double preload_force = -model.preload_force - model.preload_stiffness * x;
     const double depth = beyond(x);
     const double soft_stop = depth == 0.0 ? 0.0 : -model.stop_stiffness * depth;
     const double load = force + preload_force + soft_stop;
-    const double friction =
-        segment.motion == Motion::stick ? -load : -segment.rubs * model.friction_force;
+    const double friction = segment.motion == BlockMotion::stick
+                                ? -load
+                                : -segment.friction_sign * model.friction_force;
     const double slid =
-        segment.motion == Motion::slide ? std::abs(x - segment.start_displacement) : 0.0;
+        segment.motion == BlockMotion::slide ? std::abs(x - segment.start_displacement) : 0.0;
     history.time[i] = time;
-    history.temperature_change[i] = path.told ? path.told->temperature_change(time) : change;
+    history.temperature_change[i] =
+        path.reported ? path.reported->temperature_change(time) : change;
     history.displacement[i] = x;
     history.axial_force[i] = force;
     history.friction_force[i] = friction;
-    history.stop_force[i] = segment.motion == Motion::stop ? -(load + friction) : soft_stop;
+    history.stop_force[i] = segment.motion == BlockMotion::stop ? -(load + friction) : soft_stop;
     history.elastic_energy[i] = 0.5 * force * force / link_stiffness(model, change);
     history.preload_energy[i] = stored(x) - start_energy;
     history.friction_dissipation[i] = segment.friction_dissipation + model.friction_force * slid;

@@ -36,7 +36,8 @@ void SpringSlider::validate() const {
 
 namespace {
 
-/// Position [m] at ΔT = 0 where friction balances a load [N], or at the stop in the way there.
+/// Position [m] at ΔT = 0 where friction balances a load [N], or at the stop if it is reached
+/// before.
 double rest_under(const SpringSlider& model, double load) {
   const double stiffness = link_stiffness(model, 0.0) + model.preload_stiffness;
   const double excess = -model.preload_force - load;
@@ -47,13 +48,13 @@ double rest_under(const SpringSlider& model, double load) {
   return clearance + (excess - stiffness * clearance) / (stiffness + model.stop_stiffness);
 }
 
-/// What friction has to hold at ΔT = 0 [N], rigid stops left aside.
+/// Friction force needed at ΔT = 0 [N], without rigid stops.
 double load_at(const SpringSlider& model, double x) {
   const SpringSlider pressed = in_region(model, region_of(model, x));
   return -pressed.preload_force - (link_stiffness(model, 0.0) + pressed.preload_stiffness) * x;
 }
 
-/// From the middle of the play the block moves until friction holds it.
+/// From the middle of the play the block moves until friction balances its load.
 Start start_in_play(const SpringSlider& model) {
   const double half = 0.5 * model.play;
   const double free = rest_under(model, 0.0);

@@ -20,12 +20,12 @@ int sign(double value) {
   return (value > 0.0) - (value < 0.0);
 }
 
-/// Follows the program branch by branch and writes the path. The state between two branches is the
-/// open segment, the last event and the sense of the last slide.
-class Follower {
+/// Follows the program branch by branch and writes the path. Its state is the open segment, the
+/// last event and the direction of the last slide.
+class PathFollower {
  public:
   /// `kept`: the cycles to keep, ascending.
-  Follower(Path& path, const std::vector<int>& kept)
+  PathFollower(Path& path, const std::vector<int>& kept)
       : path_(path), model_(path.model), kept_(kept) {
     const Start start = start_of(model_);
     open_.start_displacement = open_.end_displacement = start.displacement;
@@ -39,12 +39,12 @@ class Follower {
     const double friction = has_play() ? std::abs(start.load) : model_.friction_force;
     if (is_at_stop(open_.end_displacement, side) && side * load > friction) {
       open_.stage = stage_at_stop(side);
-      open_.motion = Motion::stop;
+      open_.motion = BlockMotion::stop;
       open_.direction = side;
-      open_.rubs = has_play() ? held_ : side;
+      open_.friction_sign = has_play() ? held_ : side;
     } else if (has_play() && held_ == 0) {
       open_.stage = Stage::in_play;
-      open_.motion = Motion::play;
+      open_.motion = BlockMotion::play;
     }
   }
 
@@ -56,8 +56,8 @@ class Follower {
     drive_ = heating * sign(model_.thermal_expansion);
     branch_ = &branch;
     if (drive_ != 0) {
-      if (open_.motion == Motion::slide && open_.direction != drive_) turn_back();
-      if (open_.motion == Motion::play) open_.direction = drive_;
+      if (open_.motion == BlockMotion::slide && open_.direction != drive_) turn_back();
+      if (open_.motion == BlockMotion::play) open_.direction = drive_;
       while (pass_next_event()) {
       }
     }
@@ -72,25 +72,25 @@ class Follower {
     ++open_.cycle;
   }
 
-  /// The last segment ends where nothing starts.
+  /// Includes the force at the end of the last segment, after which no segment starts.
   void end() {
     const Segment& last = path_.segments.back();
     note_force(last, last.end_time);
   }
 
  private:
-  /// Carries the open segment on to ΔT at `time`.
+  /// Extends the open segment to ΔT at `time`.
   void move_to(double temperature_change, double time) {
     open_.end_temperature_change = temperature_change;
     open_.end_time = std::max(open_.start_time, time);
     open_.end_displacement = displacement(model_, open_, temperature_change);
   }
 
-  /// Ends the open segment where it is and opens the next one there in the same stage.
+  /// Ends the open segment and starts the next one in the same stage.
   void close() {
     const double end = open_.end_temperature_change;
     const double work = thermal_work(model_, open_, end);
-    const double slid = open_.motion == Motion::slide
+    const double slid = open_.motion == BlockMotion::slide
                             ? std::abs(open_.end_displacement - open_.start_displacement)
                             : 0.0;
     if (open_.end_time > open_.start_time) {
@@ -103,16 +103,16 @@ class Follower {
     open_.start_time = open_.end_time;
     open_.start_temperature_change = end;
     open_.start_displacement = open_.end_displacement;
-    if (open_.motion == Motion::slide) {
+    if (open_.motion == BlockMotion::slide) {
       open_.middle = open_.end_displacement - open_.direction * 0.5 * model_.play;
     }
   }
 
-  /// Is the present cycle kept?
+  /// Whether the current cycle is kept.
   bool keeps() const { return next_kept_ < kept_.size() && kept_[next_kept_] == open_.cycle; }
 
   void note_force(const Segment& segment, double time) {
-    const double force = place_at(model_, path_.program, segment, time).axial_force;
+    const double force = point_at(model_, path_.program, segment, time).axial_force;
     path_.largest_axial_force = std::max(path_.largest_axial_force, std::abs(force));
   }
 
@@ -133,13 +133,13 @@ class Follower {
                                                        open_.start_displacement)});
   }
 
-  void enter(EventKind kind, Stage stage, Motion motion, int direction) {
+  void enter(EventKind kind, Stage stage, BlockMotion motion, int direction) {
     close();
     add_event(kind, open_.stage, stage);
     open_.stage = stage;
     open_.motion = motion;
     open_.direction = direction;
-    open_.rubs = motion == Motion::slide ? direction : 0;
+    open_.friction_sign = motion == BlockMotion::slide ? direction : 0;
   }
 
   bool has_play() const { return model_.play > 0.0; }
@@ -158,37 +158,37 @@ class Follower {
       kind = EventKind::stop_left;
     }
     last_slide_ = drive_;
-    enter(kind, drive_ == first_slide_ ? Stage::S2 : Stage::S5, Motion::slide, drive_);
+    enter(kind, drive_ == first_slide_ ? Stage::S2 : Stage::S5, BlockMotion::slide, drive_);
   }
 
-  /// @param rubs sense in which friction is at its limit there; 0: the play is open
-  void load_stop(int rubs) {
-    // Snapped, so that x is the clearance itself and leaving the stop can be told by equality.
+  /// @param friction_sign direction in which friction is at its limit there; 0: the play is open
+  void load_stop(int friction_sign) {
+    // Set exactly, so that x is the clearance itself and leaving the stop is an exact comparison.
     open_.end_displacement = drive_ * model_.clearance(drive_);
-    enter(EventKind::stop_reached, stage_at_stop(drive_), Motion::stop, drive_);
-    open_.rubs = rubs;
+    enter(EventKind::stop_reached, stage_at_stop(drive_), BlockMotion::stop, drive_);
+    open_.friction_sign = friction_sign;
   }
 
-  /// Where the play of a block that moves in it ends [m].
+  /// End of the play in which the block moves [m].
   double end_of_play() const { return open_.middle + drive_ * 0.5 * model_.play; }
 
   void open_play(EventKind kind) {
     enter(is_at_stop(open_.end_displacement, -drive_) ? EventKind::stop_left : kind, Stage::in_play,
-          Motion::play, drive_);
+          BlockMotion::play, drive_);
   }
 
   void close_play() {
     open_.end_displacement = end_of_play();
     held_ = drive_;
-    // There D = 0: the link balances the springs alone.
+    // D = 0 there: only the link balances the springs.
     const SpringSlider pressed = in_region(model_, open_.region);
     const double force = pressed.preload_force + pressed.preload_stiffness * open_.end_displacement;
     const int side = force == 0.0 ? drive_ : sign(force);
     const Stage stage = last_slide_ == 0 ? Stage::S1 : last_slide_ == side ? Stage::S3 : Stage::S4;
-    enter(EventKind::play_closed, stage, Motion::stick, 0);
+    enter(EventKind::play_closed, stage, BlockMotion::stick, 0);
   }
 
-  /// Comes to touch a soft stop, or loses touch of it, and moves on.
+  /// Touches a soft stop, or separates from it, and moves on.
   void pass_soft_stop(int side) {
     open_.end_displacement = side * model_.clearance(side);
     enter(open_.region == 0 ? EventKind::stop_reached : EventKind::stop_left, open_.stage,
@@ -196,34 +196,34 @@ class Follower {
     open_.region = open_.region == 0 ? side : 0;
   }
 
-  /// ΔT at which the block starts to slide from x, or to press less than that on a stop.
+  /// ΔT at which the block starts to slide from x, or its force on a stop falls below that value.
   double onset_from(double x, int direction) const {
     return sliding_temperature(in_region(model_, open_.region), x, direction);
   }
 
   void turn_back() {
     held_ = open_.direction;
-    enter(EventKind::reversal, stage_of_stick(), Motion::stick, 0);
+    enter(EventKind::reversal, stage_of_stick(), BlockMotion::stick, 0);
   }
 
   static Stage stage_at_stop(int side) {
     return side > 0 ? Stage::at_stop_plus : Stage::at_stop_minus;
   }
 
-  /// Stage of a stick that begins where the open segment ends.
+  /// Stage of a stick that starts at the end of the open segment.
   Stage stage_of_stick() const {
     if (last_slide_ == 0) return Stage::S1;
     const double force = axial_force(model_, open_.end_temperature_change, open_.end_displacement);
     return last_slide_ * force >= 0.0 ? Stage::S3 : Stage::S4;
   }
 
-  /// Is ΔT before the end of the branch, or already passed? False for NaN: no such event.
+  /// Whether ΔT is before the end of the branch or already passed. False for NaN: no such event.
   bool is_due(double temperature_change) const {
     return heating_ * (branch_->end - temperature_change) > 0.0;
   }
 
-  /// Carries the segment to the event's ΔT; one that rounding or a kink of the program puts behind
-  /// the present ΔT happens now.
+  /// Extends the segment to the event's ΔT. An event that rounding or a corner of the program puts
+  /// before the current ΔT happens now.
   void move_to_event(double temperature_change) {
     const double now = open_.end_temperature_change;
     if (heating_ * (temperature_change - now) > 0.0) {
@@ -231,40 +231,40 @@ class Follower {
     }
   }
 
-  /// Passes the next event of the branch. False if there is none left. Under one drive the motion
-  /// only ever goes loaded stop → stick → play → stick → slide → stop, so this ends.
+  /// Processes the next event of the branch. False if there is none. In one branch the motion only
+  /// passes through loaded stop → stick → play → stick → slide → stop, so the loop ends.
   bool pass_next_event() {
-    if (open_.motion == Motion::stop) return pass_end_of_stop();
+    if (open_.motion == BlockMotion::stop) return pass_end_of_stop();
     return open_.moves() ? pass_end_of_motion() : pass_end_of_stick();
   }
 
   bool pass_end_of_stop() {
     if (open_.direction == drive_) return false;
-    const double unload = onset_from(open_.end_displacement, open_.rubs);
+    const double unload = onset_from(open_.end_displacement, open_.friction_sign);
     if (!is_due(unload)) return false;
     move_to_event(unload);
-    if (has_play() && open_.rubs != open_.direction) {
-      held_ = open_.rubs;
-      enter(EventKind::stop_unloaded, Stage::in_play, Motion::play, drive_);
+    if (has_play() && open_.friction_sign != open_.direction) {
+      held_ = open_.friction_sign;
+      enter(EventKind::stop_unloaded, Stage::in_play, BlockMotion::play, drive_);
       open_play(EventKind::play_opened);
       return true;
     }
-    held_ = open_.rubs;
-    enter(EventKind::stop_unloaded, stage_of_stick(), Motion::stick, 0);
+    held_ = open_.friction_sign;
+    enter(EventKind::stop_unloaded, stage_of_stick(), BlockMotion::stick, 0);
     return true;
   }
 
-  /// ΔT at which a block that moves comes to the next stop, or loses touch of a soft one.
+  /// ΔT at which a moving block arrives at the next stop, or separates from a soft one.
   double arrival_at(int side) const {
     const double clearance = model_.clearance(side);
     if (open_.region == drive_ || std::isinf(clearance)) return never;
-    return sliding_temperature(model_, side * clearance, open_.rubs);
+    return sliding_temperature(model_, side * clearance, open_.friction_sign);
   }
 
   bool pass_end_of_motion() {
     const int side = open_.region == 0 ? drive_ : open_.region;
     const double arrival = arrival_at(side);
-    const double closed = open_.motion == Motion::play ? onset_from(end_of_play(), 0) : never;
+    const double closed = open_.motion == BlockMotion::play ? onset_from(end_of_play(), 0) : never;
     if (is_due(closed) && !(heating_ * (arrival - closed) < 0.0)) {
       move_to_event(closed);
       close_play();
@@ -275,23 +275,23 @@ class Follower {
     if (model_.has_soft_stops()) {
       pass_soft_stop(side);
     } else {
-      load_stop(open_.rubs);
+      load_stop(open_.friction_sign);
     }
     return true;
   }
 
   bool pass_end_of_stick() {
     const double x = open_.end_displacement;
-    // A play opens where friction has fallen to zero.
+    // A play opens when friction reaches zero.
     const int limit = has_play() && held_ != drive_ ? 0 : drive_;
-    // Without friction every force moves the block: no rounded onset, no sliver of stick.
+    // Without friction every force moves the block: no rounded onset and no tiny stick segment.
     const double onset =
         model_.friction_force == 0.0 ? open_.end_temperature_change : onset_from(x, limit);
     const double zero = force_zero();
     if (is_due(zero) && !(heating_ * (onset - zero) <= 0.0)) {
       move_to_event(zero);
       enter(EventKind::force_sign_change, open_.stage == Stage::S3 ? Stage::S4 : Stage::S3,
-            Motion::stick, 0);
+            BlockMotion::stick, 0);
       return true;
     }
     if (!is_due(onset)) return false;
@@ -306,8 +306,8 @@ class Follower {
     return true;
   }
 
-  /// ΔT at which the axial force of a stick after a slide will pass zero, x_T = x; NaN if the drive
-  /// takes it away from zero.
+  /// ΔT at which the axial force of a stick after a slide passes zero, x_T = x; NaN if it moves
+  /// away from zero.
   double force_zero() const {
     const Stage towards_zero = drive_ == last_slide_ ? Stage::S4 : Stage::S3;
     if (open_.stage != towards_zero) return never;
@@ -319,12 +319,12 @@ class Follower {
   const std::vector<int>& kept_;
   std::size_t next_kept_ = 0;
   const thermal::Branch* branch_ = nullptr;
-  Segment open_{Stage::S1, Motion::stick, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0};
+  Segment open_{Stage::S1, BlockMotion::stick, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0};
   int heating_ = 0;
   int drive_ = 0;
   int first_slide_ = 0;
   int last_slide_ = 0;
-  int held_ = 0;  ///< Side of the play at which friction holds the block; 0: without play.
+  int held_ = 0;  ///< Side of the play at which friction acts; 0: without play.
 };
 
 /// Throws unless l_T stays positive over the program.
@@ -343,7 +343,7 @@ const char* to_string(Stage stage) {
   return names[static_cast<std::size_t>(stage)];
 }
 
-const char* to_string(Motion motion) {
+const char* to_string(BlockMotion motion) {
   constexpr std::array names{"stick", "slide", "stop", "play"};
   return names[static_cast<std::size_t>(motion)];
 }
@@ -363,7 +363,7 @@ double Path::jump_after_cycle(int cycle) const {
 
 namespace {
 
-/// Follows the program and keeps these cycles. Model and program are in range.
+/// Follows the program and keeps these cycles. Does not check model and program.
 void follow(const SpringSlider& model, const thermal::Program& program,
             const std::vector<int>& kept, Path& path) {
   require_positive_length(model, program);
@@ -374,13 +374,13 @@ void follow(const SpringSlider& model, const thermal::Program& program,
   path.cycle_end_displacements.clear();
   path.largest_compression = path.largest_compression_temperature_change = 0.0;
   path.largest_axial_force = path.largest_compression_time = 0.0;
-  path.told.reset();
-  // A cycle that touches both stops has 12 events, with a play 16; more only in a table with many
-  // turns.
+  path.reported.reset();
+  // A cycle that touches both stops has 12 events, with a play 16; only tables with many reversals
+  // have more.
   path.segments.reserve(16 * kept.size());
   path.events.reserve(16 * kept.size());
   path.cycle_end_displacements.reserve(static_cast<std::size_t>(program.cycles));
-  Follower follower(path, kept);
+  PathFollower follower(path, kept);
   for (int cycle = 0; cycle < program.cycles; ++cycle) {
     thermal::for_each_branch(
         program, cycle, [&follower](const thermal::Branch& branch) { follower.follow(branch); });
@@ -389,8 +389,8 @@ void follow(const SpringSlider& model, const thermal::Program& program,
   follower.end();
 }
 
-/// Cycles that hold `times`, with their neighbours, because t/P is rounded; the first two, the
-/// last.
+/// Cycles that contain `times`, with their neighbours because t/P is rounded, and the first two and
+/// the last.
 std::vector<int> cycles_of(const thermal::Program& program,
                            const Eigen::Ref<const Eigen::VectorXd>& times) {
   const int last = program.cycles - 1;
@@ -435,17 +435,18 @@ Path solve(const SpringSlider& model, const thermal::Program& program,
   return path;
 }
 
-Place place_at(const SpringSlider& model, const thermal::Program& program, const Segment& segment,
-               double time) {
+PathPoint point_at(const SpringSlider& model, const thermal::Program& program,
+                   const Segment& segment, double time) {
   const auto [lowest, highest] =
       std::minmax(segment.start_temperature_change, segment.end_temperature_change);
   const double change = std::clamp(program.temperature_change(time), lowest, highest);
   const double x = displacement(model, segment, change);
-  // Sliding, the block carries exactly the friction limit; a difference of x and x_T would not.
+  // During sliding the block carries exactly the friction limit; the difference of x and x_T would
+  // not give that.
   if (segment.moves()) {
     const SpringSlider pressed = in_region(model, segment.region);
     return {change, x,
-            segment.rubs * model.friction_force + pressed.preload_force +
+            segment.friction_sign * model.friction_force + pressed.preload_force +
                 pressed.preload_stiffness * x};
   }
   return {change, x, axial_force(model, change, x)};
@@ -454,8 +455,8 @@ Place place_at(const SpringSlider& model, const thermal::Program& program, const
 double displacement(const SpringSlider& model, const Segment& segment, double temperature_change) {
   if (!segment.moves()) return segment.start_displacement;
   const SpringSlider pressed = in_region(model, segment.region);
-  double x = sliding_displacement(pressed, temperature_change, segment.rubs);
-  if (segment.motion == Motion::play) {
+  double x = sliding_displacement(pressed, temperature_change, segment.friction_sign);
+  if (segment.motion == BlockMotion::play) {
     x = std::clamp(x, segment.middle - 0.5 * model.play, segment.middle + 0.5 * model.play);
   }
   if (segment.region > 0) return std::max(x, model.clearance_plus);
@@ -479,8 +480,9 @@ double thermal_work(const SpringSlider& model, const Segment& segment, double te
     const double length = free_length(model, at);
     double strain = 0.0;  // (x − x_T)/l_T
     if (segment.moves()) {
-      // Written out: the difference of x and x_T would lose the digits that the balance is about.
-      strain = -(segment.rubs * model.friction_force + pressed.preload_force +
+      // Written out: the difference of x and x_T would lose the digits that the energy balance
+      // needs.
+      strain = -(segment.friction_sign * model.friction_force + pressed.preload_force +
                  pressed.preload_stiffness * thermal_displacement(model, at)) /
                (model.axial_rigidity() + pressed.preload_stiffness * length);
     } else {

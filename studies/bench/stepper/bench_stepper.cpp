@@ -5,7 +5,7 @@
 
 #include "bare_loop.hpp"
 #include "scenes.hpp"
-#include "statejump/stepper/parts.hpp"
+#include "statejump/stepper/partition.hpp"
 
 namespace {
 
@@ -33,10 +33,10 @@ void bare_loop(benchmark::State& state) {
 void step(benchmark::State& state, Scene scene, long joints) {
   const long steps = steps_for(joints);
   scene.prepare();
-  stepper::Parts parts(scene);
-  const Scene::Make make = stepper::scenes::maker();
+  stepper::Partition partition(scene);
+  const Scene::CreatePhysics make = stepper::scenes::maker();
   for (auto _ : state) {
-    if (parts.run(steps, make) != steps) state.SkipWithError("a step could not be made");
+    if (partition.run(steps, make) != steps) state.SkipWithError("a step could not be made");
   }
   per_joint_and_step(state, joints, steps);
 }
@@ -53,7 +53,7 @@ void stuck(benchmark::State& state, const char* law_of_friction) {
   law.law.friction = kernel::laws::friction_law(law_of_friction);
   scene.law = law;
   scene.prepare();
-  const Scene::Make make = stepper::scenes::maker();
+  const Scene::CreatePhysics make = stepper::scenes::maker();
   if (scene.run(1500, make) != 1500) state.SkipWithError("a step could not be made");
   step(state, scene, joints);
 }

@@ -254,7 +254,7 @@ TEST(PartialSlip, PointsThatAreHeldChangeNothingButRounding) {
   const double limit = mu * Contact::normal(usual_depth);
   const double energy = limit * Contact::gross(usual_depth);
   ring(eager, 0, 60, [&] {
-    eager.memory.release();
+    eager.memory.flush_prefix();
     const PartialSlipResponse& other = answers[i++];
     worst = std::max(worst, (eager.response.force - other.force).norm() / limit);
     worst = std::max(worst, std::abs(eager.response.elastic - other.elastic) / energy);
@@ -262,19 +262,20 @@ TEST(PartialSlip, PointsThatAreHeldChangeNothingButRounding) {
   });
   // Rounding of each of the steps, and what either left out beyond its capacity.
   EXPECT_LE(worst, 3000 * 1e-16 + (lazy.memory.merged() + eager.memory.merged()) / limit);
-  EXPECT_GT(lazy.memory.held().count, 8);
+  EXPECT_GT(lazy.memory.prefix().count, 8);
   // A slide that goes through any share of what is held.
   for (const double share : {-1.5, -0.6, -0.2, -0.05, 0.05, 0.2, 0.6, 1.5}) {
-    Contact held = lazy;
-    Contact told = lazy;
-    told.memory.release();
+    Contact with_prefix = lazy;
+    Contact flushed = lazy;
+    flushed.memory.flush_prefix();
     const double next = lazy.slide.a + share * Contact::gross(usual_depth);
-    EXPECT_NEAR(held.to(usual_depth, next), told.to(usual_depth, next), 1e-13 * limit) << share;
-    EXPECT_NEAR(held.response.elastic, told.response.elastic, 1e-13 * energy) << share;
+    EXPECT_NEAR(with_prefix.to(usual_depth, next), flushed.to(usual_depth, next), 1e-13 * limit)
+        << share;
+    EXPECT_NEAR(with_prefix.response.elastic, flushed.response.elastic, 1e-13 * energy) << share;
   }
   // What is kept beside the points is what they say.
   PartialSlipMemory released = lazy.memory;
-  released.release();
+  released.flush_prefix();
   EXPECT_NEAR(elastic_energy(released), lazy.response.elastic, 1e-13 * energy);
 }
 
@@ -563,7 +564,7 @@ TEST(PartialSlip, ASlideThatTurnsIsFollowedWhateverTheNumberOfSteps) {
     worst /= mu * Contact::normal(usual_depth);
     const std::string which = (share < 1.0 ? "_small_" : "_") + std::to_string(steps);
     RecordProperty("off" + which, std::to_string(worst));
-    // What is lost without being told.
+    // What is lost without being flushed.
     const double missing = (work - contact.response.elastic - contact.heat) / work;
     RecordProperty("missing" + which, std::to_string(missing));
     // Some ten chords of 1e-4 each, all off to one side; the row has 200 punches.
@@ -658,11 +659,11 @@ TEST(PartialSlip, HeldUnderACyclicLoad) {
   Contact contact = pressed();
   contact.to(usual_depth, 0.3 * Contact::gross(usual_depth));
   contact.to(0.7 * usual_depth, 0.3 * Contact::gross(usual_depth));
-  const double held = contact.response.force.a;
+  const double initial = contact.response.force.a;
   for (int cycle = 0; cycle < 1000; ++cycle) {
     contact.to(usual_depth, contact.slide);
     contact.to(0.7 * usual_depth, contact.slide);
-    ASSERT_NEAR(contact.response.force.a, held, 1e-12 * held);
+    ASSERT_NEAR(contact.response.force.a, initial, 1e-12 * initial);
   }
 }
 
@@ -705,7 +706,7 @@ TEST(PartialSlip, ForcesDoNotDependOnWhetherEnergiesAreAskedFor) {
   Random random;
   Contact with;
   Contact without;
-  without.memory.set_accounts(false);
+  without.memory.set_tracks_energy(false);
   for (int i = 0; i < 20000; ++i) {
     const double depth = i % 4 ? usual_depth * random.uniform(-0.05, 2.0) : with.depth;
     const double size = Contact::gross(usual_depth) * std::pow(10.0, random.uniform(-4.0, 0.5));

@@ -109,7 +109,7 @@ TEST(JointResponse, UnitOfForceDoesNotMatter) {
       for (const char* dissipation : {"none", "flores"}) {
         JointLaw law = joint_law({normal, dissipation, friction, "material"});
         law.restitution = 0.8;
-        if (!contradiction(law).empty()) continue;
+        if (!incompatibility(law).empty()) continue;
         RandomJoint joint;
         int damped = 0;
         for (int i = 0; i < 200; ++i) {

@@ -363,7 +363,7 @@ TEST(Friction, PartialSlipBeginsWithoutSlipWhereLoadedObliquely) {
   const double limit = 30.0;
   const Vector3 force(6.0, -8.0, 0.0);
   const FrictionKinematics held{100.0, stiffness, Vector3(7.0, 7.0, 0.0), 0.5, Vector3::UnitZ()};
-  ContactHistory history = MindlinDeresiewiczFriction{}.loaded(parameters, force, held);
+  ContactHistory history = MindlinDeresiewiczFriction{}.preloaded(parameters, force, held);
   EXPECT_LT((history.tangential_force - force).norm(), 1e-12 * limit);
   EXPECT_FALSE(history.slipping);
   FrictionKinematics still = held;

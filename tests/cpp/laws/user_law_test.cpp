@@ -83,7 +83,7 @@ std::string complaint(double depth) {
 }
 
 TEST_F(UserLawTest, WrongAnswersAndExceptionsNameTheLaw) {
-  EXPECT_EQ(complaint(5e-8), "moody (moody.so): answered force = nan");
+  EXPECT_EQ(complaint(5e-8), "moody (moody.so): returned force = nan");
   EXPECT_EQ(complaint(5e-7), "moody (moody.so): not today");
   EXPECT_EQ(complaint(1e-3), "moody: penetration_depth = 0.001 m, allowed is below 0.0001 m");
   EXPECT_EQ(complaint(nan), "moody: penetration_depth = nan m, allowed is below 0.0001 m");
@@ -259,7 +259,7 @@ TEST(UserLaws, EveryNumberOfAnAnswerIsLookedAt) {
       EXPECT_EQ(said, "");
     } else {
       EXPECT_NE(
-          said.find(std::string("answered ") + of_normal[i % 4] + (i < 4 ? " = nan" : " = -1")),
+          said.find(std::string("returned ") + of_normal[i % 4] + (i < 4 ? " = nan" : " = -1")),
           std::string::npos)
           << i << said;
     }

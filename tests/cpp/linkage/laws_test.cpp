@@ -35,7 +35,7 @@ TEST(LinkageLaws, AccountClosesForEveryCombination) {
         for (const std::string& velocity : law_names<TangentialVelocityLaw>()) {
           const Linkage model = with_laws({normal, dissipation, friction, velocity});
           const std::string which = normal + " " + dissipation + " " + friction + " " + velocity;
-          if (!contradiction(model.law).empty()) {  // laws that do not go together are refused
+          if (!incompatibility(model.law).empty()) {  // laws that do not go together are refused
             EXPECT_THROW(run(model, 40000), std::invalid_argument) << which;
             continue;
           }

@@ -13,7 +13,7 @@
 namespace statejump::linkage {
 namespace {
 
-using detail::Rich;
+using detail::AllTerms;
 
 /// States apart and in contact on several sides, with links that are strained and that move.
 std::vector<State> states(const Linkage& model) {
@@ -39,9 +39,11 @@ Linkage sprung() {
   return model;
 }
 
-Rich::Vector rates_of(const Linkage& model, const State& state, const detail::Temperature& heat) {
-  Rich::Vector rate{};
-  detail::rates<Rich>(detail::constants(model), detail::pack<Rich>(state), heat, state, rate);
+AllTerms::Vector rates_of(const Linkage& model, const State& state,
+                          const detail::Temperature& heat) {
+  AllTerms::Vector rate{};
+  detail::rates<AllTerms>(detail::constants(model), detail::pack<AllTerms>(state), heat, state,
+                          rate);
   return rate;
 }
 
@@ -49,7 +51,7 @@ TEST(LinkageRates, ForcesAreTheSlopesOfTheEnergy) {
   const Linkage model = sprung();
   const double change = 20.0;
   for (const State& state : states(model)) {
-    const Rich::Vector rate = rates_of(model, state, {change, 0.0});
+    const AllTerms::Vector rate = rates_of(model, state, {change, 0.0});
     for (int i = 0; i < 4; ++i) {
       const auto moved = [&](double by) {
         State there = state;
@@ -85,7 +87,7 @@ TEST(LinkageRates, PowersCloseTheAccountAtEveryInstant) {
     const detail::Temperature heat{20.0, 400.0};
     for (State state : states(model)) {
       state.impact_speed = 0.1;
-      const Rich::Vector rate = rates_of(model, state, heat);
+      const AllTerms::Vector rate = rates_of(model, state, heat);
       const auto later = [&](double time) {
         State there = state;
         there.bearing_centre += time * Eigen::Vector2d(rate[0], rate[1]);

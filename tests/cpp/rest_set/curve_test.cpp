@@ -38,7 +38,7 @@ TEST(RestOnCurve, ImplicitCircleIsTheClearanceCircle) {
       const Vector2d force(std::cos(direction), std::sin(direction));
       const RestSet set = rest_on_curves(curves, {5.0 * force}, mu).any;
       ASSERT_EQ(set.parts.size(), 1u);
-      const Part& part = set.parts[0];
+      const RestComponent& part = set.parts[0];
       EXPECT_NEAR(angle_to(part.points.front(), direction), std::atan(mu), 1e-12);
       EXPECT_NEAR(angle_to(part.points.back(), direction), std::atan(mu), 1e-12);
       for (const Vector3d& point : part.points) EXPECT_EQ(point.z(), 0.0);
@@ -97,7 +97,7 @@ TEST(RestOnCurve, TwoForces) {
   const auto curves = circle(60);
   const double phi = std::atan(0.3);
   for (const double beta : {0.2, 0.5, 0.7}) {
-    const Study study = rest_on_curves(curves, {{1, 0}, {std::cos(beta), std::sin(beta)}}, 0.3);
+    const RestStudy study = rest_on_curves(curves, {{1, 0}, {std::cos(beta), std::sin(beta)}}, 0.3);
     const double common = std::max(0.0, 2.0 * phi - beta);
     EXPECT_NEAR(study.all.length, c * common, 1e-6 * c);
     EXPECT_NEAR(study.any.length, c * (4.0 * phi - common), 1e-5 * c);

@@ -34,7 +34,7 @@ std::string refusal(const std::function<void()>& call) {
 }
 
 TEST(RestInSlot, SegmentOrStop) {
-  const Study study = rest_in_slot(
+  const RestStudy study = rest_in_slot(
       c, {{1.0, 0.0, -10.0}, {5.0, 0.0, -10.0}, {-5.0, 3.0, 4.0}, {3.0, -6.0, 8.0}}, 0.3);
   EXPECT_DOUBLE_EQ(study.each[0].length, 2.0 * c);
   EXPECT_DOUBLE_EQ(study.each[0].diameter, 2.0 * c);
@@ -47,7 +47,7 @@ TEST(RestInSlot, SegmentOrStop) {
   EXPECT_DOUBLE_EQ(study.each[3].diameter, 2.0 * c);  // on the limit: 3 = 0.3 * 10
   EXPECT_DOUBLE_EQ(study.any.length, 2.0 * c);
   EXPECT_TRUE(study.all.parts.empty());
-  const Study ends = rest_in_slot(c, {{1, 0, 0}, {-1, 0, 0}}, 0.3);
+  const RestStudy ends = rest_in_slot(c, {{1, 0, 0}, {-1, 0, 0}}, 0.3);
   EXPECT_EQ(ends.any.parts.size(), 2u);
   EXPECT_DOUBLE_EQ(ends.any.diameter, 2.0 * c);
   EXPECT_EQ(ends.any.length, 0.0);
@@ -86,7 +86,7 @@ TEST(RestInBearing, TwoForcesAtBeta) {
   const double mu = 0.3, phi = std::atan(mu);
   for (const double direction : {0.0, 2.0, 3.0, -3.1}) {
     for (const double beta : {0.1, 0.5, 0.58, 0.59, 2.0, pi}) {
-      const Study study = rest_in_bearing(c, {at(direction), at(direction + beta)}, mu);
+      const RestStudy study = rest_in_bearing(c, {at(direction), at(direction + beta)}, mu);
       const double common = std::max(0.0, 2.0 * phi - beta);
       EXPECT_NEAR(study.all.length, c * common, 1e-18);
       EXPECT_NEAR(study.all.diameter, 2.0 * c * std::sin(0.5 * common), 1e-18);
@@ -101,7 +101,7 @@ TEST(RestInBearing, TwoForcesAtBeta) {
 
 TEST(RestInBearing, FarthestOfThreeArcs) {
   // 2.5 rad between the second and the third, less between the others.
-  const Study study = rest_in_bearing(c, {at(1.0), at(3.0), at(5.5)}, 0.05);
+  const RestStudy study = rest_in_bearing(c, {at(1.0), at(3.0), at(5.5)}, 0.05);
   EXPECT_EQ(study.any.parts.size(), 3u);
   EXPECT_NEAR(study.any.diameter, 2.0 * c * std::sin(1.25 + std::atan(0.05)), 1e-18);
 }
@@ -109,7 +109,7 @@ TEST(RestInBearing, FarthestOfThreeArcs) {
 TEST(RestInBearing, ForcesAllAround) {
   std::vector<Vector2d> forces;
   for (int i = 0; i < 12; ++i) forces.push_back(at(2.0 * pi * i / 12));
-  const Study study = rest_in_bearing(c, forces, 0.3);  // 0.291 > pi / 12
+  const RestStudy study = rest_in_bearing(c, forces, 0.3);  // 0.291 > pi / 12
   ASSERT_EQ(study.any.parts.size(), 1u);
   EXPECT_NEAR(study.any.length, 2.0 * pi * c, 1e-15);
   EXPECT_NEAR(study.any.diameter, 2.0 * c, 1e-18);
@@ -155,7 +155,7 @@ double two_caps(double a, double g) {
 TEST(RestInSocket, TwoForcesAtBeta) {
   const double mu = 0.5, phi = std::atan(mu);
   for (const double beta : {0.01, 0.3, 0.9}) {
-    const Study study =
+    const RestStudy study =
         rest_in_socket(c, {{0, 0, 2}, {3 * std::sin(beta), 0, 3 * std::cos(beta)}}, mu);
     const double common = two_caps(phi, beta) * c * c;
     const double cap = study.each[0].area;
@@ -167,12 +167,12 @@ TEST(RestInSocket, TwoForcesAtBeta) {
     EXPECT_NEAR(study.any.diameter, 2.0 * c * std::sin(0.5 * beta + phi), 1e-17);
     EXPECT_EQ(study.any.parts.size(), 1u);
   }
-  const Study apart = rest_in_socket(c, {{0, 0, 1}, {1, 0, 0}}, mu);
+  const RestStudy apart = rest_in_socket(c, {{0, 0, 1}, {1, 0, 0}}, mu);
   EXPECT_TRUE(apart.all.parts.empty());
   EXPECT_EQ(apart.any.parts.size(), 2u);
   EXPECT_NEAR(apart.any.area, 2.0 * apart.each[0].area, 1e-20);
   // Each is a cap of its own, however far it is from the other.
-  for (const Part& part : apart.any.parts) {
+  for (const RestComponent& part : apart.any.parts) {
     EXPECT_NEAR(part.angle, 2.0 * phi, 1e-15);
     EXPECT_NEAR(part.diameter, 2.0 * c * std::sin(phi), 1e-18);
   }
@@ -186,7 +186,7 @@ TEST(RestInSocket, ManyForcesAgainstCounting) {
   for (int i = 0; i < 10; ++i)
     ring.push_back({std::cos(0.2 * pi * i), std::sin(0.2 * pi * i), 0.9});
   for (const auto& forces : {ring, near}) {
-    const Study study = rest_in_socket(1.0, forces, 0.4);
+    const RestStudy study = rest_in_socket(1.0, forces, 0.4);
     int any = 0, all = 0;
     const int n = 400000;
     for (int i = 0; i < n; ++i) {
@@ -294,7 +294,7 @@ TEST(RestInBore, Shoulder) {
 
 TEST(RestInBore, TwoForces) {
   const double mu = 0.3, phi = std::atan(mu), b = 2e-4, beta = 0.2;
-  const Study study =
+  const RestStudy study =
       rest_in_bore(c, b, {{1.0, 0.0, 0.0}, {std::cos(beta), std::sin(beta), 0.0}}, mu);
   EXPECT_NEAR(study.all.area, 2.0 * b * c * (2.0 * phi - beta), 1e-20);
   EXPECT_NEAR(study.any.area, 2.0 * b * c * (2.0 * phi + beta), 1e-20);

@@ -147,7 +147,7 @@ TEST(RestOnMesh, TwoForces) {
   const Mesh mesh = clearance_sphere(c, 5);
   for (const double beta : {0.3, 0.8, 1.2}) {
     const std::vector<Vector3d> forces = {{0, 0.1, 1}, {std::sin(beta), 0.1, std::cos(beta)}};
-    const Study exact = rest_in_socket(c, forces, 0.5);
+    const RestStudy exact = rest_in_socket(c, forces, 0.5);
     const SurfaceStudy found = rest_on_mesh(mesh, forces, 0.5);
     EXPECT_NEAR(found.study.any.area, exact.any.area, 3e-3 * exact.any.area);
     EXPECT_NEAR(found.study.all.area, exact.all.area, 3e-3 * exact.any.area);
@@ -197,7 +197,8 @@ TEST(RestOnMesh, FlatFaces) {
   const Mesh closed = welded(box_of_soup(), 1e-9);
   EXPECT_EQ(closed.vertices.size(), 8u);
   EXPECT_EQ(closed.triangles.size(), 12u);
-  const Study two = rest_on_mesh(box_of_soup(), {Vector3d(0, 0, 1), Vector3d(0, 0, -1)}, 0.2).study;
+  const RestStudy two =
+      rest_on_mesh(box_of_soup(), {Vector3d(0, 0, 1), Vector3d(0, 0, -1)}, 0.2).study;
   EXPECT_EQ(two.any.parts.size(), 2u);
   EXPECT_TRUE(two.all.parts.empty());
   EXPECT_NEAR(two.any.diameter, std::sqrt(12.0) * c, 1e-18);

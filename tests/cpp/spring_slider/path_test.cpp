@@ -196,7 +196,7 @@ TEST(SpringSliderPath, WithoutFrictionNothingRemains) {
       const Path path = solve(model, program);
       EXPECT_EQ(path.state_jump(), 0.0);
       for (const Segment& segment : path.segments) {
-        EXPECT_NE(segment.motion, Motion::stick);  // no sliver of stick from rounding
+        EXPECT_NE(segment.motion, BlockMotion::stick);  // no sliver of stick from rounding
         EXPECT_EQ(segment.friction_dissipation, 0.0);
       }
     }
@@ -239,8 +239,8 @@ TEST(SpringSliderPath, DirectionsAreThoseOfSlideAndStop) {
   for (const Segment& segment : solve(table1(), cycle(thermal::Shape::sine, 2)).segments) {
     const double moved = segment.end_displacement - segment.start_displacement;
     int expected = 0;
-    if (segment.motion == Motion::slide) expected = moved > 0.0 ? 1 : -1;
-    if (segment.motion == Motion::stop) expected = segment.start_displacement > 0.0 ? 1 : -1;
+    if (segment.motion == BlockMotion::slide) expected = moved > 0.0 ? 1 : -1;
+    if (segment.motion == BlockMotion::stop) expected = segment.start_displacement > 0.0 ? 1 : -1;
     EXPECT_EQ(segment.direction, expected) << to_string(segment.stage);
   }
 }
@@ -459,7 +459,7 @@ TEST(SpringSliderPath, PlayOpensAtEveryReversal) {
                        {EventKind::slip, Stage::S4, Stage::S5, root(c - w, -1)},
                        {EventKind::cycle_end, Stage::S5, Stage::S5, 0.0}});
   EXPECT_NEAR(path.state_jump(), f * l0 / EA, close(f * l0 / EA));
-  EXPECT_EQ(path.segments.front().motion, Motion::play);
+  EXPECT_EQ(path.segments.front().motion, BlockMotion::play);
 }
 
 TEST(SpringSliderPath, PlayWiderThanTheClearanceLeavesTheStopsFree) {

@@ -19,7 +19,7 @@ struct Seen {
   long began = 0, ended = 0, slipped = 0, stuck = 0;
 };
 
-Seen make_one_by_one(Scene& scene, long steps, const Scene::Make& make) {
+Seen make_one_by_one(Scene& scene, long steps, const Scene::CreatePhysics& make) {
   Seen seen;
   for (long i = 0; i < steps; ++i) {
     std::vector<bool> before;
@@ -36,7 +36,7 @@ Seen make_one_by_one(Scene& scene, long steps, const Scene::Make& make) {
 }
 
 /// Both ways, and with the instructions of both sorts of processors.
-Seen expect_same_bits(Scene scene, long steps, const Scene::Make& make = scenes::maker()) {
+Seen expect_same_bits(Scene scene, long steps, const Scene::CreatePhysics& make = scenes::maker()) {
   scene.prepare();
   Scene one_by_one = scene;
   const Seen seen = make_one_by_one(one_by_one, steps, make);
@@ -71,7 +71,7 @@ Scene rattling(Joint joint, std::size_t joints) {
   return scene;
 }
 
-Scene::Make damped() {
+Scene::CreatePhysics damped() {
   return [](std::size_t place) {
     ContactPhysics made = scenes::physics(scenes::mass);
     // Some without damping, some without friction.
@@ -123,7 +123,7 @@ TEST(Batches, DampedMotionUnderGravityKeepsItsBits) {
       Body& each = scene.bodies[i];
       each.damped = i % 4 != 1;
       if (i % 6 == 2) {  // a bearing that moves, and one that is driven
-        each.blocked = i % 12 == 2 ? scenes::planar : everything;
+        each.blocked = i % 12 == 2 ? scenes::planar : all_dofs;
         each.motion.velocity = Vector3(0.01, 0, -0.0);
       }
     }

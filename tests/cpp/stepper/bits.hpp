@@ -49,7 +49,7 @@ inline std::vector<double> of(const Scene& scene) {
   for (const Stage& stage : scene.stages) {
     const auto* links = std::get_if<Links>(&stage);
     if (!links) continue;
-    for (const LinkPlace& place : links->places) {
+    for (const LinkEntry& place : links->links) {
       numbers.add(place.link.axialForce, place.link.previousExtension, place.link.tipDirection);
     }
   }

@@ -30,7 +30,7 @@ inline ContactPhysics physics(double effective_mass) {
   return made;
 }
 
-inline Scene::Make maker(double effective_mass = mass) {
+inline Scene::CreatePhysics maker(double effective_mass = mass) {
   return [=](std::size_t) { return std::optional<ContactPhysics>(physics(effective_mass)); };
 }
 
@@ -45,7 +45,7 @@ inline int add_body(Scene& scene, const Vector3& place, unsigned blocked, double
   body.motion.position = place;
   body.blocked = blocked;
   body.mass = its_mass;
-  body.inverse_mass = blocked == everything ? 0 : 1 / its_mass;
+  body.inverse_mass = blocked == all_dofs ? 0 : 1 / its_mass;
   body.inertia = Vector3::Constant(0.4 * its_mass * radius * radius);
   scene.bodies.push_back(body);
   return static_cast<int>(scene.bodies.size()) - 1;
@@ -80,7 +80,7 @@ inline Scene crowd(std::size_t joints, double spread = 0, double offset = presse
     const double angle = spread * static_cast<double>(i);
     const Vector3 side(std::cos(angle), std::sin(angle), 0), across(-side[1], side[0], 0);
     const Vector3 place(0.03 * static_cast<double>(i), 0, 0);
-    const int bearing = add_body(scene, place, everything);
+    const int bearing = add_body(scene, place, all_dofs);
     const int journal = add_body(scene, place + offset * side, planar);
     scene.bodies.back().permanent_force = load * (side + inclination * across);
     Contact contact{};
@@ -91,7 +91,7 @@ inline Scene crowd(std::size_t joints, double spread = 0, double offset = presse
     contact.strain_1 = 0;
     contact.strain_2 = 1;
     contact.joint = Joint::revolute;
-    contact.turns = true;
+    contact.rotates = true;
     contact.made = -1;
     contact.axis = Vector3::Zero();
     scene.contacts.push_back(contact);
@@ -107,13 +107,13 @@ inline Scene held_crowd(std::size_t joints, double offset = pressed()) {
     const Vector3 journal = scene.bodies[static_cast<std::size_t>(contact.body_1)].motion.position;
     const Vector3 bearing = scene.bodies[static_cast<std::size_t>(contact.body_2)].motion.position;
     Link link;
-    link.id1 = add_body(scene, bearing - 0.5 * (journal - bearing).normalized(), everything);
+    link.id1 = add_body(scene, bearing - 0.5 * (journal - bearing).normalized(), all_dofs);
     link.id2 = contact.body_1;
     link.youngModulus = young;
     link.crossSectionArea = 9e-8;
     link.stressFreeLength = 0.5;
     link.thermalExpansion = expansion_journal;
-    links.places.push_back({link, 0});
+    links.links.push_back({link, 0});
   }
   scene.stages = {links};
   return scene;
@@ -130,7 +130,7 @@ inline Scene chain(std::size_t joints) {
   Links links;
   for (std::size_t i = 0; i < joints; ++i) {
     const Vector3 place(length * static_cast<double>(i), 0, 0);
-    const int floor = add_body(scene, place, everything);
+    const int floor = add_body(scene, place, all_dofs);
     const int block = add_body(scene, place - Vector3(0, sunk, 0), planar);
     scene.bodies.back().permanent_force = Vector3(0, -load, 0);
     Contact contact{};
@@ -150,7 +150,7 @@ inline Scene chain(std::size_t joints) {
     link.stressFreeLength = length;
     link.thermalExpansion = expansion_journal;
     link.dampingRatio = 0.1;
-    links.places.push_back({link, 0});
+    links.links.push_back({link, 0});
   }
   scene.stages = {links};
   return scene;
@@ -180,7 +180,7 @@ inline Scene rib() {
   links.needs_moments = true;
   int ends[2];
   for (std::size_t i = 0; i < 2; ++i) {
-    const int pin = add_body(scene, pins[i], everything);
+    const int pin = add_body(scene, pins[i], all_dofs);
     ends[i] = add_body(scene, tips[i], planar, masses[i]);
     Link link;
     link.id1 = pin;
@@ -192,7 +192,7 @@ inline Scene rib() {
     link.dampingRatio = 0.1;
     link.pinDamping = 0.01;
     link.tipTurnsWithLink = true;
-    links.places.push_back({link, 0});
+    links.links.push_back({link, 0});
   }
   scene.stages = {links};
   scene.bodies[static_cast<std::size_t>(ends[1])].permanent_force = Vector3(load, 0, 0);
@@ -204,7 +204,7 @@ inline Scene rib() {
   contact.strain_2 = 1;
   contact.joint = Joint::revolute;
   contact.made = -1;
-  contact.turns = true;
+  contact.rotates = true;
   scene.contacts = {contact};
   return scene;
 }

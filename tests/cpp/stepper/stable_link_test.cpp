@@ -11,7 +11,7 @@
 namespace statejump::stepper {
 namespace {
 
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Link, TheQuestionWithoutRootsDecidesAsTheStableStep) {
   std::mt19937 random(7);
@@ -23,15 +23,15 @@ TEST(Link, TheQuestionWithoutRootsDecidesAsTheStableStep) {
     step.damping = i % 3 == 0 ? 0 : any();
     step.damping_across = i % 5 == 0 ? 0 : any();
     const double inverse_mass = any(), stable = stable_step(step, inverse_mass);
-    for (const double share :
+    for (const double fraction :
          {1e-3, 1 - 1e-5, 1 - 1e-7, 1 - 3e-16, 1.0, 1 + 3e-16, 1 + 1e-7, 2.0}) {
-      const double time_step = std::isfinite(stable) ? share * stable : share;
+      const double time_step = std::isfinite(stable) ? fraction * stable : fraction;
       ASSERT_EQ(is_stable(step, inverse_mass, time_step), time_step <= stable)
-          << step.stiffness << ' ' << step.damping << ' ' << step.damping_across << ' ' << share;
+          << step.stiffness << ' ' << step.damping << ' ' << step.damping_across << ' ' << fraction;
     }
   }
   LinkStep step{};
-  step.stiffness = no_number;
+  step.stiffness = nan;
   EXPECT_FALSE(is_stable(step, 1, 1e-6));
 }
 

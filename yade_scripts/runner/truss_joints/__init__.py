@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Joints of a truss in YADE: one file per type that the DEM has, asked by ``scene_truss``.
+"""Joints of a truss in YADE: one file per type of the DEM, used by ``scene_truss``.
 
-``statejump.kinds.truss.joints`` has the types of all models and refuses what the DEM does not have.
+``statejump.kinds.truss.joints`` has the types of all models and rejects those that the DEM does not have.
 """
 from truss_joints.ball_joint import BallJoints
 from truss_joints.latch_hinge import LatchHinges
@@ -9,5 +9,5 @@ from truss_joints.parts import Joints
 from truss_joints.revolute import Revolutes
 from truss_joints.slider import Sliders
 
-# In the order in which statejump.kinds.truss.joints lists them: that of the contacts of a result.
+# In the order of statejump.kinds.truss.joints, which is that of the contacts of a result.
 JOINTS: tuple[type[Joints], ...] = (Sliders, Revolutes, LatchHinges, BallJoints)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What joints of a truss in YADE share: their interface, rows of a section, material of bodies."""
+"""Shared by the joints of a truss in YADE: interface, rows of a section, material of bodies."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
@@ -34,7 +34,7 @@ def material(part: Row, expansion: float = 0.0) -> sj.ThermalFrictMat:
 
 
 def give(body: wrapper.Body, shape, made, group: int) -> None:
-    """Give a body shape and material; it meets the bodies of its group only."""
+    """Set shape and material of a body; it interacts only with the bodies of its group."""
     body.shape, body.material, body.bound = shape, made, wrapper.Aabb()
     body.mask = 1 << group
 
@@ -46,7 +46,7 @@ class Joints:
     """
 
     section: str  # of the case
-    columns: tuple[tuple[str, bool], ...]  # of every joint; whether it is a vector
+    columns: tuple[tuple[str, bool], ...]  # of every joint: key and whether it is a vector
 
     def __init__(self, case: dict[str, Any]) -> None:
         self.rows = rows(case[self.section])
@@ -57,8 +57,8 @@ class Joints:
                 expand: Callable[[int, Row], None]) -> None:
         """Give the bodies of nodes their contact parts.
 
-        :param turn: takes a link and a node whose body turns with it
-        :param expand: takes a node whose part expands, and the joint that has its temperature
+        :param turn: receives a link and a node whose body rotates with it
+        :param expand: receives a node whose part expands, and the joint with its temperature
         """
         raise NotImplementedError
 
@@ -67,7 +67,7 @@ class Joints:
         raise NotImplementedError
 
     def radii(self) -> list[float]:
-        """Return the radii of what is looked for contacts of."""
+        """Return the radii of the bodies for contact detection."""
         raise NotImplementedError
 
     def torsion_springs(self) -> list[sj.TorsionSpring]:
@@ -92,9 +92,9 @@ class Joints:
         yield from ()
 
     def faces(self) -> dict[int, tuple[str, str]]:
-        """Return joint and words of bodies of its own."""
+        """Return joint and texts of bodies of its own."""
         return {}
 
     def name(self, found: Names) -> None:
-        """Tell what the case calls its contacts."""
+        """Add the case's names of its contacts."""
         raise NotImplementedError

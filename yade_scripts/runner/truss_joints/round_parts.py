@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Joints with clearance of a truss in YADE: a round part at one node plays in another's bore."""
+"""Joints with clearance of a truss in YADE: a round part at one node in the bore of another."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
@@ -30,7 +30,7 @@ class RoundParts(Joints):
                     turn(joint[f"{part}_link"], node)
 
     def orient(self, body: wrapper.Body, joint: Row) -> None:
-        """Turn a part to the joint's axis, if it has one."""
+        """Rotate a part to the joint's axis, if it has one."""
 
     def bodies_of(self, joint: Row) -> tuple[int, int]:
         """Return the part that plays and what it plays in."""

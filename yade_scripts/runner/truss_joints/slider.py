@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sliders of a truss in YADE: on ground a pad at a node, its floor and its stops, which do not move; between two nodes,
-with soft stops or with a play a prismatic joint of the plugin, on ground against a body that does not move.
+"""Sliders of a truss in YADE. On ground, a slider is a pad at a node with a fixed floor and fixed stops. Between two
+nodes, with soft stops or with play it is a prismatic joint of the plugin, on ground against a fixed body.
 
-A pad is held at the depth at which its floor carries the normal force.
+A pad is constrained at the depth at which its floor carries the normal force.
 """
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Sliders(Joints):
         self._slips_in_part: bool = case["dem"]["friction_law"] == "mindlin_deresiewicz"
         self._slots: list[list[wrapper.Body]] = []  # none of prismatic joints
         self._numbers: list[list[int]] = []  # of floor and stops
-        self._between: dict[int, sj.PrismaticJoint] = {}  # by place
+        self._between: dict[int, sj.PrismaticJoint] = {}  # by index
 
     def furnish(self, bodies: list[wrapper.Body], turn: Callable[[int, int], None],
                 expand: Callable[[int, Row], None]) -> None:
@@ -94,7 +94,7 @@ class Sliders(Joints):
         }
 
     def _give_m(self, slider: Row) -> float:
-        """Return how far a pad's contact gives under the friction of the start, along the axis [m]."""
+        """Return the displacement of a pad's contact by the friction of the start, along the axis [m]."""
         friction, limit, sticks = (
             slider[key] for key in ("start_friction_N", "friction_limit_N", "friction_stiffness_N_per_m"))
         if not self._slips_in_part:
@@ -116,7 +116,7 @@ class Sliders(Joints):
         slide[:, between], force[:, between] = joints["slide"], joints["frictionForce"] + joints["stopForce"]
         limits = np.array([joint.frictionLimit for joint in self._between.values()])
         slips = np.abs(joints["frictionForce"]) >= limits
-        # Of soft stops friction says what the slider does, as in the reduced model.
+        # With soft stops the friction force gives the status, as in the reduced model.
         rigid = np.array([self.rows[place]["own_stop_stiffness_N_per_m"] is None for place in between], dtype=bool)
         state[:, between] = np.where((joints["stopForce"] != 0) & rigid, AT_STOP, np.where(slips, SLIP, STICK))
 
@@ -126,7 +126,7 @@ class Sliders(Joints):
         positions = states.bodies([self._pad(place) for place in ground])["position"]
         slide[:, ground] = dot(positions - origins[ground], axes[ground])
         floors = self._contacts(states, ground, 0)
-        # Forces of a contact act on the face: along the axis they are against the slider's.
+        # Forces of a contact act on the face; along the axis they are opposite to the slider's.
         force[:, ground] = dot(floors["shearForce"], axes[ground])
         state[:, ground] = np.where(floors["slipping"] > 0, SLIP, STICK)
         for stop in (1, 2):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Torsion springs of a truss in YADE, of sections of their own and of joints."""
+"""Torsion springs of a truss in YADE, from their own section and from joints."""
 from __future__ import annotations
 
 from math import atan2, cos, pi, sin
@@ -13,8 +13,8 @@ from yade.minieigenHP import Vector3
 
 def torsion_spring(row: Row, bias_rad: float, nodes: list[Row], links: list[Row], ids: list[int],
                    **more: Any) -> sj.TorsionSpring:
-    """Return a spring on its own pair of links, which point so that the angle is far from its jump
-    at half a turn; ground is a link between two points that do not move.
+    """Return a spring on its own pair of links. They point so that the angle is far from its jump
+    at half a rotation; ground is a link between two fixed points.
 
     :param row: links, stiffness and axis; the free angle is the drawn one and the bias
     """
@@ -35,7 +35,7 @@ def torsion_spring(row: Row, bias_rad: float, nodes: list[Row], links: list[Row]
     if abs(angle) > pi / 2:
         pair[1] = (pair[1][1], pair[1][0], -pair[1][2])
         angle = _angle(pair[0][2], pair[1][2], axis)
-    # These links carry no force: the engine of links does not know them.
+    # These links carry no force: the engine of links does not contain them.
     carried = [sj.ThermalLink(id1=root, id2=tip, stressFreeLength=1) for root, tip, _ in pair]
     free = angle + bias_rad
     return sj.TorsionSpring(

@@ -21,9 +21,9 @@ using Delassus = std::variant<Eigen::MatrixXd, Eigen::SparseMatrix<double>>;
 ///
 ///     K* ∋ û ⟂ r ∈ K,   K = {|r_t| <= mu r_n},   K* = {mu |û_t| <= û_n}.
 ///
-/// Units are the caller's: r may be forces, impulses or their rates, u velocities, displacements or
-/// gap rates, W what leads from the one to the other. W is the condensed compliance or inverse
-/// mass, symmetric positive semidefinite in mechanics and of any rank; symmetry is not used.
+/// Units are the caller's. r may be forces, impulses or their rates; u velocities, displacements or
+/// gap rates; W maps r to u. W is the condensed compliance or inverse mass. In mechanics it is
+/// symmetric positive semidefinite, of any rank; symmetry is not used.
 struct Problem {
   int dimension = 3;   ///< of a contact's block, 2 or 3
   Delassus delassus;   ///< W, square, rows and columns contacts * dimension
@@ -35,29 +35,29 @@ struct Problem {
 };
 
 /// Checks sizes and values.
-/// @throws kernel::OutOfRange for a dimension but 2 and 3, sizes that do not fit, values that are
-/// not finite, mu < 0
+/// @throws kernel::OutOfRange for a dimension other than 2 and 3, inconsistent sizes, values that
+///        are not finite, mu < 0
 void validate(const Problem& problem);
 
 /// u = W r + q. @throws kernel::OutOfRange if `reactions` has another size than q
 Eigen::VectorXd velocities(const Problem& problem, const Eigen::VectorXd& reactions);
 
-/// How far reactions are from a solution; 0 for an exact one.
+/// Error of reactions as a solution; 0 for an exact one.
 struct Merit {
   /// |r - P_K(r - û)| / max(|q|, |r|, |u|), Euclidean norms over all contacts, u = W r + q: the
-  /// natural map in the problem's own units, as fc3d_compute_error() of Siconos 4.4 takes it.
+  /// natural map in the problem's own units, as in fc3d_compute_error() of Siconos 4.4.
   double natural_map = 0.0;
-  /// |r - P_K(r - û)| / |q| after W was divided by its mean diagonal and r multiplied by it:
-  /// independent of the units, whose choice can make the first one blind to u or to r, and not made
-  /// small by reactions that grow beyond bounds where there is no solution.
+  /// |r - P_K(r - û)| / |q| after W is divided by its mean diagonal and r multiplied by it. This
+  /// value is independent of the units, whose choice can make the natural map insensitive to u or
+  /// r. It does not become small if there is no solution and reactions grow without bound.
   double scaled = 0.0;
 
-  /// What a tolerance is compared with.
+  /// The value that is compared with the tolerance.
   double largest() const { return natural_map > scaled ? natural_map : scaled; }
 };
 
 /// Merit of reactions. @throws kernel::OutOfRange as validate(), and if `reactions` has another
-/// size
+/// size than q
 Merit merit(const Problem& problem, const Eigen::VectorXd& reactions);
 
 }  // namespace statejump::complementarity

@@ -9,13 +9,13 @@
 
 namespace statejump::joint_loop {
 
-/// How the contact yields to a tangential force below Coulomb's limit.
+/// Tangential compliance of the contact below Coulomb's limit.
 ///
-/// `rigid`: not at all; the joint rolls without slide, the force is whatever equilibrium asks for.
-/// `mindlin`: a spring k_t = 8 G* sqrt(R δ) that follows the normal load: on loading the force
-/// stays, on unloading the elastic slide stays and the force falls with k_t. This is the spring of
-/// the dynamics and of the DEM law in the limit of small increments. If the model's friction law is
-/// `mindlin_deresiewicz`, that law in its place: the contact slips at its rim.
+/// `rigid`: none; the joint rolls without slide, and equilibrium determines the force.
+/// `mindlin`: a spring k_t = 8 G* sqrt(R δ) that follows the normal load. On loading the force
+/// stays; on unloading the elastic slide stays and the force decreases with k_t. This is the spring
+/// of the dynamics and of the DEM law in the limit of small increments. If the model's friction law
+/// is `mindlin_deresiewicz`, that law is used instead: slip starts at the rim.
 enum class TangentialCompliance : unsigned char { rigid, mindlin };
 
 struct ElasticLoopOptions {
@@ -39,17 +39,17 @@ struct ElasticJointPoint {
   bool slipping() const { return motion == JointMotion::slip; }
 };
 
-/// Quasi-static path: events (first, last, changes of motion, corners of the program) and, between
-/// them, samples.
+/// Quasi-static path: events (first, last, changes of motion, corners of the program) and samples
+/// between them.
 struct ElasticLoop {
   std::vector<ElasticJointPoint> points;
   std::vector<ElasticJointPoint> events;
-  /// True if the contact force vanished. The path ends there: the position within the play is not
-  /// determined by statics.
+  /// True if the contact force vanished. The path ends there, because statics does not determine
+  /// the position within the play.
   bool separated = false;
   double largest_force_residual = 0.0;    ///< of all points, over the joint force there [-]
   double largest_closure_residual = 0.0;  ///< of all points, closure and friction's slide [m]
-  int most_iterations = 0;                ///< of one Newton solve that converged
+  int most_iterations = 0;                ///< of one converged Newton solve
   double theta2_jump() const { return points.back().theta2 - points.front().theta2; }  ///< [rad]
   double theta4_jump() const { return points.back().theta4 - points.front().theta4; }  ///< [rad]
   Eigen::Vector2d bearing_jump() const {                                               ///< [m]
@@ -60,8 +60,8 @@ struct ElasticLoop {
   }
 };
 
-/// Equilibrium at ΔT = 0 with the contact at φ from the joint force's axis, at rest: both motions
-/// of the model can start here. The contact history holds F_t along (−n_y, n_x) and the k_t of
+/// Equilibrium at ΔT = 0 with the contact at φ from the joint force's axis, at rest; a start for
+/// both motions of the model. The contact history holds F_t along (−n_y, n_x) and the k_t of
 /// TangentialCompliance::mindlin.
 /// @param contact_angle φ [rad], |φ| <= atan μ; tan φ = F_t/F_N
 /// Throws as elastic_loop() does.
@@ -71,40 +71,40 @@ linkage::State loaded_state(const linkage::Linkage& model, double contact_angle 
 /// friction, from loaded_state(). rigid_loop() is its limit for E → ∞.
 ///
 /// Unknowns are the two tips, as angle θ and elongation e = L − l_T of each link, the contact's
-/// depth δ and normal n = (cos ψ, sin ψ), and F_t. With u the direction of a link, u' = du/dθ,
-/// F = F_N n − F_t n' the force on the bearing, F_N = 4/3 E* sqrt(R) δ^1.5, M the spring's moment
-/// and the one contact point half-way between the two surfaces, hence arms r1 = R1 − δ/2 and
-/// r2 = R2 + δ/2:
+/// depth δ and normal n = (cos ψ, sin ψ), and F_t. Let u be the direction of a link, u' = du/dθ, F
+/// = F_N n − F_t n' the force on the bearing, F_N = 4/3 E* sqrt(R) δ^1.5, and M the spring's
+/// moment. The one contact point is half-way between the two surfaces, so the arms are r1 = R1 −
+/// δ/2 and r2 = R2 + δ/2:
 ///
 ///     F·u2 = k_T1 e1,      (M − r2 F_t)/L1 + F·u2' = 0          tip of AB
 ///     F·u4 = −k_T2 e2,     (r1 F_t − M)/L2 − F·u4' = 0          tip of BC
 ///     AC + L2 u4 − L1 u2 = (R2 − R1 + δ) n                      closure
 ///
-/// and one line for friction: F_t = ±μ F_N in slip, else the slide of the step
-/// ∫ (R2 − R1 + δ) dψ + r1 dθ4 − r2 dθ2 is that of the spring, or 0. Its integrand is taken at the
-/// mean of the step's ends, so one increment is of third order and the path of second order; in
-/// slip the state depends on ΔT alone. Elongation and depth as unknowns keep the forces free of the
-/// rounding of positions, E A times 1e-16.
+/// and one line for friction. In slip it is F_t = ±μ F_N. Else the slide of the step ∫ (R2 − R1 +
+/// δ) dψ + r1 dθ4 − r2 dθ2 equals that of the spring, or 0. Its integrand is evaluated at the mean
+/// of the step's ends, so one increment is of third order and the path of second order. In slip the
+/// state depends only on ΔT. Elongation and depth as unknowns avoid the rounding of positions times
+/// E A, 1e-16.
 ///
-/// Newton's method with the analytic Jacobian, converged when force rows are below 1e-12 of the
-/// joint force (plus the rounding of K_M θ/L) and rows in metres below 4 ε (a + l1 + l2); one
-/// further step polishes. A step that does not converge is halved.
+/// Newton's method uses the analytic Jacobian. It has converged when force rows are below 1e-12 of
+/// the joint force (plus the rounding of K_M θ/L) and rows in metres below 4 ε (a + l1 + l2). One
+/// further iteration removes rounding. A step without convergence is halved.
 ///
 /// Partial slip is one step of kernel::partial_slip_step() per increment, from a contact loaded at
-/// a constant ratio of forces, with differences for its derivatives. Stick and slip are then what
-/// the law answers at the end of an increment; events are samples. The path stays of second order.
+/// a constant ratio of forces, with difference quotients as derivatives. The law then decides stick
+/// and slip at the end of an increment; events are samples. The path is of second order.
 ///
-/// Else slip starts where |F_t| reaches μ F_N and ends where its rate, from the derivative of the
-/// equations by ΔT, turns round; both are roots within a step. μ = 0 slips throughout. The path
-/// ends with the contact force, at the last point where F_N exceeds 4e-13 K_M/l: below, the force's
-/// direction drowns in rounding.
-///
-/// Of other friction laws only μ counts; damping and masses do not matter. Radii may expand.
+/// Else slip starts when |F_t| reaches μ F_N. It ends when the slip rate, from the derivative of
+/// the equations by ΔT, changes sign. Both are roots within a step. With μ = 0 the contact always
+/// slips. The path ends with the contact force, at the last point where F_N exceeds 4e-13 K_M/l:
+/// for smaller forces rounding determines the direction.
+/// Of other friction laws only μ is used; damping and masses have no influence. Radii may expand.
 /// Limits: those of linkage::Linkage and of Hertz's contact. Throws std::invalid_argument for a
-/// model, program or option out of range, for a normal law other than Hertz's or a tangential
-/// velocity other than `material`, a spring that is absent or unloaded at the start (the position
-/// is then undetermined), radii without clearance somewhere in the program and |contact_angle| >
-/// atan μ; std::runtime_error with temperature and residual if equilibrium is not found.
+/// model, program or option out of range, a normal law other than Hertz's, a tangential velocity
+/// other than `material`, radii without clearance somewhere in the program, and |contact_angle| >
+/// atan μ. Also for a spring that is absent or unloaded at the start, because the position is then
+/// undetermined. Throws std::runtime_error with temperature and residual if equilibrium is not
+/// found.
 ElasticLoop elastic_loop(const linkage::Linkage& model, const thermal::Program& program,
                          const ElasticLoopOptions& options = {}, double contact_angle = 0.0);
 

@@ -8,7 +8,7 @@
 
 namespace statejump::joint_loop {
 
-/// What the loaded joint does.
+/// Motion of the loaded joint.
 enum class JointMotion : unsigned char { roll, slip, separated };
 
 /// "roll", "slip", "separated".
@@ -27,13 +27,13 @@ struct JointPoint {
   JointMotion motion;              ///< from this point on
 };
 
-/// Quasi-static path of the clearance joint: events (first, last and changes of motion, corners of
-/// the program) and, between them, samples.
+/// Quasi-static path of the clearance joint: events (first and last, changes of motion, corners of
+/// the program) and samples between them.
 struct RigidLoop {
   std::vector<JointPoint> points;
   std::vector<JointPoint> events;
-  /// True if the contact force vanished. The path ends there: the position within the play is not
-  /// determined by statics.
+  /// True if the contact force vanished. The path ends there, because statics does not determine
+  /// the position within the play.
   bool separated = false;
   double theta2_jump() const { return points.back().theta2 - points.front().theta2; }  ///< [rad]
   double theta4_jump() const { return points.back().theta4 - points.front().theta4; }  ///< [rad]
@@ -45,40 +45,39 @@ struct RigidLoop {
   }
 };
 
-/// Equilibrium with the contact at φ; motion is left at `roll`.
+/// Equilibrium with the contact at φ; motion is set to `roll`.
 ///
 /// Rigid links of length l_T, |d| = c. The spring's couples +M on AB and −M on BC, M = K_M (α −
-/// α0), are balanced by the force (f, 0) on the bearing: moments about A and about C differ by AC ×
-/// F = 0, so F is parallel to AC, with the sense σ of M. With the contact normal n = σ (cos φ, sin
+/// α0), are balanced by the force (f, 0) on the bearing. Moments about A and about C differ by AC ×
+/// F = 0, so F is parallel to AC, with the sign σ of M. With the contact normal n = σ (cos φ, sin
 /// φ) the tangential part is tan φ times the normal one. Then
 ///
 ///     w = l1 u2 − l2 u4 = AC − d = (a − σ c cos φ, −σ c sin φ),
 ///
 /// and |w| gives the flare angle by the law of cosines, the direction of w the orientation. The
-/// force vanishes at α = α0, for equal expansion and α0 of the ideal position at
-/// hypot(a + c cos φ, c sin φ) = a (1 + α ΔT), σ = −1.
-/// @param side σ, +1 or −1; not checked, like everything here
+/// force vanishes at α = α0. For equal expansion and α0 of the ideal position this is at hypot(a +
+/// c cos φ, c sin φ) = a (1 + α ΔT), σ = −1.
+/// @param side σ, +1 or −1; arguments are not checked
 JointPoint joint_point(const linkage::Linkage& model, double temperature_change, int side,
                        double contact_angle);
 
-/// Side σ on which the torsion spring loads the joint at ΔT = 0 with the contact at φ.
-/// Throws std::invalid_argument for a spring that is absent or does not load the joint there (the
-/// position is then undetermined) and for |contact_angle| > atan μ.
+/// Side σ on which the torsion spring loads the joint at ΔT = 0 with the contact at φ. Throws
+/// std::invalid_argument for |contact_angle| > atan μ, and for a spring that is absent or does not
+/// load the joint there, because the position is then undetermined.
 int loaded_side(const linkage::Linkage& model, double contact_angle);
 
-/// s = c φ + R1 θ4 − R2 θ2 [m], constant while the joint rolls: the arcs R1 (ψ − θ4) on the journal
-/// and R2 (ψ − θ2) on the bearing grow alike (ψ is the angle of n in the frame).
+/// s = c φ + R1 θ4 − R2 θ2 [m], constant while the joint rolls. The arcs R1 (ψ − θ4) on the journal
+/// and R2 (ψ − θ2) on the bearing grow equally (ψ is the angle of n in the frame).
 double rolling_arc(const linkage::Linkage& model, const JointPoint& point);
 
 /// Path through the program from equilibrium at φ = `contact_angle`, ΔT = 0. Friction is Coulomb's,
-/// exact: roll while |φ| < atan μ, slip at |φ| = atan μ as long as rolling would leave that range.
-/// Of the friction law only μ counts; μ = 0 slips at φ = 0 throughout and leaves no jump.
-/// Slip and separation are roots in ΔT, found by bisection to rounding; the corners of the program
-/// are exact. `samples` points per monotone branch (>= 1) fill the path; events are sought between
-/// neighbouring ones.
-/// Throws std::invalid_argument for a model or program out of range, for a spring that is absent or
-/// unloaded at the start (the position is then undetermined), for expanding radii, and for
-/// |contact_angle| > atan μ.
+/// exactly: roll while |φ| < atan μ, slip at |φ| = atan μ while rolling would leave that range. Of
+/// the friction law only μ is used; μ = 0 slips at φ = 0 throughout and leaves no jump. Bisection
+/// finds slip and separation in ΔT to rounding; the corners of the program are exact. `samples`
+/// points per monotone branch (>= 1) fill the path; events are sought between neighbouring ones.
+/// Throws std::invalid_argument for a model or program out of range, for expanding radii and for
+/// |contact_angle| > atan μ. Also for a spring that is absent or unloaded at the start, because the
+/// position is then undetermined.
 RigidLoop rigid_loop(const linkage::Linkage& model, const thermal::Program& program,
                      double contact_angle = 0.0, int samples = 200);
 

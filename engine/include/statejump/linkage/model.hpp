@@ -24,21 +24,22 @@ struct ThermalLink {
 /// One rib of the umbrella antenna, deployed: the paper's section 4 (Figs 10 and 11).
 ///
 /// Links AB and BC are pinned to the frame at A = (0, 0) and C = (a, 0), ideal pins. At B the
-/// journal (radius R1) of BC plays in the bearing (radius R2) of AB: with d = r_journal − r_bearing
-/// (11), δ = |d| − (R2 − R1) (12), n = d/|d| (13), the normal force of the chosen law, as
-/// F_N = K δ^1.5 (6) to (8), pushes the bearing along +n. Coordinates are the two tip positions
-/// (Cartesian: no trigonometry), which with m/3 at each tip is the same ODE as (5) in the paper's
-/// six coordinates.
+/// journal (radius R1) of BC moves with play in the bearing (radius R2) of AB. With d = r_journal −
+/// r_bearing (11), δ = |d| − (R2 − R1) (12) and n = d/|d| (13), the normal force of the chosen law,
+/// for example F_N = K δ^1.5 (6) to (8), pushes the bearing along +n. The coordinates are the two
+/// Cartesian tip positions, without trigonometry. With m/3 at each tip this is the same ODE as (5)
+/// in the paper's six coordinates.
 ///
 /// Each link pulls its tip towards its pin with k_T (L − l_T) + c (L̇ − l̇_T), c = 2 ζ sqrt(k m/3)
-/// with k at ΔT = 0. A couple M on a link acts on its tip as M/L across the link: the pins'
-/// −c_p θ̇, the torsion spring's ±K_M (α − α0) (17) with the flare angle α = θ4 − θ2, and the moment
-/// (arm × F) of friction at the one contact point half-way between the two of eq. (14), with the
-/// velocity of the material there; with the tangential velocity law `paper` there is no such
-/// moment, see kernel::laws::PaperVelocity.
+/// with k at ΔT = 0. A couple M on a link acts on its tip as the transverse force M/L. The couples
+/// are the pins' −c_p θ̇, the torsion spring's ±K_M (α − α0) (17) with the flare angle α = θ4 − θ2,
+/// and the friction moment arm × F. Friction acts at the one contact point half-way between the two
+/// of eq. (14), with the velocity of the material there. With the tangential velocity law `paper`
+/// there is no such moment, see kernel::laws::PaperVelocity.
 ///
 /// Angles: θ2 of AB from A to B, θ4 of BC from C to B, anticlockwise from AC.
-/// Limits: planar, small strain, no bending; B above AC; those of the laws. A plain value:
+/// Limits: planar, small strain, no bending; B above AC; limits of the laws. A plain value; call
+/// validate() once.
 /// validate() once.
 struct Linkage {
   double frame_length = 0.0;               ///< a = |AC| [m], > 0; the frame does not expand
@@ -52,7 +53,7 @@ struct Linkage {
   double axial_damping_ratio = 0.0;        ///< ζ of both links [-], >= 0
   double pin_damping = 0.0;                ///< c_p at A and at C [N m s/rad], >= 0
   double torsion_stiffness = 0.0;          ///< K_M [N m/rad], >= 0
-  /// α0 [rad], in (0, π); NaN, the default, stands for the flare angle of the ideal position.
+  /// α0 [rad], in (0, π); NaN, the default, means the flare angle of the ideal position.
   double torsion_free_angle = std::numeric_limits<double>::quiet_NaN();
 
   /// Throws std::invalid_argument that names the first field out of range, its value and the range.
@@ -65,14 +66,14 @@ struct Linkage {
   double free_angle() const;
 };
 
-/// Positions and velocities of the two tips, and what friction remembers. World frame, A at zero.
+/// Positions and velocities of the two tips, and the friction history. World frame, A at zero.
 struct State {
   Eigen::Vector2d bearing_centre = Eigen::Vector2d::Zero();    ///< tip of AB [m]
   Eigen::Vector2d journal_centre = Eigen::Vector2d::Zero();    ///< tip of BC [m]
   Eigen::Vector2d bearing_velocity = Eigen::Vector2d::Zero();  ///< [m/s]
   Eigen::Vector2d journal_velocity = Eigen::Vector2d::Zero();  ///< [m/s]
-  /// Of a friction law that remembers. Its tangential_force is (force on the journal along
-  /// (−n_y, n_x), 0, 0) [N]: a planar force turns with the contact by itself.
+  /// Of a friction law with memory. Its tangential_force is (force on the journal along (−n_y,
+  /// n_x), 0, 0) [N]; as a planar force it rotates with the contact.
   kernel::ContactHistory contact;
   double impact_speed = 0.0;  ///< approach speed when the contact began [m/s]; 0: out of contact
 };
@@ -90,17 +91,17 @@ struct Coordinates {
 
 Coordinates coordinates(const Linkage& model, const State& state);
 
-/// How the links move at t = 0. `rest`: all velocities zero, as in the paper; the links then ring.
-/// `matched`: L̇ = l̇_T, no ringing.
+/// Initial motion of the links. `rest`: all velocities zero, as in the paper; the links then
+/// vibrate. `matched`: L̇ = l̇_T, no vibration.
 enum class Start : unsigned char { rest, matched };
 
 /// Unstrained links at ΔT = 0 with the journal at `eccentricity` d [m] from the bearing's centre;
 /// concentric by default. `temperature_rate` [K/s] is used by `matched`. Throws
-/// std::invalid_argument if the model is out of range or |d| above the clearance.
+/// std::invalid_argument if the model is out of range or |d| exceeds the clearance.
 State initial_state(const Linkage& model, Start start, double temperature_rate,
                     const Eigen::Vector2d& eccentricity = Eigen::Vector2d::Zero());
 
-/// What the joint does in one state.
+/// Contact state of the joint.
 struct Joint {
   double penetration_depth;  ///< δ [m]; negative: gap
   double approach_speed;     ///< δ̇ [m/s]
@@ -109,8 +110,8 @@ struct Joint {
   bool slipping;             ///< at Coulomb's limit; false for a law without memory
 };
 
-/// `temperature_rate` [K/s] matters for laws that see velocities, if the radii expand. Throws
-/// std::domain_error if the depth is outside the normal law's range.
+/// `temperature_rate` [K/s] matters only for laws that depend on velocities, if the radii expand.
+/// Throws std::domain_error if the depth is outside the normal law's range.
 Joint joint_state(const Linkage& model, const State& state, double temperature_change,
                   double temperature_rate);
 
@@ -126,11 +127,11 @@ struct Energy {
 
 Energy energy(const Linkage& model, const State& state, double temperature_change);
 
-/// ΔT_c = c/(α a) [K] of first contact on heating from the concentric position, when both links
-/// have the expansion α and nothing moves but their lengths: l_T1 u2 − l_T2 u4 = (1 + α ΔT) AC, so
-/// the centres part along AC by α ΔT a. With expanding radii the root of
-/// α ΔT a = R2 (1 + α2 ΔT) − R1 (1 + α1 ΔT). Infinity if there is none at ΔT > 0.
-/// Throws std::invalid_argument if the links expand differently.
+/// ΔT_c = c/(α a) [K] of first contact during heating from the concentric position. Both links have
+/// the expansion α and only their lengths change: l_T1 u2 − l_T2 u4 = (1 + α ΔT) AC, so the centres
+/// move apart along AC by α ΔT a. With expanding radii it is the root of α ΔT a = R2 (1 + α2 ΔT) −
+/// R1 (1 + α1 ΔT). Infinity if there is none at ΔT > 0. Throws std::invalid_argument if the links
+/// expand differently.
 double first_contact_temperature(const Linkage& model);
 
 }  // namespace statejump::linkage

@@ -14,25 +14,26 @@ namespace statejump::rest_set {
 struct Mesh {
   std::vector<Eigen::Vector3d> vertices;      ///< positions of the component's centre [m]
   std::vector<std::array<int, 3>> triangles;  ///< indices of vertices
-  /// N at the vertices: from II to I, to the free side; need not be unit vectors. Empty: the mean
-  /// of the triangles' right-hand normals, weighted by their angle at the vertex.
+  /// N at the vertices, from II to I towards the free side; any length. Empty: the mean of the
+  /// triangles' right-hand normals, weighted by their angle at the vertex.
   std::vector<Eigen::Vector3d> normals;
-  /// Optional: the smooth surface behind the mesh, nearest point to x and N there. Ends of edges'
-  /// rest intervals are then roots on that surface, and diameters are measured between its points.
+  /// Optional: the smooth surface approximated by the mesh, as nearest point to x and N there. Ends
+  /// of edges' rest intervals are then roots on that surface, and diameters are distances between
+  /// its points.
   std::function<Eigen::Vector3d(const Eigen::Vector3d&)> project;
   std::function<Eigen::Vector3d(const Eigen::Vector3d&)> normal;
 };
 
-/// A convex polygon of a triangle with the same answer everywhere.
+/// A convex polygon of a triangle with one set of allowed forces.
 struct Piece {
   std::vector<Eigen::Vector3d> polygon;  ///< in order, at least 3 [m]
-  int triangle = 0;                      ///< it is part of
-  int forces = 0;                        ///< number of forces that it allows rest under
+  int triangle = 0;                      ///< triangle that contains it
+  int forces = 0;                        ///< number of forces under which it allows rest
 };
 
 /// Rest sets and the surface cut into pieces.
 struct SurfaceStudy {
-  Study study;
+  RestStudy study;
   std::vector<Piece> pieces;        ///< together the whole mesh
   std::vector<double> cone_angles;  ///< smallest angle(−F, N) over the forces at each vertex [rad]
 };
@@ -40,12 +41,12 @@ struct SurfaceStudy {
 using SpaceFunction = std::function<double(const Eigen::Vector3d&)>;
 using SpaceGradient = std::function<Eigen::Vector3d(const Eigen::Vector3d&)>;
 
-/// Vertices that coincide are made one, triangles without area are dropped; for triangle soups.
-/// @param tolerance [m], >= 0: distance up to which they coincide
+/// Merges coincident vertices and drops triangles without area; for triangle soups.
+/// @param tolerance [m], >= 0: largest distance of coincident vertices
 Mesh welded(const Mesh& mesh, double tolerance);
 
-/// Γ(x, y, z) = 0 in a box, Γ < 0 where the centre is free, as a mesh: marching tetrahedra, roots
-/// on edges by bisection, normals −∇Γ. Triangles are flat: areas have an error of second order.
+/// Mesh of Γ(x, y, z) = 0 in a box, Γ < 0 where the centre is free. Marching tetrahedra, roots on
+/// edges by bisection, normals −∇Γ. Triangles are flat: areas have an error of second order.
 /// @param low,high corners of the box [m]  @param cells along its longest side, 2 to 400
 Mesh implicit_surface(const SpaceFunction& gamma, const SpaceGradient& gradient,
                       const Eigen::Vector3d& low, const Eigen::Vector3d& high, int cells = 40);
@@ -57,14 +58,14 @@ Mesh clearance_sphere(double clearance, int level);
 /// Rest sets on a mesh, N interpolated linearly over each triangle.
 ///
 /// With f = −F/|F| the test is G(n) = μ² (f·n)² − |n − (f·n) f|² >= 0 and f·n >= 0: a convex cone
-/// in n, and n is linear in the position, so the set cuts a convex region with a conic boundary out
-/// of every triangle. Its ends on edges are roots of a quadratic, common to both neighbours,
-/// further points of the conic likewise; between them it is replaced by chords, 8 per triangle.
-/// Parts are connected through edges. Against a smooth surface with exact vertex normals the error
-/// is of second order in the edge length. μ = 0 is answered with a cone of 1e-6: parts that it
-/// leaves smaller than 1e-4 of the mesh are isolated points, slivers are lines. diameter_error is
-/// an estimate: twice the sagitta of the longest edge on a sphere as large as the mesh's bounding
-/// box. At most 256 forces.
+/// in n. n is linear in the position, so the set is a convex region with a conic boundary in every
+/// triangle. Its ends on edges are roots of a quadratic, common to both neighbours. Further points
+/// of the conic are computed alike; chords replace it between them, 8 per triangle. Components are
+/// connected through edges. Relative to a smooth surface with exact vertex normals, the error is of
+/// second order in the edge length. For μ = 0 a cone of 1e-6 is used: components smaller than 1e-4
+/// of the mesh are reported as isolated points, slivers as lines. diameter_error is an estimate:
+/// twice the sagitta of the longest edge on a sphere as large as the mesh's bounding box. At most
+/// 256 forces.
 SurfaceStudy rest_on_mesh(const Mesh& mesh, const std::vector<Eigen::Vector3d>& forces, double mu);
 
 }  // namespace statejump::rest_set

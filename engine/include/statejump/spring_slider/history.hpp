@@ -25,11 +25,11 @@ struct History {
 };
 
 /// The path at `times` [s], in any order; after its end the last state holds. Every entry is
-/// evaluated from the path's closed forms, so it does not depend on the other times. At the time of
-/// an event the stage is the one after it, at the end of the program the last one.
-/// Throws std::invalid_argument if a time is negative or not finite, or in a cycle that the path
-/// has left out. The energies obey thermal_work = elastic_energy + preload_energy +
-/// friction_dissipation within rounding; see thermal_work() for why that is a check.
+/// evaluated from the path's closed forms, so it does not depend on the other times. At an event
+/// the stage is the one after it, at the end of the program the last one. Throws
+/// std::invalid_argument for a time that is negative, not finite or in an omitted cycle. The
+/// energies satisfy thermal_work = elastic_energy + preload_energy + friction_dissipation within
+/// rounding; see thermal_work() for the reason.
 History sample(const Path& path, const Eigen::Ref<const Eigen::VectorXd>& times);
 
 }  // namespace statejump::spring_slider

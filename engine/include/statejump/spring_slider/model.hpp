@@ -12,14 +12,14 @@ namespace statejump::spring_slider {
 /// of a one-dimensional clearance joint (section 3, Figs 4 and 5).
 ///
 /// The link is a massless spring between the fixed frame and the block. Unloaded it has the length
-/// l_T = l0 (1 + α ΔT) and so the thermal displacement x_T = l_T − l0 (2). With the block at x
+/// l_T = l0 (1 + α ΔT) and thus the thermal displacement x_T = l_T − l0 (2). With the block at x
 ///
 ///     F = k_T (x_T − x),   k_T = E A / l_T   (4)
 ///
 /// is the axial force, positive in compression: it pushes the block towards +x. A preload spring to
 /// the ground pulls it back with P + k_p x. Friction R with |R| <= f and a stop force W, at x = +c⁺
-/// or x = −c⁻, balance the rest, D + R + W = 0 with D = F − P − k_p x, at every instant: the path
-/// is quasi-static and rate-independent, a function of the sequence of ΔT alone.
+/// or x = −c⁻, balance the rest: D + R + W = 0 with D = F − P − k_p x. The path is quasi-static and
+/// rate-independent, a function of the sequence of ΔT alone.
 ///
 ///   start   at ΔT = 0 with D = D0, x = −(P + D0)/(k + k_p), or at the stop in its way;
 ///           D0 = clamp(−P, −f, f) where it starts stuck, D0 = 0 where it starts frictionless
@@ -31,30 +31,30 @@ namespace statejump::spring_slider {
 /// A cycle that ends sliding in sense s leaves the block with D = s f: the state jump is
 /// (D0 − s f)/(k + k_p), unless P presses the block on a stop at the start.
 ///
-/// Against a rigid stop equilibrium leaves R and W undetermined within −f <= R <= f. Assumed here
-/// is the smallest stop force, |W| = max(0, |D| − f): friction keeps the value that it had
-/// when the block arrived, the stop takes the remainder.
+/// Against a rigid stop, equilibrium leaves R and W undetermined within −f <= R <= f. The model
+/// assumes the smallest stop force, |W| = max(0, |D| − f): friction keeps its value from the
+/// arrival of the block, and the stop carries the remainder.
 ///
-/// A stop of a stiffness k_s gives way, W = −k_s (x − s c) beyond the clearance of side s. There
-/// the block slides and sticks as between the stops, with a spring more:
+/// A stop of stiffness k_s is compliant, W = −k_s (x − s c) beyond the clearance of side s. There
+/// the block slides and sticks as between the stops, with an additional spring:
 ///
 ///     P + k_p x − W = (P − k_s s c) + (k_p + k_s) x,
 ///
-/// so that every formula above holds with these two in place of P and k_p, see in_region().
+/// so every formula also holds with these two values instead of P and k_p, see in_region().
 ///
 /// A play of width w in series with friction moves with the slide. With its middle p and e = x − p:
 ///
-///   play    |e| < w/2, nothing rubs: D = 0, hence x = (E A x_T − P l_T)/(E A + k_p l_T)
+///  play    |e| < w/2, no friction: D = 0, hence x = (E A x_T − P l_T)/(E A + k_p l_T)
 ///   stick   e = s w/2 and 0 <= s D <= f: friction pushes away from this end of the play only
 ///   slide   e = s w/2 and D = s f, p moves
 ///
-/// At a rigid stop friction keeps the value of the arrival here too, f or 0. The start is in the
-/// middle of the play, p = 0, from where a preload may take the block to an end of it and on; where
-/// it starts frictionless p = x.
+/// At a rigid stop friction keeps its value from the arrival here too, f or 0. The start is in the
+/// middle of the play, p = 0; a preload may then move the block to an end of the play and further.
+/// If it starts frictionless, p = x.
 ///
-/// Limits: no inertia, no buckling (see euler_load), constant f, E and α independent
-/// of temperature (of an α that is not, see tell_temperatures_of). A plain value: validate() once;
-/// the functions below do not check.
+/// Limits: no inertia, no buckling (see euler_load), constant f, E and α independent of temperature
+/// (for other α see report_temperatures_of). A plain value; call validate() once, other functions
+/// do not check.
 struct SpringSlider {
   /// Young's modulus E of the link [Pa], > 0.
   double young_modulus = 0.0;
@@ -74,7 +74,7 @@ struct SpringSlider {
   double preload_stiffness = 0.0;
   /// Tension P of that spring at x = 0 [N], towards −x when positive, |P| + f < E A.
   double preload_force = 0.0;
-  /// How the block gets to its start.
+  /// How the block reaches its start.
   StartFriction start_friction = StartFriction::stuck;
   /// Stiffness k_s of both stops [N/m], > 0; infinity: rigid.
   double stop_stiffness = std::numeric_limits<double>::infinity();
@@ -105,49 +105,49 @@ double link_stiffness(const SpringSlider& model, double temperature_change);
 /// Axial force F = k_T (x_T − x) [N] of the link, positive in compression, with the block at x [m].
 double axial_force(const SpringSlider& model, double temperature_change, double displacement);
 
-/// The model with the spring of the soft stop on side `region` (+1 or −1) beside that of the
-/// preload, and without its stops; 0: the model itself.
+/// The model between its soft stop on side `region` (+1 or −1) and the link: the stop's spring is
+/// added to the preload's, and the stops are removed. 0: the model itself.
 SpringSlider in_region(const SpringSlider& model, int region);
 
-/// Side of the soft stop that a block at x [m] presses; 0: none.
+/// Side of the soft stop touched by a block at x [m]; 0: none.
 int region_of(const SpringSlider& model, double displacement);
 
-/// Where the block starts, ΔT = 0.
+/// Start of the block, ΔT = 0.
 struct Start {
-  double displacement = 0.0;  ///< x [m], where D = load, or at the stop that is in its way
-  double load = 0.0;          ///< D0 [N] that friction balances, stops left aside
-  double middle = 0.0;        ///< p [m] of the play
+  double displacement = 0.0;  ///< x [m], where D = load, or at the stop if it is reached before
+  double load = 0.0;          ///< D0 [N] balanced by friction, without stops
+  double middle = 0.0;        ///< p [m], middle of the play
 };
 Start start_of(const SpringSlider& model);
 
-/// D0 [N] that friction balances at the start, ΔT = 0, stops left aside.
+/// D0 [N] balanced by friction at the start, ΔT = 0, without stops.
 double start_load(const SpringSlider& model);
 
-/// Position x [m] of the block at the start, ΔT = 0: where D = start_load(), or at the stop that is
-/// in its way, beyond its clearance if it is soft.
+/// Position x [m] of the block at the start, ΔT = 0: where D = start_load(), or at the stop if it
+/// is reached before (beyond its clearance if the stop is soft).
 double start_displacement(const SpringSlider& model);
 
-/// Position x [m] of the block that slides in sense `direction` (+1 or −1), or moves in its play
-/// (0), stops left aside.
+/// Position x [m] of the block that slides in direction `direction` (+1 or −1) or moves in its play
+/// (0), without stops.
 double sliding_displacement(const SpringSlider& model, double temperature_change, int direction);
 
 /// ΔT [K] at which D = direction·f (0: D = 0) with the block at x [m], the inverse of
-/// sliding_displacement: onset of sliding from x, and arrival at x while sliding.
-/// NaN if no temperature does it (α = 0, or P + k_p x + direction·f >= E A).
+/// sliding_displacement(). It gives the onset of sliding from x and the arrival at x while sliding.
+/// NaN if no temperature satisfies it (α = 0, or P + k_p x + direction·f >= E A).
 double sliding_temperature(const SpringSlider& model, double displacement, int direction);
 
-/// Displacement (D0 − s f)/(k + k_p) [m] that one closed cycle leaves if it ends sliding in sense s
-/// = `direction` at ΔT = 0 and did not start at a stop; −1, a cycle that heats, leaves f/(k + k_p)
-/// if it started without friction. Independent of the clearance and of the largest temperature
-/// (paper 3.4).
+/// Displacement (D0 − s f)/(k + k_p) [m] after one closed cycle that ends sliding in direction s =
+/// `direction` at ΔT = 0 and did not start at a stop. A heating cycle (s = −1) started without
+/// friction gives f/(k + k_p). Independent of the clearance and of the largest temperature (paper
+/// 3.4).
 double state_jump(const SpringSlider& model, int direction = -1);
 
-/// How the ends of a link are held, for its buckling load.
+/// End conditions of a link for its buckling load.
 enum class EndCondition { clamped_clamped, pinned_pinned };
 
 /// Euler's buckling load E I π² β/l0² [N] of the unguided link at ΔT = 0 with β = 4 for clamped and
-/// β = 1 for pinned ends. `second_moment_of_area` I [m⁴]; NaN, the default, stands for a square
-/// section, I = A²/12. The model itself never buckles: it assumes a guided link.
+/// β = 1 for pinned ends. `second_moment_of_area` I [m⁴]; NaN, the default, means a square section,
+/// I = A²/12. The model itself never buckles: it assumes a guided link.
 double euler_load(const SpringSlider& model, EndCondition ends,
                   double second_moment_of_area = std::numeric_limits<double>::quiet_NaN());
 

@@ -13,7 +13,8 @@ namespace statejump::spring_slider {
 /// Stage of the loading process, the paper's S1 to S5 (section 3.2) and the two stops.
 ///
 /// The paper's five stages are those of one heating and cooling. For later cycles and for negative
-/// ΔT they mean, with "axial force" F and "last slide" the sense in which the block last slid:
+/// ΔT they have these meanings. "Axial force" is F, "last slide" the direction in which the block
+/// last slid:
 ///
 ///   S1  stick, the block has never slid
 ///   S2  slide in the sense of the first slide
@@ -22,22 +23,22 @@ namespace statejump::spring_slider {
 ///   S5  slide against the sense of the first slide
 ///
 /// A second cycle therefore runs S3, S4, S2, S3, S4, S5. With a preload spring F may change sign
-/// during a slide; S3 or S4 may then be missing. One that presses the block on a stop lets a path
-/// begin there. Between stages the block may move in its play, `in_play`.
+/// during a slide; S3 or S4 may then be missing. If the preload presses the block on a stop, a path
+/// may start there. Between stages the block may move in its play, `in_play`.
 enum class Stage : unsigned char { S1, S2, S3, S4, S5, at_stop_plus, at_stop_minus, in_play };
 
-/// What the block does, whatever the stage is called. `stop`: it rests against a loaded stop.
-/// `play`: it moves in its play.
-enum class Motion : unsigned char { stick, slide, stop, play };
+/// Motion of the block, independent of the stage. `stop`: it rests at a loaded stop. `play`: it
+/// moves in its play.
+enum class BlockMotion : unsigned char { stick, slide, stop, play };
 
 /// Instants at which the stage changes or ends.
 enum class EventKind : unsigned char {
   first_slip,     ///< The block starts to slide for the first time.
   slip,           ///< It starts to slide again, away from the stops.
-  stop_reached,   ///< A stop begins to carry force: the block arrives, or is loaded there again.
-  stop_unloaded,  ///< The stop's force falls to zero; the block stays, held by friction.
-  stop_left,      ///< The block starts to slide away from a stop, or loses touch of a soft one.
-  reversal,       ///< The temperature turns while the block slides; it sticks.
+  stop_reached,   ///< A stop begins to carry force: the block arrives, or the stop is loaded again.
+  stop_unloaded,  ///< The stop's force falls to zero; friction keeps the block in place.
+  stop_left,      ///< The block starts to slide away from a stop, or separates from a soft one.
+  reversal,       ///< The temperature rate changes sign while the block slides; the block sticks.
   force_sign_change,  ///< The axial force passes zero during a stick after a slide.
   cycle_end,          ///< A cycle of the thermal program ends.
   play_opened,        ///< Friction falls to zero; the block moves in its play.
@@ -47,11 +48,11 @@ enum class EventKind : unsigned char {
 /// "S1", …, "S5", "at_stop_plus", "at_stop_minus", "in_play".
 const char* to_string(Stage stage);
 /// "stick", "slide", "stop", "play".
-const char* to_string(Motion motion);
+const char* to_string(BlockMotion motion);
 /// "first_slip", "slip", "stop_reached", …: the enumerator's name.
 const char* to_string(EventKind kind);
 
-/// One event of a path. Both stages are equal where only the cycle ends.
+/// One event of a path. Both stages are equal if only the cycle ends.
 struct Event {
   EventKind kind;
   Stage stage_before;
@@ -62,11 +63,11 @@ struct Event {
   double axial_force;         ///< F [N], positive in compression
 };
 
-/// Part of a path without an event inside, over which ΔT rises, falls or holds. x is a closed form
-/// of ΔT there: see displacement().
+/// Part of a path without an event inside, over which ΔT rises, falls or is constant. x is a closed
+/// form of ΔT there: see displacement().
 struct Segment {
   Stage stage;
-  Motion motion;
+  BlockMotion motion;
   /// Sense of a slide or in the play, side of a stop (+1 or −1); 0 for a stick.
   int direction;
   /// Cycle that the segment belongs to, 0, 1, …
@@ -79,23 +80,23 @@ struct Segment {
   double end_displacement;          ///< x [m]
   double friction_dissipation;      ///< Heat of friction from the program's start to start_time [J]
   double thermal_work;              ///< Work of the temperature over the same time [J]
-  int region = 0;                   ///< Side of the soft stop that the block presses; 0: none.
-  /// Sense in which friction is at its limit, or the wall beyond it; 0: it is not.
-  int rubs = 0;
+  int region = 0;                   ///< Side of the soft stop that the block touches; 0: none.
+  /// Direction in which friction is at its limit, or the stop beyond it; 0: below the limit.
+  int friction_sign = 0;
   double middle = 0.0;  ///< Of the play at start_time [m].
 
   /// Whether x follows the temperature.
-  bool moves() const { return motion == Motion::slide || motion == Motion::play; }
+  bool moves() const { return motion == BlockMotion::slide || motion == BlockMotion::play; }
 };
 
-/// Exact quasi-static path of a spring-slider under a thermal program: what solve() returns.
+/// Exact quasi-static path of a spring-slider under a thermal program: the result of solve().
 struct Path {
   SpringSlider model;
   thermal::Program program;
-  /// Of the cycles that are kept, in order of time and consecutive within a cycle. The last segment
-  /// of all ends at program.duration(). Never empty.
+  /// Segments of the kept cycles, in order of time and consecutive within a cycle. The last segment
+  /// ends at program.duration(). Never empty.
   std::vector<Segment> segments;
-  /// Of the cycles that are kept.
+  /// Events of the kept cycles.
   std::vector<Event> events;
   /// Displacement at the end of every cycle [m], kept or not.
   std::vector<double> cycle_end_displacements;
@@ -103,11 +104,11 @@ struct Path {
   double largest_compression = 0.0;
   double largest_compression_temperature_change = 0.0;  ///< [K]
   double largest_compression_time = 0.0;                ///< [s]
-  /// Largest |F| [N] over all cycles: F is monotonic within a segment, so it stands where one
-  /// starts, or at the end. See place_at().
+  /// Largest |F| [N] over all cycles. F is monotonic within a segment, so the largest value is at
+  /// the end of a segment. See point_at().
   double largest_axial_force = 0.0;
-  /// Temperatures that are told in place of the program's own, see tell_temperatures_of().
-  std::optional<thermal::Program> told;
+  /// Temperatures reported instead of the program's own, see report_temperatures_of().
+  std::optional<thermal::Program> reported;
 
   /// Displacement at the end minus that at the start [m].
   double state_jump() const { return cycle_end_displacements.back() - start_displacement(model); }
@@ -118,58 +119,57 @@ struct Path {
 };
 
 /// Exact path from rest at start_displacement(), ΔT = 0. Every event is the root of an equation
-/// linear in ΔT, and its time the closed-form inverse of the program: nothing is stepped over or
-/// iterated. Throws std::invalid_argument if model or program is out of range, or if the program
-/// takes the link to a length l_T <= 0. Limits: events are ordered by ΔT within rounding, so two
-/// that coincide exactly may come in either order. Without friction a stick has no duration: its
-/// events stand at one temperature.
+/// linear in ΔT, and its time the closed-form inverse of the program, so there is no stepping or
+/// iteration. Throws std::invalid_argument if model or program is out of range, or if the program
+/// gives the link a length l_T <= 0.
+/// Limits: events are ordered by ΔT within rounding, so two coincident events may have either
+/// order. Without friction a stick has no duration: its events are at one temperature.
 Path solve(const SpringSlider& model, const thermal::Program& program);
 
-/// The same into an existing path, whose memory is used again. On error `path` is unspecified.
+/// The same into an existing path, whose memory is reused. On error `path` is unspecified.
 void solve(const SpringSlider& model, const thermal::Program& program, Path& path);
 
-/// The same path, of which only the cycles are kept that sample() needs at `times` [s], the first
-/// two and the last: the memory of a long program is that of the times that are asked for, and the
-/// displacement at the end of every cycle. All cycles are computed.
-/// Throws std::invalid_argument if a time is negative or not finite.
+/// The same path, but keeps only the cycles that sample() needs at `times` [s], the first two and
+/// the last. So a long program needs memory only for the requested times and the displacement at
+/// the end of every cycle. All cycles are computed. Throws std::invalid_argument if a time is
+/// negative or not finite.
 Path solve(const SpringSlider& model, const thermal::Program& program,
            const Eigen::Ref<const Eigen::VectorXd>& times);
 
-/// Lets events, samples and warnings tell the temperature changes of another program at their
-/// times. A link whose coefficient follows the temperature has a path of its strain: the program
-/// that is solved is then strain over one coefficient, and `told` the temperature itself. Segments
-/// keep what was solved.
-void tell_temperatures_of(thermal::Program told, Path& path);
+/// Makes events, samples and warnings report the temperature changes of another program at their
+/// times. If the link's coefficient depends on temperature, the solved program is the strain over
+/// one coefficient, and `reported` is the temperature. Segments keep the solved values.
+void report_temperatures_of(thermal::Program reported, Path& path);
 
 /// x [m] on the segment at ΔT [K] within the segment: constant in a stick and at a stop, else
 /// sliding_displacement().
 double displacement(const SpringSlider& model, const Segment& segment, double temperature_change);
 
-/// Where a path is at one time.
-struct Place {
+/// The path at one time.
+struct PathPoint {
   double temperature_change;  ///< ΔT [K]
   double displacement;        ///< x [m]
   double axial_force;         ///< F [N], positive in compression
 };
 
-/// Place on the segment at `time` [s] within it. The time of an event is rounded, so the program's
-/// ΔT may lie an ulp outside the segment; it is kept inside, so that x stays within the stops and
-/// |F| within the friction limit.
-Place place_at(const SpringSlider& model, const thermal::Program& program, const Segment& segment,
-               double time);
+/// The path at `time` [s] within a segment. The time of an event is rounded, so the program's ΔT
+/// may be outside the segment by one ulp. It is clamped to the segment, so that x stays within the
+/// stops and |F| within the friction limit.
+PathPoint point_at(const SpringSlider& model, const thermal::Program& program,
+                   const Segment& segment, double time);
 
 /// Work of the temperature [J] from the segment's start to ΔT [K].
 ///
-/// The link stores V = E A (x − x_T)²/(2 l_T). With x held, heating changes x_T and the stiffness:
-/// ∂V/∂l_T = −N − N²/(2 E A), N = (E A/l_T)(x − x_T) the tension, hence the power
-/// P = −N l̇_T − ½ (E A/l_T²)(x − x_T)² l̇_T. It is integrated over the segment's own x(ΔT) by
-/// Gauss-Legendre with five points; the integrand is analytic up to l_T = 0, so the relative error
-/// is below 1e-15 for |α ΔT| < 0.1. Neither the energies nor the friction enter: the balance
-/// thermal work = elastic energy + dissipation is a check, not a definition.
+/// The link stores V = E A (x − x_T)²/(2 l_T). At fixed x, heating changes x_T and the stiffness:
+/// ∂V/∂l_T = −N − N²/(2 E A), with the tension N = (E A/l_T)(x − x_T). Hence the power is P = −N
+/// l̇_T − ½ (E A/l_T²)(x − x_T)² l̇_T. Five-point Gauss-Legendre integrates it over the segment's
+/// own x(ΔT). The integrand is analytic up to l_T = 0, so the relative error is below 1e-15 for |α
+/// ΔT| < 0.1. Neither the energies nor the friction enter, so the balance thermal work = elastic
+/// energy + dissipation is a check, not a definition.
 double thermal_work(const SpringSlider& model, const Segment& segment, double temperature_change);
 
-/// What the user should know about a path, one sentence each: at present an axial force beyond the
-/// Euler load of an unguided link of square section. Empty if there is nothing.
+/// Warnings about a path, one sentence each: an axial force above the Euler load of an unguided
+/// link with square section. Empty if there is none.
 std::vector<std::string> warnings(const Path& path);
 
 }  // namespace statejump::spring_slider

@@ -12,7 +12,8 @@
 
 namespace statejump::kernel {
 
-/// What the two bodies of a contact are, fixed over a run. Checked once by validate().
+///
+/// Parameters of the two bodies of a contact, constant over a run. validate() checks them once.
 struct ContactParameters {
   ElasticPair elastic;                    ///< E*, G* [Pa], both > 0; see elastic_pair()
   double friction_coefficient = 0.0;      ///< mu [-], >= 0; 0: frictionless (default)
@@ -21,18 +22,17 @@ struct ContactParameters {
   double effective_mass = 0.0;            ///< m [kg], >= 0, m1 m2/(m1 + m2); only damping uses it
 };
 
-/// Where the two bodies of a contact are at this step. Arguments are trusted: this is the inner
-/// loop.
+/// Kinematics of the two bodies of a contact in this step. The inner loop does not check them.
 struct ContactKinematics {
-  Vector3 normal;             ///< unit, from body 1 (journal, slider) into body 2 (bearing, slot):
-                              ///< the direction in which 1 pushes 2
+  Vector3 normal;  ///< unit, from body 1 (journal, slider) into body 2 (bearing, slot); body 1
+                   ///< pushes along it
   double penetration_depth;   ///< delta [m], > 0 overlap, <= 0 gap
   double effective_radius;    ///< R [m], > 0, finite
   Vector3 relative_velocity;  ///< v1 - v2 of the material at the one contact point [m/s]
   double time_step;           ///< dt [s], >= 0
 };
 
-/// What the contact answers. Forces act on body 1; body 2 gets the opposite.
+/// Forces and energies of a contact after one step. Forces act on body 1; body 2 gets the opposite.
 struct ContactResponse {
   double normal_force;               ///< F_N with damping [N], >= 0: clipped, no adhesion
   double elastic_normal_force;       ///< Hertz part of it [N], >= 0
@@ -46,7 +46,7 @@ struct ContactResponse {
   double damping_dissipation;        ///< of this step [J], >= 0
 };
 
-/// Checks a parameter set where it enters.
+/// Checks a parameter set when it is set.
 /// @throws std::invalid_argument that names the field, its value and its range.
 inline void validate(const ContactParameters& parameters) {
   const auto positive = [&](double value, const char* name, const char* range) {
@@ -63,23 +63,24 @@ inline void validate(const ContactParameters& parameters) {
   non_negative(parameters.effective_mass, "effective_mass", "[0, inf) kg");
 }
 
-/// Viscous damping c = 2 zeta sqrt(m k) [N s/m] of a contact spring at its present stiffness.
+/// Viscous damping c = 2 zeta sqrt(m k) [N s/m] of a contact spring at its current stiffness.
 /// @param damping_ratio zeta [-], @param mass m [kg], @param stiffness k [N/m]
 inline double viscous_damping(double damping_ratio, double mass, double stiffness) {
   return 2.0 * damping_ratio * std::sqrt(mass * stiffness);
 }
 
 /// Normal force with its viscous part [N], clipped at 0: the bodies never pull on each other.
-/// @param force F [N] without that part, @param damping c [N s/m], @param approach_speed [m/s]
+/// @param force F [N] without the viscous part, @param damping c [N s/m]
+/// @param approach_speed [m/s]
 inline double damped_normal_force(double force, double damping, double approach_speed) {
   return std::max(0.0, force + damping * approach_speed);
 }
 
-/// Adds the viscous force -c v_t of a spring that sticks and projects the sum onto the disc of
-/// radius mu F_N; a projection is monotone, so what is left of the viscous force still opposes v_t.
+/// Adds the viscous force -c v_t of a sticking spring and projects the sum onto the disc of radius
+/// mu F_N. The projection is monotone, so the remaining viscous force still opposes v_t.
 /// @param damping c [N s/m], @param limit mu F_N [N], @param velocity v_t [m/s]
 /// @param force in: of the spring [N], within the limit; out: with the viscous part
-/// @return power lost by the viscous part [W], >= 0
+/// @return power dissipated by the viscous part [W], >= 0
 inline double add_tangential_damping(double damping, double limit, const Vector3& velocity,
                                      Vector3& force) {
   const Vector3 spring = force;
@@ -90,31 +91,31 @@ inline double add_tangential_damping(double damping, double limit, const Vector3
   return std::max(0.0, (spring - force).dot(velocity));
 }
 
-/// What a dissipation law does in one step of contact_step().
+/// Input and output of a dissipation law in one contact_step().
 struct ImpactDamping {
   double ratio = 0.0;           ///< chi/K [s/m], see laws::damped_force()
   double clearance_rate = 0.0;  ///< dc/dt by expansion [m/s]
-  double force = 0.0;           ///< out: of the dissipation law alone [N]
+  double force = 0.0;           ///< out: force of the dissipation law [N]
 };
 
-/// One step of a contact, the same for all laws. Normal:
+/// One step of a contact, common to all laws. Normal force:
 ///
-///     F_N = max(0, F_el max(0, 1 + (chi/K) delta_dot) + c_n v_n),   c_n = 2 zeta_n sqrt(m k_n),
+///    F_N = max(0, F_el max(0, 1 + (chi/K) delta_dot) + c_n v_n),   c_n = 2 zeta_n sqrt(m k_n),
 ///
-/// v_n = v . n being the approach speed of the bodies, delta_dot = v_n - dc/dt the rate of the
-/// depth. Tangential: the friction law, and while its spring sticks the viscous force of
-/// add_tangential_damping().
+/// with the approach speed v_n = v . n of the bodies and the rate of the depth delta_dot = v_n -
+/// dc/dt. Tangential force: the friction law. While its spring sticks, add_tangential_damping()
+/// adds a viscous force.
 ///
-/// @tparam Laws what differs, resolved when it is compiled:
-///   normal()                      elastic state with force, stiffness, elastic_energy
-///   velocity()                    v of 1 against 2 that friction sees [m/s]
-///   tangential_stiffness(normal)  k_t [N/m]
-///   friction(k_t, mu F_N, F_N, v_t, history) -> MindlinEnergy
-///   friction_force(history)       of that step, on body 1, without the viscous part [N]
-///   dissipates                    whether impact() gives an ImpactDamping&
-///   always_spring                 friction is a spring of k_t for sure, else the history says so
+/// @tparam Laws the laws, resolved at compile time:
+///  normal()                      elastic state with force, stiffness, elastic_energy
+///  velocity()                    v of 1 relative to 2 that enters friction [m/s]
+///  tangential_stiffness(normal)  k_t [N/m]
+///  friction(k_t, mu F_N, F_N, v_t, history) -> MindlinEnergy
+///  friction_force(history)       of that step, on body 1, without the viscous part [N]
+///  dissipates                    whether impact() returns an ImpactDamping&
+///  always_spring                 friction is always a spring of k_t; if false, see the history
 /// @param normal n, unit; @param depth delta [m]; @param time_step dt [s]
-/// @param history of this contact, rotated into the present tangent plane by the caller; updated
+/// @param history of this contact, rotated into the current tangent plane by the caller; updated
 template <class Laws>
 ContactResponse contact_step(Laws& laws, const ContactParameters& parameters, const Vector3& normal,
                              double depth, double time_step, ContactHistory& history) {
@@ -205,27 +206,27 @@ struct HertzMindlinLaws {
 /// Normal: F_el = 4/3 E* sqrt(R) delta^1.5 and k_n = 2 E* a, a = sqrt(R delta), see hertz(). With
 /// the approach speed v_n = v . n (the rate of delta),
 ///
-///     F_N = max(0, F_el + c_n v_n),   c_n = 2 zeta_n sqrt(m k_n):
+///    F_N = max(0, F_el + c_n v_n),   c_n = 2 zeta_n sqrt(m k_n).
 ///
-/// the bodies never pull on each other. k_n is the tangent stiffness at this depth, so zeta_n is
+/// The bodies never pull on each other. k_n is the tangent stiffness at this depth, so zeta_n is
 /// the damping ratio of a small oscillation there.
 ///
 /// Tangential: history spring k_t = 8 G* a under the limit mu F_N, see mindlin_step(). F_N is the
-/// total clipped normal force, which is what presses the surfaces together. While the spring sticks
-/// the viscous force -c_t v_t, c_t = 2 zeta_t sqrt(m k_t), is added and the sum is projected onto
-/// the disc of radius mu F_N; a projection is monotone, so what is left of the viscous force still
-/// opposes v_t. While it slips there is no viscous force. |tangential_force| <= mu F_N always, and
-/// with mu = 0 it is exactly zero.
+/// clipped total normal force, because that force presses the surfaces together. While the spring
+/// sticks, the viscous force -c_t v_t, c_t = 2 zeta_t sqrt(m k_t), is added.
+/// add_tangential_damping() projects the sum onto the disc of radius mu F_N. While the spring
+/// slips, there is no viscous force. |tangential_force| <= mu F_N always; with mu = 0 it is exactly
+/// zero.
 ///
-/// Energy: friction by the identity of mindlin_step(). Damping by (viscous force) . v dt with the
-/// velocity given; an integrator that does work with another velocity (leapfrog: the mean of two
-/// half steps) differs from that at first order in dt.
+/// Energy: friction by the identity of mindlin_step(), damping by (viscous force) . v dt with the
+/// given velocity. Leapfrog does work with the mean velocity of two half steps, so its damping work
+/// differs at first order in dt.
 ///
-/// Costs one square root undamped in stick, one more in slip, one more per damping used.
+/// Cost: one square root undamped in stick, one more in slip, one more per damping used.
 /// @param parameters see validate(); not checked here
 /// @param kinematics of this step
-/// @param history of this contact, rotated into the present tangent plane by the caller; updated. A
-///        gap clears it, and books the energy left in the spring as friction.
+/// @param history of this contact, rotated into the current tangent plane by the caller; updated. A
+///        gap clears it and counts the energy left in the spring as friction loss.
 /// Limits: those of hertz() and mindlin_step(); no rolling or twisting resistance.
 inline ContactResponse hertz_mindlin(const ContactParameters& parameters,
                                      const ContactKinematics& kinematics, ContactHistory& history) {
@@ -244,8 +245,8 @@ struct Wrench {
 
 /// Carries the contact force to the two body centres: torque = arm x force.
 ///
-/// Both forces act at one point, so forces and moments about any point cancel exactly. (With the
-/// paper's two points of eq. 14, which are delta apart, a torque delta F_t would be left over.)
+/// Both forces act at one point, so forces and moments about any point cancel exactly. (The two
+/// points of the paper's eq. 14 are delta apart and would leave a torque delta F_t.)
 /// @param force_on_1 [N]; body 2 gets the opposite
 /// @param arm_1, arm_2 contact point minus centre of the body [m]
 inline Wrench contact_wrench(const Vector3& force_on_1, const Vector3& arm_1,

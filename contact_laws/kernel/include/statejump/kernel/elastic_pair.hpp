@@ -10,14 +10,14 @@ namespace statejump::kernel {
 /// Elastic constants of two isotropic bodies in contact.
 ///
 /// Both half-spaces deform under the same traction, so their compliances add (Johnson, Contact
-/// Mechanics, 1985, eqs 3.31 and 4.25; Mindlin 1949 for shear; the paper's eqs 7 and 8 are the
-/// normal part):
+/// Mechanics, 1985, eqs 3.31 and 4.25; Mindlin 1949 for shear). The paper's eqs 7 and 8 are the
+/// normal part:
 ///
-///     1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2
-///     1/G* = (2 - nu1)/G1  + (2 - nu2)/G2,     G = E / (2 (1 + nu))
+///    1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2
+///    1/G* = (2 - nu1)/G1  + (2 - nu2)/G2,     G = E / (2 (1 + nu))
 ///
-/// G* enters Mindlin's tangential stiffness as k_t = 8 G* a. It is not a mean of the two shear
-/// moduli: for equal materials G* = G / (2 (2 - nu)).
+/// G* enters Mindlin's tangential stiffness k_t = 8 G* a. It is not a mean of the two shear moduli:
+/// for equal materials G* = G / (2 (2 - nu)).
 struct ElasticPair {
   double effective_young_modulus;  ///< E* [Pa], > 0
   double effective_shear_modulus;  ///< G* [Pa], > 0

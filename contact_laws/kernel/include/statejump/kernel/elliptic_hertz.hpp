@@ -12,21 +12,20 @@
 
 namespace statejump::kernel {
 
-/// Principal curvatures of the gap between two surfaces that touch, and where they lie.
+/// Principal curvatures of the gap between two touching surfaces, and their directions.
 ///
 /// The gap is 1/2 (larger x^2 + smaller y^2): Johnson's A and B (Contact Mechanics, 1985, eq. 4.3)
 /// are halves of these.
 struct RelativeCurvature {
-  double larger;   ///< [1/m]; the contact's short semi-axis lies this way
-  double smaller;  ///< [1/m]; the contact's long semi-axis lies this way
-  double angle;  ///< [rad] of the larger one's direction from direction 1 of body 1 towards that of
-                 ///< body 2
+  double larger;   ///< [1/m]; the short semi-axis of the contact has this direction
+  double smaller;  ///< [1/m]; the long semi-axis of the contact has this direction
+  double
+      angle;  ///< [rad] of the larger one, from direction 1 of body 1 towards direction 1 of body 2
 };
 
 /// Adds the curvatures of two bodies (Johnson 1985, eq. 4.4).
-/// @param curvature_11, curvature_12 principal curvatures of body 1 [1/m], convex positive: a
-/// journal
-///        of radius R1 has 1/R1 and 0, a bore of radius R2 -1/R2 and 0
+/// @param curvature_11, curvature_12 principal curvatures of body 1 [1/m], convex positive. A
+///        journal of radius R1 has 1/R1 and 0, a bore of radius R2 has -1/R2 and 0.
 /// @param curvature_21, curvature_22 those of body 2
 /// @param angle [rad] from direction 1 of body 1 to direction 1 of body 2
 inline RelativeCurvature relative_curvature(double curvature_11, double curvature_12,
@@ -41,11 +40,12 @@ inline RelativeCurvature relative_curvature(double curvature_11, double curvatur
   return {0.5 * (sum + difference), 0.5 * (sum - difference), 0.5 * std::atan2(across, along)};
 }
 
-/// Largest ratio of the two curvatures that elliptic_shape() takes: beyond, the contact is a line.
+/// Largest ratio of the two curvatures that elliptic_shape() accepts; for larger ratios the contact
+/// is a line.
 constexpr double largest_curvature_ratio = 1e10;
 
-/// Contact ellipse of a pair of curvatures, for every depth at once: the semi-axes grow as the root
-/// of the depth.
+/// Contact ellipse of a pair of curvatures. It holds for every depth, because the semi-axes grow as
+/// the square root of the depth.
 struct EllipticShape {
   double long_axis;   ///< a / sqrt(delta) [m^0.5], a the longer semi-axis
   double short_axis;  ///< b / sqrt(delta) [m^0.5]
@@ -66,9 +66,9 @@ struct EllipticShape {
 ///     a^2 = 2 delta D/(smaller K)
 ///     F = 2/3 pi a b p0 = 2/3 pi E* a delta/K
 ///
-/// K and D are Carlson's R_F(0, k'^2, 1) and R_D(0, k'^2, 1)/3 of Boost.Math, whose differences do
-/// not cancel, neither at the circle nor near the line. ln(b/a) is found by TOMS 748 in some ten
-/// evaluations of 0.2 us: do it once per pair of curvatures.
+/// K and D are Carlson's R_F(0, k'^2, 1) and R_D(0, k'^2, 1)/3 of Boost.Math. Their differences do
+/// not cancel, neither at the circle nor near the line. TOMS 748 finds ln(b/a) in about ten
+/// evaluations of 0.2 us, so solve once per pair of curvatures.
 /// @throws std::invalid_argument when not larger/1e10 <= smaller <= larger, larger > 0 and finite
 /// Limits: those of hertz(), and a well below the longer radius 1/smaller.
 inline EllipticShape elliptic_shape(const RelativeCurvature& curvature) {
@@ -87,14 +87,14 @@ inline EllipticShape elliptic_shape(const RelativeCurvature& curvature) {
     const double d = boost::math::ellint_rd(0.0, squared, 1.0) / 3.0;
     return std::pair<double, double>(k, d);
   };
-  // Rises with -log_axes; 0 at log_axes = ln(b/a).
+  // Decreases with log_axes; zero at log_axes = ln(b/a).
   const auto residual = [&](double log_axes) {
     const auto [k, d] = integrals(std::exp(2.0 * log_axes));
     return std::log((k - d) / d) - 2.0 * log_axes - ratio;
   };
   double log_axes = 0.0;
-  // Near the circle ln(b/a) = -2/3 ratio + O(ratio^3); the bracket's ends come from D >= B and from
-  // D < 26 B down to the smallest b/a.
+  // Near the circle ln(b/a) = -2/3 ratio + O(ratio^3). The bracket follows from D >= B, and from D
+  // < 26 B down to the smallest b/a.
   if (ratio > 1e-7) {
     const double high = -0.5 * ratio;
     const double low = -ratio - 2.0;
@@ -120,7 +120,7 @@ struct EllipticHertzState {
   double elastic_energy;  ///< integral of F over delta [J], >= 0
 };
 
-/// Hertz's contact of two surfaces of any curvatures: F = E* stiffness delta^1.5. One square root.
+/// Hertz contact of two surfaces of any curvatures: F = E* stiffness delta^1.5. One square root.
 /// @param effective_young_modulus E* [Pa], > 0
 /// @param shape from elliptic_shape()
 /// @param penetration_depth delta [m]; <= 0 is a gap and gives zeros. Arguments are not checked.

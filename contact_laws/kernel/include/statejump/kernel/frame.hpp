@@ -7,26 +7,26 @@
 
 namespace statejump::kernel {
 
-/// Carries a tangential vector (the history force of a contact) from the old tangent plane to the
-/// new one: the smallest rotation that takes n_old to n_new, then a twist about n_new.
+/// Rotates a tangential vector (the history force of a contact) from the old tangent plane to the
+/// new one. The rotation is the smallest that takes n_old to n_new, followed by a twist about
+/// n_new.
 ///
-/// For v in the old plane Rodrigues' formula with w = n_old x n_new and c = n_old . n_new,
-/// v c + w x v + w (w . v)/(1 + c), reduces to
+/// For v in the old plane, Rodrigues' formula with w = n_old x n_new and c = n_old . n_new, v c + w
+/// x v + w (w . v)/(1 + c), reduces to
 ///
-///     v - h 2 (v . n_new) / |h|^2,   h = n_old + n_new   (|h|^2 = 2 (1 + c)),
+///    v - h 2 (v . n_new) / |h|^2,   h = n_old + n_new   (|h|^2 = 2 (1 + c)).
 ///
-/// exact for any angle, without trigonometry, and accurate close to 180 degrees, where 1 + c
-/// cancels. The result is projected onto the new plane and brought back to the magnitude of v, so a
-/// force carried over millions of steps neither leaves its plane nor fades.
+/// This is exact for any angle and needs no trigonometry. It stays accurate near 180 degrees, where
+/// 1 + c cancels. The result is projected onto the new plane and rescaled to the magnitude of v. A
+/// force rotated over millions of steps therefore neither leaves its plane nor decays.
 ///
-/// @param tangential vector in the plane of n_old, any unit; a part along n_old is projected away,
-///        its magnitude is kept all the same
+/// @param tangential vector in the plane of n_old, any unit. A part along n_old is projected away;
+///        the magnitude is kept.
 /// @param n_old, n_new unit normals
-/// @param twist_angle [rad], right-handed about n_new: how far the two bodies have turned together
-///        about their common normal, mean of omega_1 . n and omega_2 . n times dt. Zero costs no
-///        trigonometry.
-/// @return zero for a zero vector or one along the normal, NaN for what is none. For n_new = -n_old
-///         the smallest rotation is not unique; the one that leaves v in place is taken.
+/// @param twist_angle [rad], right-handed about n_new: rotation of both bodies about their common
+///        normal, mean of omega_1 . n and omega_2 . n times dt. Zero costs no trigonometry.
+/// @return zero for a zero vector or one along the normal, NaN for a vector with NaN. For n_new =
+///        -n_old the smallest rotation is not unique; the vector is left unchanged.
 inline Vector3 transport(const Vector3& tangential, const Vector3& n_old, const Vector3& n_new,
                          double twist_angle = 0.0) {
   const double magnitude_squared = tangential.squaredNorm();
@@ -40,8 +40,8 @@ inline Vector3 transport(const Vector3& tangential, const Vector3& n_old, const 
 
   const double ratio = turned.squaredNorm() / magnitude_squared;
   if (ratio <= 1e-30) return Vector3::Zero();
-  // 1/sqrt(ratio) = 1 + (1 - ratio)/2 + 3/8 (1 - ratio)^2: below 1e-8 two terms are exact to
-  // rounding
+  // 1/sqrt(ratio) = 1 + (1 - ratio)/2 + 3/8 (1 - ratio)^2: for |1 - ratio| < 1e-8 two terms are
+  // exact to rounding
   const double excess = 1.0 - ratio;
   turned *= std::abs(excess) < 1e-8 ? 1.0 + 0.5 * excess : 1.0 / std::sqrt(ratio);
   if (twist_angle != 0.0) {

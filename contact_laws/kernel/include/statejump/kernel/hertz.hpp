@@ -10,14 +10,14 @@ namespace statejump::kernel {
 /// Effective radius of an internal contact, a pin in a hole: R = R1 R2 / (R2 - R1) [m].
 ///
 /// Curvatures add with sign (Johnson 1985, eq. 4.14): the journal is convex, +1/R1, the bearing
-/// concave, -1/R2. The paper's eq. (7) has R1 R2 / (R1 + R2), the external contact of two balls;
-/// the concave bearing makes the contact much stiffer.
+/// concave, -1/R2. The paper's eq. (7) has R1 R2 / (R1 + R2), the external contact of two balls.
+/// The concave bearing makes the contact much stiffer.
 /// @param journal_radius R1 [m], > 0 and finite
-/// @param bearing_radius R2 [m], > R1; +infinity is a flat wall and gives R1, negative a wall that
-///        bulges towards the journal with radius -R2
+/// @param bearing_radius R2 [m], > R1. +infinity is a flat wall and gives R1. A negative value is a
+///        wall of radius -R2 that bulges towards the journal.
 /// @throws std::invalid_argument when not 0 < R1 < R2 or R2 < 0
-/// Limit: Hertz needs a contact radius a = sqrt(R delta) well below R1; as R2 tends to R1 the
-/// contact turns conformal and this radius grows without bound.
+/// Limit: Hertz needs a contact radius a = sqrt(R delta) much smaller than R1. As R2 tends to R1
+/// the contact becomes conformal and this radius grows without bound.
 inline double internal_effective_radius(double journal_radius, double bearing_radius) {
   require(journal_radius > 0.0, "journal_radius", journal_radius, "(0, inf) m");
   require(bearing_radius > journal_radius || bearing_radius < 0.0, "bearing_radius", bearing_radius,
@@ -33,7 +33,7 @@ inline double hertz_stiffness(double effective_young_modulus, double effective_r
   return 4.0 / 3.0 * effective_young_modulus * std::sqrt(effective_radius);
 }
 
-/// Depth delta = (F/K)^(2/3) [m] at which Hertz's point contact carries a force.
+/// Depth delta = (F/K)^(2/3) [m] at which Hertz's point contact carries the force F.
 /// @param effective_young_modulus E* [Pa], > 0, @param effective_radius R [m], > 0
 /// @param force F [N], >= 0
 inline double hertz_depth(double effective_young_modulus, double effective_radius, double force) {
@@ -50,8 +50,8 @@ struct HertzState {
 
 /// Hertz's point contact of two elastic bodies (Johnson 1985, eqs 4.22 and 4.23).
 ///
-/// A pressure p0 sqrt(1 - r^2/a^2) on a circle of radius a indents the pair by
-/// delta = pi a p0 / (2 E*) and fits the undeformed gap r^2/(2R) when p0 = 2 a E* / (pi R); hence
+/// A pressure p0 sqrt(1 - r^2/a^2) on a circle of radius a indents the pair by delta = pi a p0 / (2
+/// E*). It fits the undeformed gap r^2/(2R) when p0 = 2 a E* / (pi R), hence
 ///
 ///     a = sqrt(R delta)
 ///     F = 2/3 pi a^2 p0 = 4/3 E* sqrt(R) delta^1.5 = 4/3 E* a delta

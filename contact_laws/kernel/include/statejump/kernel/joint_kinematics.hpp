@@ -18,8 +18,8 @@ struct BodyMotion {
 };
 
 /// Geometry of one contact point between body 1 (journal, ball, slider) and body 2 (bearing,
-/// socket, slot, other ball).
-/// Filled for a gap too; then the arms meet in the middle of the gap.
+/// socket, slot, other ball). It is also filled for a gap; then the arms meet in the middle of the
+/// gap.
 struct JointContact {
   double penetration_depth;   ///< delta [m]; negative: gap
   Vector3 normal;             ///< unit, from body 1 into body 2
@@ -33,7 +33,7 @@ using RevoluteContact = JointContact;  ///< of revolute_contact()
 using BallContact = JointContact;      ///< of ball_contact()
 using PlaneContact = JointContact;     ///< of plane_contact()
 
-/// What the law needs of a joint's geometry. @param time_step dt [s]
+/// Kinematics that the contact law needs from the geometry of a joint. @param time_step dt [s]
 inline ContactKinematics contact_kinematics(const JointContact& contact, double time_step) {
   return {contact.normal, contact.penetration_depth, contact.effective_radius,
           contact.relative_velocity, time_step};
@@ -44,12 +44,12 @@ inline Vector3 material_velocity(const BodyMotion& body, const Vector3& arm) {
   return body.velocity + cross(body.angular_velocity, arm);
 }
 
-/// Part of v perpendicular to a unit axis; same unit as v.
+/// Component of v perpendicular to a unit axis; same unit as v.
 inline Vector3 perpendicular_part(const Vector3& v, const Vector3& axis) {
   return v - v.dot(axis) * axis;
 }
 
-/// Penetration depth of journal and bearing [m], eq. (12): delta = |d| - (R2 - R1), d being the
+/// Penetration depth of journal and bearing [m], eq. (12): delta = |d| - (R2 - R1), where d is the
 /// offset of eq. (11) perpendicular to the axis. Negative: gap. One square root.
 /// @param journal_centre, bearing_centre [m]; @param journal_radius, bearing_radius [m]
 /// @param axis unit, the bearing's axis
@@ -60,10 +60,10 @@ inline double revolute_penetration(const Vector3& journal_centre, double journal
          (bearing_radius - journal_radius);
 }
 
-/// Whether journal and bearing touch: revolute_penetration() > 0 decided on squares, without a
-/// square root. It may differ from that by rounding, at |delta| of some 1e-16 of the clearance. A
-/// bearing not larger than the journal counts as touching, so that revolute_contact() reports it,
-/// and so do positions that are no numbers, of which it makes a depth that is none.
+/// Whether journal and bearing touch: revolute_penetration() > 0, decided on squares without a
+/// square root. The two may differ by rounding, at |delta| of about 1e-16 of the clearance. A
+/// bearing not larger than the journal counts as touching, so that revolute_contact() reports it.
+/// NaN positions count as touching too, so that the depth becomes NaN.
 inline bool revolute_touches(const Vector3& journal_centre, double journal_radius,
                              const Vector3& bearing_centre, double bearing_radius,
                              const Vector3& axis) {
@@ -75,10 +75,10 @@ inline bool revolute_touches(const Vector3& journal_centre, double journal_radiu
 
 namespace detail {
 
-/// One contact of round parts, a journal or ball inside a bearing or socket.
-/// @param centres centre 1 minus centre 2, @param offset d, the part of it that closes the
-/// clearance
-/// @param concentric_normal gives the normal when d is zero
+/// One contact of round bodies: a journal or ball inside a bearing or socket.
+/// @param centres centre 1 minus centre 2, @param offset d, the part of centres that closes the
+///        clearance
+/// @param concentric_normal returns the normal when d is zero
 template <class Normal>
 JointContact round_contact(const BodyMotion& inner, double inner_radius, const BodyMotion& outer,
                            double outer_radius, const Vector3& centres, const Vector3& offset,
@@ -88,7 +88,7 @@ JointContact round_contact(const BodyMotion& inner, double inner_radius, const B
   if (offset_squared <= std::numeric_limits<double>::min()) {
     contact.eccentricity = 0.0;
     contact.normal = concentric_normal();
-  } else {  // NaN, too: concentric it is not
+  } else {  // NaN, too: the bodies are not concentric
     contact.eccentricity = std::sqrt(offset_squared);
     contact.normal = offset * (1.0 / contact.eccentricity);
   }
@@ -108,19 +108,19 @@ JointContact round_contact(const BodyMotion& inner, double inner_radius, const B
 ///     d = r_C - r_D, perpendicular to the bearing's axis;   delta = |d| - c;   n = d/|d|.
 ///
 /// The paper's two contact points of eq. (14), r_C + R1 n and r_D + R2 n, are delta apart. Here
-/// there is one, half-way between them and in the journal's mid-plane,
+/// there is one point, half-way between them and in the journal's mid-plane,
 ///
-///     P = r_C + (R1 - delta/2) n = r_D + (axial offset) + (R2 + delta/2) n,
+///    P = r_C + (R1 - delta/2) n = r_D + (axial offset) + (R2 + delta/2) n,
 ///
 /// so that the moments of action and reaction balance. The velocities are those of the material at
-/// P, v + omega x arm; eqs (15) and (16) differentiate the geometric points instead, which leaves
-/// out the spin and with it the sliding of a turning journal.
+/// P, v + omega x arm. Eqs (15) and (16) differentiate the geometric points instead. That omits the
+/// spin, and with it the sliding of a rotating journal.
 ///
-/// One square root, two divisions. The axial offset does not change the depth: an infinitely long
-/// joint; tilt of the journal against the axis is not seen.
+/// One square root, two divisions. The axial offset does not change the depth: the joint is
+/// infinitely long. Tilt of the journal relative to the axis is ignored.
 /// @param journal_radius R1 [m], @param bearing_radius R2 [m], 0 < R1 < R2
 /// @param axis unit, the bearing's axis, either direction
-/// @return for concentric parts a gap of -c with some unit normal perpendicular to the axis
+/// @return for concentric bodies a gap of -c with some unit normal perpendicular to the axis
 /// @throws std::invalid_argument when not 0 < R1 < R2
 inline RevoluteContact revolute_contact(const BodyMotion& journal, double journal_radius,
                                         const BodyMotion& bearing, double bearing_radius,
@@ -141,7 +141,7 @@ inline double ball_penetration(const Vector3& ball_centre, double ball_radius,
   return (ball_centre - socket_centre).norm() - (socket_radius - ball_radius);
 }
 
-/// Whether ball and socket touch, as revolute_touches().
+/// Whether ball and socket touch; decided as in revolute_touches().
 inline bool ball_touches(const Vector3& ball_centre, double ball_radius,
                          const Vector3& socket_centre, double socket_radius) {
   const double clearance = socket_radius - ball_radius;
@@ -154,11 +154,11 @@ inline bool ball_touches(const Vector3& ball_centre, double ball_radius,
 ///
 ///     d = r_C - r_D;   delta = |d| - c;   n = d/|d|;   P = r_C + (R1 - delta/2) n.
 ///
-/// The bodies touch along a circle exactly, whose effective radius is R1 R2/(R2 - R1): the case for
-/// which Hertz' formulas are made. The whole inner sphere counts; the opening of the socket is not
-/// seen. One square root, two divisions.
+/// The bodies touch exactly along a circle of effective radius R1 R2/(R2 - R1), as Hertz's formulas
+/// assume. The whole inner sphere counts; the opening of the socket is ignored. One square root,
+/// two divisions.
 /// @param ball_radius R1 [m], @param socket_radius R2 [m], 0 < R1 < R2
-/// @return for concentric parts a gap of -c with normal x
+/// @return for concentric bodies a gap of -c with normal x
 /// @throws std::invalid_argument when not 0 < R1 < R2
 inline BallContact ball_contact(const BodyMotion& ball, double ball_radius,
                                 const BodyMotion& socket, double socket_radius) {
@@ -167,8 +167,8 @@ inline BallContact ball_contact(const BodyMotion& ball, double ball_radius,
                                [] { return Vector3(Vector3::UnitX()); });
 }
 
-/// Whether two balls touch each other from outside, decided on squares as revolute_touches():
-/// positions that are no numbers count as touching.
+/// Whether two balls touch each other from outside, decided on squares as in revolute_touches().
+/// NaN positions count as touching.
 /// @param centre_1, centre_2 [m]; @param radius_1 R1, radius_2 R2 [m]
 inline bool outer_balls_touch(const Vector3& centre_1, double radius_1, const Vector3& centre_2,
                               double radius_2) {
@@ -180,12 +180,12 @@ inline bool outer_balls_touch(const Vector3& centre_1, double radius_1, const Ve
 ///
 ///     delta = R1 + R2 - |d|;   n = -d/|d|;   P = r_1 + (R1 - delta/2) n.
 ///
-/// It is ball_contact() with the socket turned inside out, R2 < 0: the effective radius is
-/// R1 R2/(R1 + R2), the clearance -(R1 + R2) and the eccentricity -|d|. One square root, two
+/// It is ball_contact() with the socket turned inside out, R2 < 0. The effective radius is R1
+/// R2/(R1 + R2), the clearance -(R1 + R2) and the eccentricity -|d|. One square root, two
 /// divisions.
 /// @param radius_1 R1 [m], @param radius_2 R2 [m], both > 0; |d| > 0
-/// @throws std::invalid_argument when R1 or R2 is not above 0
-/// Limit: Hertz's contact is small against both balls; a depth near a radius means nothing.
+/// @throws std::invalid_argument when R1 or R2 is not > 0
+/// Limit: Hertz's contact is small relative to both balls; a depth near a radius has no meaning.
 inline BallContact outer_ball_contact(const BodyMotion& ball_1, double radius_1,
                                       const BodyMotion& ball_2, double radius_2) {
   BallContact contact;
@@ -206,7 +206,7 @@ inline BallContact outer_ball_contact(const BodyMotion& ball_1, double radius_1,
 ///
 ///     delta = R - (w - (r_1 - r_2) . n),   P = r_1 + (R - delta/2) n,
 ///
-/// w being the distance of the wall from the slot's centre. Material velocities at P as in
+/// where w is the distance of the wall from the slot's centre. Material velocities at P as in
 /// revolute_contact(). The effective radius is R: the wall is flat. No square root, no division.
 /// @param slider body 1, whose centre is the pad's centre of curvature
 /// @param pad_radius R [m], > 0

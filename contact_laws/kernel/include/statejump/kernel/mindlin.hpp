@@ -9,8 +9,8 @@
 
 namespace statejump::kernel {
 
-/// What a contact remembers from one step to the next. The caller keeps it, rotates force and axis
-/// with the contact (transport() in frame.hpp) and starts a new contact with a default-made one.
+/// Memory of a contact between steps. The caller stores it, rotates force and axis with the contact
+/// (transport() in frame.hpp) and default-constructs it for a new contact.
 struct ContactHistory {
   Vector3 tangential_force = Vector3::Zero();  ///< of the spring, on body 1 [N]; no viscous part
   double tangential_stiffness = 0.0;  ///< k_t at which that force was stored [N/m]; 0: new contact
@@ -19,7 +19,7 @@ struct ContactHistory {
   PartialSlipMemory memory{};                 ///< of a law with partial slip
 };
 
-/// Energy [J] that a contact's friction holds: of the spring, or of the memory where there is one.
+/// Energy [J] stored by a contact's friction: of the spring, or of the memory if there is one.
 inline double elastic_energy(const ContactHistory& history) {
   if (history.memory.size() > 0) return elastic_energy(history.memory);
   const double stiffness = history.tangential_stiffness;
@@ -35,7 +35,7 @@ inline double mindlin_stiffness(double effective_shear_modulus, double contact_r
 
 namespace detail {
 
-/// What a spring remembers.
+/// Stores the state of a spring.
 inline void keep(const Vector3& force, double stiffness, bool slipping, ContactHistory& history) {
   history.tangential_force = force;
   history.tangential_stiffness = stiffness;
@@ -54,42 +54,44 @@ struct MindlinEnergy {
 
 /// One step of the tangential history spring with Coulomb's limit; updates the history.
 ///
-/// The spring carries F = -k s on body 1, s being the elastic slide of 1 against 2. A step has
-/// three parts, F0 and k0 from the history, k the stiffness now, u the slide of this step:
+/// The spring carries F = -k s on body 1, where s is the elastic slide of 1 relative to 2. A step
+/// has three parts, with F0 and k0 from the history, the current stiffness k and the slide u of
+/// this step:
 ///
-///  1. The stiffness follows the normal load. Loading (k >= k0): the new ring of contact carries no
-///     traction yet, the force stays, F' = F0. Unloading (k < k0): the slide s stays,
-///     F' = F0 k/k0. The spring energy 1/2 F0^2/k0 - 1/2 F'^2/k >= 0 lost either way is micro-slip
-///     at the rim. Keeping F0 on unloading would create energy (Thornton, Cummins and Cleary,
-///     2013).
+///  1. The stiffness follows the normal load. Loading (k >= k0): the new annulus of contact carries
+/// no
+///    traction yet, the force stays, F' = F0. Unloading (k < k0): the slide s stays, F' = F0 k/k0.
+///    Either way the spring loses the energy 1/2 F0^2/k0 - 1/2 F'^2/k >= 0 as micro-slip at the
+///    rim. Keeping F0 during unloading would create energy (Thornton, Cummins and Cleary, 2013).
 ///  2. Stick: trial force T = F' - k u.
-///  3. Coulomb: where |T| exceeds the limit, F1 = limit T/|T|; the excess
-///     slip = (|T| - limit)/k is plastic. Otherwise F1 = T.
+///  3. Coulomb: if |T| exceeds the limit, F1 = limit T/|T|; the excess slip = (|T| - limit)/k is
+///    plastic. Otherwise F1 = T.
 ///
-/// Discrete energy identity. A leapfrog integrator does, with u = v(n-1/2) dt, the work
-/// -1/2 (F0 + F1) . u on the contact over a step (summation by parts of F . v dt). The dissipation
-/// D is defined by
+/// Discrete energy identity. With u = v(n-1/2) dt, a leapfrog integrator does the work -1/2 (F0 +
+/// F1) . u on the contact in a step (summation by parts of F . v dt). The dissipation D is defined
+/// by
 ///
-///     -1/2 (F0 + F1) . u = (1/2 F1^2/k - 1/2 F0^2/k0) + D,
+///    -1/2 (F0 + F1) . u = (1/2 F1^2/k - 1/2 F0^2/k0) + D,
 ///
-/// which the three parts turn into sums without cancellation:
+/// which the three parts transform into sums without cancellation:
 ///
-///     loading       1/2 F0^2 (1/k0 - 1/k)
-///     unloading     1/2 (1 - k/k0) (F0^2/k0 - F0 . u)
-///     slip          1/2 (F' . T/|T| + limit) slip     (limit * slip in steady sliding)
+///    loading       1/2 F0^2 (1/k0 - 1/k)
+///    unloading     1/2 (1 - k/k0) (F0^2/k0 - F0 . u)
+///    slip          1/2 (F' . T/|T| + limit) slip     (limit * slip in steady sliding)
 ///
-/// So the account closes to rounding in every step. One exception: when the force turns round
-/// within one step while the normal load falls, the mean of the two end forces undercuts the true
-/// work and D would be negative by a term of second order in the step; D is then 0.
+/// So the energy balance closes to rounding in every step, with one exception. If the force
+/// reverses within one step while the normal load decreases, the mean of the two end forces is
+/// below the true work. D would be negative by a term of second order in the step; D is then 0.
 ///
-/// One square root and three divisions in a slip step, two divisions in a stick step.
-/// @param stiffness k [N/m]; <= 0: contact lost, all spring energy is released and booked
+/// Cost: one square root and three divisions in a slip step, two divisions in a stick step.
+/// @param stiffness k [N/m]; <= 0: contact lost, all spring energy is released and counted as loss
 /// @param limit mu F_N [N]; <= 0: no friction, the force is exactly zero
-/// @param slide u, tangential slide of 1 against 2 in this step [m]
-/// @param history in: F0 (already in the present tangent plane), k0; out: F1, k. A force
-///        stored with k0 = 0 is dropped.
-/// Limits: the spring of a full contact; Mindlin and Deresiewicz's partial-slip loops below the
-/// limit are not resolved. A cyclic normal load bleeds a stuck force: kept on loading, scaled down
+/// @param slide u, tangential slide of 1 relative to 2 in this step [m]
+/// @param history in: F0 (already in the current tangent plane), k0; out: F1, k. A force stored
+///        with k0 = 0 is dropped.
+/// Limits: a single spring for the whole contact; Mindlin and Deresiewicz's partial-slip loops
+/// below the limit are not resolved. A cyclic normal load reduces a stuck force, because loading
+/// keeps it and unloading scales it down.
 /// on unloading.
 inline MindlinEnergy mindlin_step(double stiffness, double limit, const Vector3& slide,
                                   ContactHistory& history) {

@@ -14,10 +14,10 @@ namespace statejump::kernel {
 
 namespace detail {
 
-/// One step, from the trial state to the new memory.
+/// Computes one step, from the trial state to the new memory.
 class PartialSlipStep {
  public:
-  /// @param memory before the step; run() leaves in it what is remembered after
+  /// @param memory before the step; run() updates it
   PartialSlipStep(double stiffness, double limit, const Tangent& slide, PartialSlipMemory& memory)
       : edge_(stiffness),
         square_(stiffness * stiffness),
@@ -25,60 +25,62 @@ class PartialSlipStep {
         slide_(slide),
         old_(memory),
         old_edge_(memory.edge()),
-        accounts_(memory.accounts()),
+        tracks_energy_(memory.tracks_energy()),
         smallest_(1e-15 * slope_ * square_) {}
 
-  /// Loss of rings that lose what presses them together evenly over a step [J].
+  /// Loss of annuli whose pressure decreases uniformly to zero over a step [J].
   static double released(const Tangent& slide, PartialSlipMemory& memory) {
     const PartialSlipStep step(memory.edge() * 1e-9, 0.0, slide, memory);
     double sum = 0.0;
     for (int i = 1; i < memory.size(); ++i) {
-      sum += step.left(memory[i - 1], memory[i], memory.edge() * memory.edge());
+      sum += step.leaving_loss(memory[i - 1], memory[i], memory.edge() * memory.edge());
     }
     return sum;
   }
 
   PartialSlipResponse run() {
-    stuck_ = stuck();
-    if (stuck_ < old_.held().count) old_.release();
-    trial();
-    slipping_ = stuck_ == 0;  // all rings but the rim's, which carries nothing
+    stuck_ = count_stuck();
+    if (stuck_ < old_.prefix().count) old_.flush_prefix();
+    make_trial();
+    slipping_ = stuck_ == 0;  // all annuli but the rim, which carries no force
     for (int i = 0; slipping_ && i + 1 < knots_; ++i) slipping_ = at(i).outside;
-    add(at(0).x, at(0).outside ? bent(at(0)) : at(0).trial, false);
+    add(at(0).x, at(0).outside ? projected(at(0)) : at(0).trial, false);
     for (int i = 1; i < knots_; ++i) {
       pieces_left_ = knots_ - i;
       if (at(i - 1).outside || at(i).outside) {
-        piece(at(i - 1), at(i));
+        add_piece(at(i - 1), at(i));
       } else {
         add_stuck(at(i).x, at(i).trial);
       }
     }
-    store();
-    return answer(old_, loss_, slipping_);
+    store_memory();
+    return response_of(old_, loss_, slipping_);
   }
 
  private:
-  /// A point of the trial state: the old profile and what the step does to it.
+  /// A point of the trial state: the old profile and its change in the step.
   struct Knot {
     double x;
     Tangent old;
-    double share;   ///< of the slide that this ring takes part in
-    Tangent trial;  ///< old + share slide
-    double bound;   ///< on |U| now
+    double fraction;  ///< fraction of the slide in which this annulus takes part
+    Tangent trial;    ///< old + fraction slide
+    double bound;     ///< current bound on |U|
     bool outside;
   };
 
-  /// Points from the centre on that stick and lie well within what the step changes: they move with
-  /// the slide and nothing else happens to them. Rings slip from the rim inwards, so that these are
-  /// nearly all of a contact that is held; the rest is bent and tidied up by itself, with
-  /// `neighbours` of them. What the memory holds is not looked at while it is held well enough.
-  int stuck() {
+  /// Number of points from the centre that stick, with a margin to the points that change. They
+  /// only move with the slide. Slip starts at the rim, so nearly all points of a sticking contact
+  /// belong here. The other points, with `neighbours` of these, are projected and merged. The
+  /// points of the prefix are not visited while the prefix is valid.
+  int count_stuck() {
     constexpr int neighbours = 2;
     const int most = old_.size() - neighbours + 1;
     if (most <= neighbours) return 0;
-    const int held = old_.held().count;
-    if (held > 0 && !old_.holds(slide_, bound(0.0), bound(old_[held - 1].x))) old_.release();
-    int inside = old_.held().count;
+    const int prefix = old_.prefix().count;
+    if (prefix > 0 && !old_.prefix_fits(slide_, bound(0.0), bound(old_[prefix - 1].x))) {
+      old_.flush_prefix();
+    }
+    int inside = old_.prefix().count;
     while (inside < most && !outside(old_[inside])) ++inside;
     return std::max(0, (inside < most ? inside : most) - neighbours);
   }
@@ -95,20 +97,21 @@ class PartialSlipStep {
     return std::max(0.0, old_.slope() * (old_edge_ - x) * (old_edge_ + x));
   }
 
-  Knot knot(double x, const Tangent& old, double share) const {
-    const Tangent trial = old + share * slide_;
+  Knot knot(double x, const Tangent& old, double fraction) const {
+    const Tangent trial = old + fraction * slide_;
     const double most = bound(x);
     const double outer = most + smallest_;
-    return {x, old, share, trial, most, trial.squared() > outer * outer};
+    return {x, old, fraction, trial, most, trial.squared() > outer * outer};
   }
 
-  static Tangent bent(const Knot& k) {
+  static Tangent projected(const Knot& k) {
     const double size = k.trial.norm();
     return size > 0.0 ? (k.bound / size) * k.trial : Tangent{};
   }
 
-  /// The knots between which everything is straight over x^2; what leaves the contact is lost.
-  void trial() {
+  /// The knots between which all functions are linear in x^2. Annuli that leave the contact lose
+  /// their energy.
+  void make_trial() {
     if (old_.size() == 0) push(knot(0.0, {}, 1.0));
     int i = stuck_;
     for (; i < old_.size() && old_[i].x < edge_; ++i) push(knot(old_[i].x, old_[i].u, 1.0));
@@ -120,7 +123,7 @@ class PartialSlipStep {
     if (i > 0 && cut.x > edge_) cut = {edge_, between(old_[i - 1], cut, edge_)};
     push(knot(edge_, cut.u, 1.0));
     for (; i < old_.size(); ++i) {
-      leave(cut, old_[i]);
+      add_leaving_loss(cut, old_[i]);
       cut = old_[i];
     }
   }
@@ -132,33 +135,33 @@ class PartialSlipStep {
     return a.u + ((x - a.x) * (x + a.x) / ((b.x - a.x) * (b.x + a.x))) * (b.u - a.u);
   }
 
-  /// Rings that leave the contact on the way, x^2 falling evenly.
-  void leave(const PartialSlipMemory::Point& a, const PartialSlipMemory::Point& b) {
-    if (!accounts_) return;
+  /// Loss of annuli that leave the contact during the step, while x^2 decreases uniformly.
+  void add_leaving_loss(const PartialSlipMemory::Point& a, const PartialSlipMemory::Point& b) {
+    if (!tracks_energy_) return;
     const double fall = (old_edge_ - edge_) * (old_edge_ + edge_);
-    if (b.x > a.x && fall > 0.0) loss_ += left(a, b, fall);
+    if (b.x > a.x && fall > 0.0) loss_ += leaving_loss(a, b, fall);
   }
-  double left(const PartialSlipMemory::Point& a, const PartialSlipMemory::Point& b,
-              double fall) const {
-    const auto ring = [&](double x, const Tangent& u) {
+  double leaving_loss(const PartialSlipMemory::Point& a, const PartialSlipMemory::Point& b,
+                      double fall) const {
+    const auto annulus = [&](double x, const Tangent& u) {
       return std::pair{u, ((old_edge_ - x) * (old_edge_ + x) / fall) * slide_};
     };
-    const auto [start_a, slide_a] = ring(a.x, a.u);
-    const auto [start_b, slide_b] = ring(b.x, b.u);
+    const auto [start_a, slide_a] = annulus(a.x, a.u);
+    const auto [start_b, slide_b] = annulus(b.x, b.u);
     const Tangent end_a = start_a + slide_a;
     const Tangent end_b = start_b + slide_b;
-    if (end_a.dot(end_b) < 0.0) {  // they leave to opposite sides: each by itself
+    if (end_a.dot(end_b) < 0.0) {  // they leave to opposite sides: treat each separately
       const double size_a = end_a.norm();
       const double s = size_a / (size_a + end_b.norm());
       const double x = std::sqrt(a.x * a.x + s * (b.x - a.x) * (b.x + a.x));
       if (x > a.x && x < b.x) {
         const PartialSlipMemory::Point middle{x, between(a, b, x)};
-        return left(a, middle, fall) + left(middle, b, fall);
+        return leaving_loss(a, middle, fall) + leaving_loss(middle, b, fall);
       }
     }
-    const Tangent way = direction(end_a + end_b);
-    return loss(a.x, {start_a.dot(way), slide_a.dot(way), old_bound(a.x), 0.0}, b.x,
-                {start_b.dot(way), slide_b.dot(way), old_bound(b.x), 0.0});
+    const Tangent axis = direction(end_a + end_b);
+    return loss(a.x, {start_a.dot(axis), slide_a.dot(axis), old_bound(a.x), 0.0}, b.x,
+                {start_b.dot(axis), slide_b.dot(axis), old_bound(b.x), 0.0});
   }
 
   static Tangent direction(const Tangent& v) {
@@ -166,16 +169,16 @@ class PartialSlipStep {
     return size > 0.0 ? (1.0 / size) * v : Tangent{1.0, 0.0};
   }
 
-  /// Between two knots: parts inside the bound stay, the others are bent back to it.
-  void piece(const Knot& a, const Knot& b) {
+  /// Between two knots: parts inside the bound stay, the others are projected onto it.
+  void add_piece(const Knot& a, const Knot& b) {
     if (a.outside && b.outside && is_chord_of_bound(a, b)) {
       slip(a, b);
     } else if (a.outside && b.outside) {
       const double first = crossing(a, b);
       const double second = 1.0 - crossing(b, a);
       if (first < second) {
-        const Knot in = on(a, b, first);
-        const Knot out = on(a, b, second);
+        const Knot in = knot_at(a, b, first);
+        const Knot out = knot_at(a, b, second);
         slip(a, in);
         add(out.x, out.trial, false);
         slip(out, b);
@@ -183,28 +186,28 @@ class PartialSlipStep {
         slip(a, b);
       }
     } else if (b.outside) {
-      const Knot edge = on(a, b, 1.0 - std::min(1.0, crossing(b, a)));
+      const Knot edge = knot_at(a, b, 1.0 - std::min(1.0, crossing(b, a)));
       add(edge.x, edge.trial, false);
       slip(edge, b);
     } else {
-      slip(a, on(a, b, std::min(1.0, crossing(a, b))));
+      slip(a, knot_at(a, b, std::min(1.0, crossing(a, b))));
       add(b.x, b.trial, false);
     }
   }
 
-  /// Share of the way over x^2 from a knot outside the bound towards another at which the bound is
-  /// met; 2: nowhere. |U| - bound is convex along it, so that Newton's steps do not go too far; in
-  /// one direction the first one is exact.
+  /// Fraction of the distance in x^2, from a knot outside the bound to another, at which the bound
+  /// is met; 2 if it is not met. |U| - bound is convex there, so Newton's steps do not overshoot.
+  /// In one direction the first step is exact.
   double crossing(const Knot& out, const Knot& other) const {
-    const Tangent way = other.trial - out.trial;
+    const Tangent span = other.trial - out.trial;
     const double fall = other.bound - out.bound;
     double s = 0.0;
     for (int i = 0; i < 30; ++i) {
-      const Tangent u = out.trial + s * way;
+      const Tangent u = out.trial + s * span;
       const double size = u.norm();
       const double beyond = size - (out.bound + s * fall);
       if (i > 0 && beyond <= smallest_) return s;
-      const double change = u.dot(way) - size * fall;
+      const double change = u.dot(span) - size * fall;
       if (!(change < 0.0)) return 2.0;
       s -= beyond * size / change;
       if (s > 1.0) return 2.0;
@@ -212,12 +215,12 @@ class PartialSlipStep {
     return s;
   }
 
-  /// The knot at a share of the way over x^2.
-  Knot on(const Knot& a, const Knot& b, double s) const {
+  /// The knot at a fraction of the distance in x^2.
+  Knot knot_at(const Knot& a, const Knot& b, double s) const {
     const double x = std::sqrt(a.x * a.x + s * (b.x - a.x) * (b.x + a.x));
     Knot k{std::clamp(x, a.x, b.x),
            a.old + s * (b.old - a.old),
-           a.share + s * (b.share - a.share),
+           a.fraction + s * (b.fraction - a.fraction),
            a.trial + s * (b.trial - a.trial),
            0.0,
            false};
@@ -225,85 +228,92 @@ class PartialSlipStep {
     return k;
   }
 
-  /// A piece that slips as a whole. Its direction turns along it where the old one differs from
-  /// that of the slide: chords, none of which goes further off in this step than its budget().
+  /// A piece that slips as a whole. If the old direction differs from the slide, the direction
+  /// changes along the piece. Chords approximate it, each within chord_tolerance() in this step.
   void slip(const Knot& a, const Knot& b, int depth = 0) {
     if (!(b.x > a.x)) return;
     const double cross = a.trial.a * b.trial.b - a.trial.b * b.trial.a;
     const double along = a.trial.dot(b.trial);
     const bool turns = std::abs(cross) > straight * std::abs(along) || along < 0.0;
-    if (turns && depth < deepest && knots_left()) {
-      const Knot middle = on(a, b, 0.5);
-      // a ring between them that is as near to its bound as they are
-      Knot ring = middle;
-      ring.old = (0.5 * (a.old.norm() + b.old.norm())) * direction(middle.old);
-      ring.trial = ring.old + ring.share * slide_;
-      const Tangent off = (bent(ring) - ring.old) - 0.5 * ((bent(a) - a.old) + (bent(b) - b.old));
-      if (off.norm() * (b.x - a.x) > budget()) {
+    if (turns && depth < most_divisions && knots_left()) {
+      const Knot middle = knot_at(a, b, 0.5);
+      // an annulus between them that is as close to its bound as they are
+      Knot annulus = middle;
+      annulus.old = (0.5 * (a.old.norm() + b.old.norm())) * direction(middle.old);
+      annulus.trial = annulus.old + annulus.fraction * slide_;
+      const Tangent off = (projected(annulus) - annulus.old) -
+                          0.5 * ((projected(a) - a.old) + (projected(b) - b.old));
+      if (off.norm() * (b.x - a.x) > chord_tolerance()) {
         slip(a, middle, depth + 1);
         slip(middle, b, depth + 1);
         return;
       }
     }
-    if (!accounts_) {
-      // nobody asks for the loss
+    if (!tracks_energy_) {
+      // energies are not requested
     } else if (turns && on_old_bound(a) && on_old_bound(b)) {
       loss_ += loss_of_chord(a, b);
     } else {
-      const Tangent way = direction(a.trial + b.trial);
-      const auto ring = [&](const Knot& k) {
-        const Tangent own = turns ? direction(k.trial) : way;
-        return Ring{k.old.dot(own), k.share * slide_.dot(own), old_bound(k.x), k.bound};
+      const Tangent axis = direction(a.trial + b.trial);
+      const auto annulus = [&](const Knot& k) {
+        const Tangent own = turns ? direction(k.trial) : axis;
+        return SlipAnnulus{k.old.dot(own), k.fraction * slide_.dot(own), old_bound(k.x), k.bound};
       };
-      loss_ += loss(a.x, ring(a), b.x, ring(b));
+      loss_ += loss(a.x, annulus(a), b.x, annulus(b));
     }
-    add(b.x, bent(b), true);
+    add(b.x, projected(b), true);
   }
 
-  /// By how much one chord may change the force in this step [N]: over the slide after which rings
-  /// forget, however many steps it takes, by `chord` of the limit.
-  double budget() const { return chord * edge_ * std::min(slope_ * square_, slide_.norm()); }
+  /// Largest change of force by one chord in this step [N]. Over the slide that erases the memory,
+  /// in any number of steps, the changes sum to `chord` of the limit.
+  double chord_tolerance() const {
+    return chord * edge_ * std::min(slope_ * square_, slide_.norm());
+  }
 
   bool on_old_bound(const Knot& k) const { return k.old.norm() >= (1.0 - 1e-9) * old_bound(k.x); }
-  static bool turned(const Tangent& a, const Tangent& b) {
+  static bool differ_in_direction(const Tangent& a, const Tangent& b) {
     const double cross = a.a * b.b - a.b * b.a;
     return cross * cross > straight * straight * (a.squared() * b.squared());
   }
 
-  /// Whether rings between two knots slipped in directions between theirs. The chord lies within
-  /// the bound; that its rings stuck would be an answer to the chord.
+  /// Whether annuli between two knots slipped in directions between theirs. The chord itself lies
+  /// inside the bound, so its annuli would wrongly seem to stick.
   bool is_chord_of_bound(const Knot& a, const Knot& b) const {
     constexpr double near = 0.8;  // chords are divided long before; after a kink they are not
-    return turned(a.old, b.old) &&
+    return differ_in_direction(a.old, b.old) &&
            a.old.dot(b.old) > near * std::sqrt(a.old.squared() * b.old.squared()) &&
            on_old_bound(a) && on_old_bound(b);
   }
 
-  /// Mean of U at both ends of the step, times its slip: of rings that slip all through it, as
-  /// chords have them, so that energies close.
+  /// Mean of U at both ends of the step, times the slip. It is the loss of annuli that slip during
+  /// the whole step, as on chords; energies then balance.
   static double loss_of_chord(const Knot& a, const Knot& b) {
-    const auto mean = [](const Knot& k) { return 0.5 * (k.old + bent(k)); };
-    const auto slipped = [](const Knot& k) { return k.trial - bent(k); };
-    const Piece w(a.x, b.x);
-    return std::max(0.0, w.both_at_a * mean(a).dot(slipped(a)) +
-                             w.both_at_b * mean(b).dot(slipped(b)) +
-                             w.one_each * (mean(a).dot(slipped(b)) + mean(b).dot(slipped(a))));
+    const auto mean = [](const Knot& k) { return 0.5 * (k.old + projected(k)); };
+    const auto slipped = [](const Knot& k) { return k.trial - projected(k); };
+    const ProductWeights w(a.x, b.x);
+    return std::max(0.0, w.weight_aa * mean(a).dot(slipped(a)) +
+                             w.weight_bb * mean(b).dot(slipped(b)) +
+                             w.weight_ab * (mean(a).dot(slipped(b)) + mean(b).dot(slipped(a))));
   }
 
-  /// Whether a chord may be divided: each piece that is still to come may add three points, and
-  /// each half of a chord that is being divided one.
-  bool knots_left() const { return stuck_ + size_ + 3 * pieces_left_ + 2 * deepest < largest; }
+  /// Whether a chord may be divided. Each remaining piece may add three points, and each half of a
+  /// chord under division one.
+  bool knots_left() const {
+    return stuck_ + size_ + 3 * pieces_left_ + 2 * most_divisions < largest;
+  }
 
-  /// Adds a point of the new profile. @param on_bound the piece that ends here follows the bound
+  /// Adds a point of the new profile. @param on_bound whether the piece that ends here follows the
+  /// bound
   void add(double x, const Tangent& u, bool on_bound) {
-    look_and_add(x, u, on_bound);
-    bends_ = size_ > 1 && turned(point_[static_cast<std::size_t>(size_ - 2)].u, last().u);
+    add_checked(x, u, on_bound);
+    turns_ =
+        size_ > 1 && differ_in_direction(point_[static_cast<std::size_t>(size_ - 2)].u, last().u);
   }
 
-  /// The same of a piece inside the bound, mostly without a look at the points before, of which
-  /// there is one at least.
+  /// Adds a point inside the bound. Usually it does not look at earlier points; at least one must
+  /// exist.
   void add_stuck(double x, const Tangent& u) {
-    if (bends_ || !(x > last().x) || turned(last().u, u)) {
+    if (turns_ || !(x > last().x) || differ_in_direction(last().u, u)) {
       add(x, u, false);
       return;
     }
@@ -311,7 +321,7 @@ class PartialSlipStep {
     point_[static_cast<std::size_t>(size_++)] = {x, u};
   }
 
-  void look_and_add(double x, const Tangent& u, bool on_bound) {
+  void add_checked(double x, const Tangent& u, bool on_bound) {
     if (size_ > 0 && !(x > last().x)) {
       if (on_bound) last().u = u;
       return;
@@ -330,10 +340,10 @@ class PartialSlipStep {
       }
     }
     if (size_ > 1) {
-      // a point where the direction turns, but less than a chord may
+      // a point where the direction changes by less than a chord may
       const PartialSlipMemory::Point& before = point_[static_cast<std::size_t>(size_ - 2)];
-      if ((bends_ || turned(last().u, u)) &&
-          left_out(before, last(), {x, u}).force() <= 0.25 * budget()) {
+      if ((turns_ || differ_in_direction(last().u, u)) &&
+          point_removal(before, last(), {x, u}).force() <= 0.25 * chord_tolerance()) {
         last() = {x, u};
         follows_ = follows_ && on_bound;
         return;
@@ -345,36 +355,36 @@ class PartialSlipStep {
 
   PartialSlipMemory::Point& last() { return point_[static_cast<std::size_t>(size_ - 1)]; }
 
-  /// Points that say nothing go; if there are still too many, those that say least.
-  void store() {
+  /// Removes points without effect. If too many remain, merges those that change the force least.
+  void store_memory() {
     double merged = old_.merged();
-    // Where the contact grows its old edge lies on a straight line if the path is straight, and
-    // close to one in small steps of a curve: a thousandth of the least that is merged.
+    // When the contact grows, its old edge lies on a line if the path is straight, and near one in
+    // small steps of a curve. The limit is a thousandth of the least merged change.
     const double nothing = edge_ > old_edge_ ? 1e-3 * least_merged * limit() : 0.0;
     for (int i = size_ - 2; i > 0 && i >= size_ - 3; --i) {
       const auto j = static_cast<std::size_t>(i);
-      const LeftOut left = left_out(point_[j - 1], point_[j], point_[j + 1]);
-      if (left.squared_offset > 100.0 * smallest_ * smallest_) {
-        if (left.is_more_than(nothing)) continue;
-        merged += left.force();
+      const PointRemoval removal = point_removal(point_[j - 1], point_[j], point_[j + 1]);
+      if (removal.squared_offset > 100.0 * smallest_ * smallest_) {
+        if (removal.exceeds(nothing)) continue;
+        merged += removal.force();
       }
       drop(i);
     }
     if (stuck_ + size_ > PartialSlipMemory::capacity) merged += merge();
     old_.keep(stuck_, slide_, slope_, merged);
-    hold();
+    update_prefix();
     old_.append(point_.data(), size_);
   }
 
-  /// Holds the points that stick and will do so for `steps` like this one, if these are `least`
-  /// more than are held: holding costs a look at all of them.
-  void hold() {
+  /// Makes sticking points the prefix if they will stick for about `steps` more steps like this
+  /// one. The prefix must gain `least` points, because it costs a pass over all of them.
+  void update_prefix() {
     constexpr int least = 4;
     constexpr int loose = 2;  // next to the others: they come and go with these
     constexpr double steps = 32.0;
-    const int held = old_.held().count;
+    const int prefix = old_.prefix().count;
     const int most = stuck_ - loose;
-    if (most < held + least) return;
+    if (most < prefix + least) return;
     const double wanted =
         steps * (std::abs(slide_.a) + std::abs(slide_.b) + std::abs(bound(0.0) - old_bound(0.0)));
     double room = bound(0.0);  // of the points looked at
@@ -388,16 +398,16 @@ class PartialSlipStep {
       }
       return i;
     };
-    if (end_from(held, held + least) < held + least) return;
-    old_.release();
+    if (end_from(prefix, prefix + least) < prefix + least) return;
+    old_.flush_prefix();
     room = bound(0.0);
     const int end = end_from(0, most);
-    if (end >= least) old_.hold(end, bound(0.0) - room, bound(old_[end - 1].x) - room);
+    if (end >= least) old_.set_prefix(end, bound(0.0) - room, bound(old_[end - 1].x) - room);
   }
 
-  /// Replaces points that say least by chords. @return sum of the changes of force [N]
+  /// Replaces points that change the force least by chords. @return sum of the changes of force [N]
   double merge() {
-    old_.release();
+    old_.flush_prefix();
     std::copy_backward(point_.begin(), point_.begin() + size_, point_.begin() + stuck_ + size_);
     for (int i = 0; i < stuck_; ++i) {
       point_[static_cast<std::size_t>(i)] = {old_[i].x, old_[i].u + slide_};
@@ -410,7 +420,7 @@ class PartialSlipStep {
     while (size_ > kept) {
       for (int i = size_ - 2; i > 0 && size_ > kept; i -= 2) {
         const auto j = static_cast<std::size_t>(i);
-        const double change = left_out(point_[j - 1], point_[j], point_[j + 1]).force();
+        const double change = point_removal(point_[j - 1], point_[j], point_[j + 1]).force();
         if (change > least) continue;
         merged += change;
         drop(i);
@@ -430,7 +440,7 @@ class PartialSlipStep {
   static constexpr double least_merged = 1e-9;  // of the force limit
   static constexpr double straight = 1e-8;      // rad: a chord is 1e-17 short
   static constexpr double chord = 1e-4;
-  static constexpr int deepest = 8;  // times that a chord is divided
+  static constexpr int most_divisions = 8;  // largest number of divisions of a chord
   static constexpr int largest = 4 * PartialSlipMemory::capacity;
 
   double edge_;    // 8 G* a now
@@ -439,15 +449,15 @@ class PartialSlipStep {
   Tangent slide_;
   PartialSlipMemory& old_;  // until store()
   double old_edge_;
-  bool accounts_;    // whether energies are asked for
-  double smallest_;  // rounding of the largest bound
+  bool tracks_energy_;  // whether energies are requested
+  double smallest_;     // rounding of the largest bound
   double loss_ = 0.0;
   bool slipping_ = false;
   bool follows_ = false;  // the last piece follows the bound
-  bool bends_ = false;    // U turns along the last piece
-  int stuck_ = 0;         // points that only move with the slide; the others are below
+  bool turns_ = false;    // U changes direction along the last piece
+  int stuck_ = 0;         // points that only move with the slide; the others follow here
   int knots_ = 0;
-  int pieces_left_ = 0;  // with the present one
+  int pieces_left_ = 0;  // including the current one
   int size_ = 0;
   std::array<Knot, static_cast<std::size_t>(PartialSlipMemory::capacity) + 2> knot_;
   std::array<PartialSlipMemory::Point, static_cast<std::size_t>(largest)> point_;
@@ -455,66 +465,67 @@ class PartialSlipStep {
 
 }  // namespace detail
 
-/// One step of Hertz's contact with partial slip, along a straight path: the contact that slides at
-/// its rim before it slides (Cattaneo 1938; Mindlin 1949; Mindlin and Deresiewicz 1953).
+/// One step of Hertz's contact with partial slip, along a straight path. Slip starts at the rim
+/// before the contact slides as a whole (Cattaneo 1938; Mindlin 1949; Mindlin and Deresiewicz
+/// 1953).
 ///
-/// Derivation. A normal contact that grows is a sequence of flat punches: where the radius grows
-/// from r by dr the approach grows by d(delta) and the pressure by that of a rigid punch of radius
-/// r. With x = 8 G* r, Mindlin's stiffness of that punch, and w = E*/(4 G*) delta (so that
-/// dF_N = x dw), Hertz's sphere is w = 3/2 C x^2 and F_N = C x^3, C = F_N/k^3, k = 8 G* a. The same
-/// punches, moved sideways by s(x) dw, carry the tractions s(x) times the pressure increments:
-/// Cattaneo's and every later partial-slip solution is one s(x) with |s| <= mu (Jaeger, Arch.
-/// Appl. Mech. 65, 1995; Ciavarella, J. Appl. Mech. 65, 1998). All rings inside x move together
-/// with what the punches around them do, U(x) = integral of s dw from x to k. Then
+/// Derivation. A growing normal contact is a sequence of flat punches. When the radius grows from r
+/// by dr, the approach grows by d(delta) and the pressure by that of a rigid punch of radius r. Let
+/// x = 8 G* r be Mindlin's stiffness of that punch and w = E*/(4 G*) delta (so that dF_N = x dw).
+/// Then Hertz's sphere is w = 3/2 C x^2 and F_N = C x^3, with C = F_N/k^3 and k = 8 G* a. The same
+/// punches, moved sideways by s(x) dw, carry the tractions s(x) times the pressure increments.
+/// Every partial-slip solution from Cattaneo's on is one s(x) with |s| <= mu (Jaeger, Arch. Appl.
+/// Mech. 65, 1995; Ciavarella, J. Appl. Mech. 65, 1998). All annuli inside x move with the punches
+/// around them, U(x) = integral of s dw from x to k. Then
 ///
-///     force       T = integral of s dF_N = integral of U dx
-///     energy      E = 1/2 integral of U^2 dx
-///     friction    |U(x)| <= mu (w(k) - w(x)) = 3/2 mu F_N/k^3 (k^2 - x^2)
-///     stick       dU = slide of the bodies
+///    force       T = integral of s dF_N = integral of U dx
+///    energy      E = 1/2 integral of U^2 dx
+///    friction    |U(x)| <= mu (w(k) - w(x)) = 3/2 mu F_N/k^3 (k^2 - x^2)
+///    stick       dU = slide of the bodies
 ///
-/// so the contact is a row of springs dx side by side, each with Coulomb's law of its own (the same
-/// row as in the method of dimensionality reduction: Popov and Hess, 2015). U(x) is what has to be
-/// remembered; s is its slope, the memory diagram of Aleshin, Bou Matar and Van Den Abeele (Int. J.
-/// Solids Struct. 68, 2015). Under Cattaneo's load U = slide inside the stick radius c and follows
-/// the bound outside, whence
+/// So the contact is a row of parallel springs dx, each with its own Coulomb limit. This is the row
+/// of the method of dimensionality reduction (Popov and Hess, 2015). The memory is U(x). Its slope
+/// s is the memory diagram of Aleshin, Bou Matar and Van Den Abeele (Int. J. Solids Struct. 68,
+/// 2015). Under Cattaneo's load U = slide inside the stick radius c and U follows the bound
+/// outside, whence
 ///
-///     slide = 3 mu F_N/(16 G* a) [1 - (1 - T/(mu F_N))^(2/3)].
+///    slide = 3 mu F_N/(16 G* a) [1 - (1 - T/(mu F_N))^(2/3)].
 ///
-/// Along a straight path of slide and approach the bound moves evenly, and each ring ends at
-/// U + slide or, if that is beyond, on the bound: the step is exact whatever its length, in any
-/// state, loss of rings included. U stays straight between points over x^2; reversals leave a point
-/// each, a closing loop wipes them out. A path that bends while the load grows leaves a point per
-/// step. Beyond PartialSlipMemory::capacity those that say least are replaced by chords:
-/// merged() adds up what that changes. Curved paths are approximated by their chords, which is of
-/// second order in the step.
+/// Along a straight path of slide and approach the bound moves uniformly. Each annulus ends at U +
+/// slide or, if that exceeds the bound, on the bound. So the step is exact for any length and any
+/// state, loss of annuli included. U stays linear in x^2 between points. A reversal adds a point, a
+/// closed loop removes it. A path that bends while the load grows adds one point per step. Beyond
+/// PartialSlipMemory::capacity, points that change the force least are replaced by chords; merged()
+/// sums these changes. Curved paths are approximated by chords, with an error of second order in
+/// the step.
 ///
-/// Energy. The loss of a ring that slips is its bound times its slip, integrated over the step (in
-/// t and, by Gauss' three points, in x: exact under constant load); no term is negative. Work of T
-/// along the path, minus the change of E, is the loss. An integrator that takes the mean of T at
-/// both ends differs from that work at second order, as it does for the normal force.
+/// Energy. The loss of a slipping annulus is its bound times its slip, integrated over the step.
+/// The integral is over t and, with three Gauss points, over x: exact under constant load. No term
+/// is negative. The work of T along the path minus the change of E is the loss. An integrator that
+/// uses the mean of T at both ends differs from that work at second order, as it does for the
+/// normal force.
 ///
-/// In the plane U and slide are vectors; a ring goes back to its bound along its own radius. Then
-/// the row of springs is an approximation of the half-space, whose rings act on each other across
-/// the slide, and U(x) of a piece that slips in a turning direction is approximated by chords, each
-/// of which changes the force by at most 1e-4 of the limit over the slide after which rings forget,
-/// in however many steps. Such a piece loses the mean of U times its slip in every step, which is
-/// nearly always positive; where it is not it counts as nothing.
+/// In the plane U and slide are vectors; a slipping annulus returns to its bound radially. Then the
+/// row of springs approximates the half-space, because its annuli interact perpendicular to the
+/// slide. Chords approximate U(x) of a piece that slips in a changing direction. Over the slide
+/// that erases the memory, each chord changes the force by at most 1e-4 of the limit. The loss of
+/// such a piece is the mean of U times its slip, which is nearly always positive; a negative value
+/// counts as zero.
 ///
-/// @param stiffness k = 8 G* a [N/m] at the end of the step, of the radius of contact; <= 0: the
+/// @param stiffness k = 8 G* a [N/m] at the end of the step, of the contact radius; <= 0: the
 ///        contact is lost
-/// @param limit mu F_N [N]; <= 0: no friction. Where F_N is not Hertz's alone (damping) all
-///        pressures are scaled.
-/// @param slide of body 1 against body 2 in this step [m]
-/// @param memory of this contact; updated. Where it does not account() both energies are 0.
+/// @param limit mu F_N [N]; <= 0: no friction. If F_N includes damping, all pressures are scaled.
+/// @param slide of body 1 relative to body 2 in this step [m]
+/// @param memory of this contact; updated. If it does not track energy, both energies are 0.
 /// Limits: identical materials (or both incompressible), else normal and tangential tractions are
-/// coupled; half-space, a << R; quasi-static; mu constant over the area; the small slip across the
-/// slide that Poisson's ratio causes is left out, as in all these sources.
+/// coupled; half-space, a << R; quasi-static; mu constant over the area. The small slip
+/// perpendicular to the slide, caused by Poisson's ratio, is neglected, as in all these sources.
 inline PartialSlipResponse partial_slip_step(double stiffness, double limit, const Tangent& slide,
                                              PartialSlipMemory& memory) {
   if (stiffness > 0.0 && limit > 0.0) {
     return detail::PartialSlipStep(stiffness, limit, slide, memory).run();
   }
-  const double lost = memory.size() > 0 && memory.accounts()
+  const double lost = memory.size() > 0 && memory.tracks_energy()
                           ? detail::PartialSlipStep::released(slide, memory)
                           : 0.0;
   memory.clear();

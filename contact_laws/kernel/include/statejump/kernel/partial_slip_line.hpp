@@ -9,86 +9,87 @@
 
 namespace statejump::kernel {
 
-/// Force of a step of partial_slip_step() in one direction, with its derivatives: for implicit
-/// solvers, which ask for many ends of a step before they take one.
+/// Force of one partial_slip_step() in one direction, with derivatives. Implicit solvers evaluate
+/// it for many end points before they accept a step.
 struct PartialSlipLine {
   double force = 0.0;         ///< of the contact, positive along the slide that causes it [N]
-  double by_slide = 0.0;      ///< [N/m], from 0 (all rings slip) to the stiffness (none does)
+  double by_slide = 0.0;      ///< [N/m], from 0 (all annuli slip) to the stiffness (none slips)
   double by_stiffness = 0.0;  ///< by 8 G* a at a fixed limit [m]
   double by_limit = 0.0;      ///< by mu F_N at a fixed stiffness [-]
-  double centre = 0.0;        ///< U of the innermost ring if it stuck [m]
-  double bound = 0.0;         ///< on it: it is the last to slip, along the sign of `centre` [m]
-  /// Pieces of rings that stick and that slip either way: the law is smooth while they stay as
-  /// many.
+  double centre = 0.0;        ///< U of the innermost annulus if it stuck [m]
+  double bound =
+      0.0;  ///< bound of U there, the last annulus to slip, in the direction of `centre` [m]
+  /// Numbers of pieces that stick and that slip in either direction. The law is smooth while these
+  /// numbers do not change.
   int stuck = 0, plus = 0, minus = 0;
 };
 
 namespace detail {
 
-/// An end of a piece over which everything is straight over x^2. U has one direction or two.
+/// End of a piece over which all functions are linear in x^2. U has one component or two.
 template <class Displacement>
 struct SlipKnot {
   double x;
   Displacement trial;  ///< U if the ring sticks [m]
   double bound;        ///< on |U| [m]
-  double share;        ///< of the slide that the ring takes part in
-  double by_growth;    ///< of that share by the edge of the contact [m/N]
+  double fraction;     ///< fraction of the slide in which the annulus takes part
+  double by_growth;    ///< derivative of that fraction by the edge of the contact [m/N]
 
   SlipKnot towards(const SlipKnot& b, double s) const {
     const auto mix = [s](double from, double to) { return from + s * (to - from); };
     return {std::sqrt(mix(x * x, b.x * b.x)), trial + s * (b.trial - trial), mix(bound, b.bound),
-            mix(share, b.share), mix(by_growth, b.by_growth)};
+            mix(fraction, b.fraction), mix(by_growth, b.by_growth)};
   }
 };
 using LineKnot = SlipKnot<double>;
 
-/// Leads a sum through the pieces of a step's end, from the centre to the edge.
-/// @param of the displacement of a point of the memory along the directions that are looked at
+/// Passes the pieces at the end of a step to a sum, from the centre to the edge.
+/// @param of returns the displacement of a memory point in the considered directions
 /// @returns the knot at the centre
 template <class Displacement, class Of, class Sum>
 SlipKnot<Displacement> add_pieces(double edge, double slope, const Displacement& slide,
                                   const PartialSlipMemory& memory, Of&& of, Sum& sum) {
   using Knot = SlipKnot<Displacement>;
   const double old_edge = memory.edge();
-  const auto knot = [&](double x, const Displacement& start, double share, double by_growth) {
-    return Knot{x, start + share * slide, slope * (edge - x) * (edge + x), share, by_growth};
+  const auto knot = [&](double x, const Displacement& start, double fraction, double by_growth) {
+    return Knot{x, start + fraction * slide, slope * (edge - x) * (edge + x), fraction, by_growth};
   };
   const Knot centre = knot(0.0, memory.size() > 0 ? of(memory[0]) : Displacement{}, 1.0, 0.0);
   Knot last = centre;
   for (int i = 1; i < memory.size(); ++i) {
     const Knot next = knot(memory[i].x, of(memory[i]), 1.0, 0.0);
     if (next.x >= edge) {
-      const double share =
+      const double fraction =
           (edge - last.x) * (edge + last.x) / ((next.x - last.x) * (next.x + last.x));
-      Knot end = last.towards(next, share);
+      Knot end = last.towards(next, fraction);
       end.x = edge;
       end.bound = 0.0;
-      sum.piece(last, end);
+      sum.add_piece(last, end);
       break;
     }
-    sum.piece(last, next);
+    sum.add_piece(last, next);
     last = next;
   }
   if (edge > old_edge) {
     const double grown = (edge - old_edge) * (edge + old_edge);
-    sum.piece(last, knot(edge, Displacement{}, 0.0, 2.0 * edge / grown));
+    sum.add_piece(last, knot(edge, Displacement{}, 0.0, 2.0 * edge / grown));
   }
   return centre;
 }
 
-/// Adds up the pieces of a line.
+/// Sums the pieces along a line.
 class LineSum {
  public:
   LineSum(double edge, double slope, double slide)
       : edge_(edge), slope_(slope), slide_(slide), smallest_(1e-15 * slope * edge * edge) {}
 
-  void piece(const LineKnot& a, const LineKnot& b) {
+  void add_piece(const LineKnot& a, const LineKnot& b) {
     if (!(b.x > a.x)) return;
     if (sticks(a) && sticks(b)) {
       add(a, b, 0.0);
       return;
     }
-    // where the trial meets either bound
+    // cuts where the trial displacement meets either bound
     std::array<double, 4> cut{0.0, 1.0, 1.0, 1.0};
     std::size_t cuts = 1;
     for (const double sign : {1.0, -1.0}) {
@@ -118,16 +119,16 @@ class LineSum {
  private:
   bool sticks(const LineKnot& k) const { return std::abs(k.trial) <= k.bound + smallest_; }
 
-  /// @param sense in which the piece slips; 0: it sticks
+  /// @param sense slip direction of the piece; 0: it sticks
   void add(const LineKnot& a, const LineKnot& b, double sense) {
-    const Piece w(a.x, b.x);
+    const ProductWeights w(a.x, b.x);
     const auto integral = [&](double at_a, double at_b) {
-      return (w.both_at_a + w.one_each) * at_a + (w.both_at_b + w.one_each) * at_b;
+      return (w.weight_aa + w.weight_ab) * at_a + (w.weight_bb + w.weight_ab) * at_b;
     };
     if (sense == 0.0) {
       ++stuck_;
       force_ += integral(a.trial, b.trial);
-      by_slide_ += integral(a.share, b.share);
+      by_slide_ += integral(a.fraction, b.fraction);
       by_edge_ += slide_ * integral(a.by_growth, b.by_growth);
       return;
     }
@@ -145,20 +146,20 @@ class LineSum {
 
 }  // namespace detail
 
-/// Force and derivatives at the end of a step along one direction; see partial_slip_step(), of
-/// which it is the force to rounding, less what that merges. At a bound that was just met the
-/// derivatives are those of the ring that sticks. Where the contact neither grows nor shrinks they
-/// are those of a contact that shrinks.
+/// Force and derivatives at the end of a step along one direction. The force equals that of
+/// partial_slip_step() to rounding, apart from merged points. At a bound just met, the derivatives
+/// are those of a sticking annulus. If the contact neither grows nor shrinks, they are those of a
+/// shrinking contact.
 ///
-/// Derivation. T = integral of U dx over the rings, U = start + slide where a ring sticks and the
-/// bound, 3/2 limit/k^3 (k^2 - x^2), where it slips. U is continuous and 0 at the edge, so that
-/// only U itself changes, not the places where pieces meet. Rings by which the contact grows from
+/// Derivation. T = integral of U dx over the annuli. U = start + slide where an annulus sticks, and
+/// U is the bound 3/2 limit/k^3 (k^2 - x^2) where it slips. U is continuous and 0 at the edge, so
+/// the derivative of T contains only dU, no boundary terms. Annuli by which the contact grows from
 /// an edge e take part in (k^2 - x^2)/(k^2 - e^2) of the slide.
 ///
-/// @param stiffness 8 G* a at the end of the step [N/m]; <= 0: no contact, all is 0
-/// @param limit mu F_N there [N]; <= 0: likewise
-/// @param slide of body 1 against body 2 in the step, along the first tangent [m]
-/// @param memory at its start; slides across are not looked at
+/// @param stiffness 8 G* a at the end of the step [N/m]; <= 0: no contact, all results are 0
+/// @param limit mu F_N there [N]; <= 0: all results are 0
+/// @param slide of body 1 relative to body 2 in the step, along the first tangent [m]
+/// @param memory at its start; slides across are ignored
 inline PartialSlipLine partial_slip_line(double stiffness, double limit, double slide,
                                          const PartialSlipMemory& memory) {
   PartialSlipLine line;

@@ -10,41 +10,41 @@
 
 namespace statejump::kernel {
 
-/// Force of a step of partial_slip_step() in the plane, with its derivatives: for implicit solvers,
-/// which ask for many ends of a step before they take one.
+/// Force of one partial_slip_step() in the plane, with derivatives. Implicit solvers evaluate it
+/// for many end points before they accept a step.
 struct PartialSlipPlane {
   Tangent force{};           ///< of the contact, positive along the slide that causes it [N]
   Tangent by_slide_a{};      ///< by the slide along the first tangent [N/m]; symmetric
-  Tangent by_slide_b{};      ///< by that along the second
+  Tangent by_slide_b{};      ///< by the slide along the second tangent
   Tangent by_stiffness{};    ///< by 8 G* a at a fixed limit [m]
   Tangent by_limit{};        ///< by mu F_N at a fixed stiffness [-]
-  Tangent centre{};          ///< U of the innermost ring if it stuck [m]
-  double bound = 0.0;        ///< on its size: it is the last to slip [m]
-  int stuck = 0, slips = 0;  ///< pieces of rings: the law is smooth while they stay as many
+  Tangent centre{};          ///< U of the innermost annulus if it stuck [m]
+  double bound = 0.0;        ///< bound of |U| there, the last annulus to slip [m]
+  int stuck = 0, slips = 0;  ///< numbers of pieces: the law is smooth while these do not change
 };
 
 namespace detail {
 
 using PlaneKnot = SlipKnot<Tangent>;
 
-/// Adds up the pieces in a plane.
+/// Sums the pieces in a plane.
 class PlaneSum {
  public:
   PlaneSum(double edge, double slope, const Tangent& slide)
       : edge_(edge), slope_(slope), slide_(slide), smallest_(1e-15 * slope * edge * edge) {}
 
-  void piece(const PlaneKnot& a, const PlaneKnot& b) {
+  void add_piece(const PlaneKnot& a, const PlaneKnot& b) {
     if (!(b.x > a.x)) return;
     if (sticks(a) && sticks(b)) {
       stick(a, b);
       return;
     }
-    // Where |U| meets its bound: q0 + 2 q1 s + q2 s^2 = 0 on the way from a to b.
-    const Tangent way = b.trial - a.trial;
+    // Where |U| meets its bound between a and b: q0 + 2 q1 s + q2 s^2 = 0.
+    const Tangent span = b.trial - a.trial;
     const double fall = b.bound - a.bound;
     const double q0 = a.trial.squared() - a.bound * a.bound;
-    const double q1 = a.trial.dot(way) - a.bound * fall;
-    const double q2 = way.squared() - fall * fall;
+    const double q1 = a.trial.dot(span) - a.bound * fall;
+    const double q2 = span.squared() - fall * fall;
     const double root = std::sqrt(std::max(0.0, q1 * q1 - q0 * q2));
     const double far = -(q1 + std::copysign(root, q1));
     std::array<double, 4> cut{0.0, 1.0, 1.0, 1.0};
@@ -83,18 +83,18 @@ class PlaneSum {
 
   void stick(const PlaneKnot& a, const PlaneKnot& b) {
     ++stuck_;
-    const Piece w(a.x, b.x);
-    const double at_a = w.both_at_a + w.one_each;
-    const double at_b = w.both_at_b + w.one_each;
+    const ProductWeights w(a.x, b.x);
+    const double at_a = w.weight_aa + w.weight_ab;
+    const double at_b = w.weight_bb + w.weight_ab;
     force_ = force_ + at_a * a.trial + at_b * b.trial;
-    const double share = at_a * a.share + at_b * b.share;
-    by_slide_[0] += share;
-    by_slide_[2] += share;
+    const double fraction = at_a * a.fraction + at_b * b.fraction;
+    by_slide_[0] += fraction;
+    by_slide_[2] += fraction;
     by_edge_ = by_edge_ + (at_a * a.by_growth + at_b * b.by_growth) * slide_;
   }
 
-  /// A ring ends at bound U/|U|, which is straight along U alone. Gauss' points in each of `parts`
-  /// make of it a function without steps, exact where the direction does not turn.
+  /// An annulus ends at bound U/|U|, which is linear only along U. Gauss points in each of `parts`
+  /// make the sum continuous; it is exact if the direction is constant.
   void slip(const PlaneKnot& a, const PlaneKnot& b) {
     constexpr int parts = 4;
     ++slips_;
@@ -103,23 +103,23 @@ class PlaneSum {
       for (std::size_t g = 0; g < 3; ++g) {
         const double moved = (part + gauss_point[g]) * width;
         const double s = moved * (2.0 * a.x + moved) / ((b.x - a.x) * (b.x + a.x));
-        ring(a.towards(b, s), gauss_weight[g] * width);
+        annulus(a.towards(b, s), gauss_weight[g] * width);
       }
     }
   }
 
-  void ring(const PlaneKnot& k, double weight) {
+  void annulus(const PlaneKnot& k, double weight) {
     const double size = k.trial.norm();
-    const Tangent way = (1.0 / size) * k.trial;
-    force_ = force_ + (weight * k.bound) * way;
-    by_slope_ = by_slope_ + (weight * k.bound / slope_) * way;
-    by_edge_ = by_edge_ + (weight * slope_ * 2.0 * edge_) * way;
-    // Across itself U is only turned.
+    const Tangent axis = (1.0 / size) * k.trial;
+    force_ = force_ + (weight * k.bound) * axis;
+    by_slope_ = by_slope_ + (weight * k.bound / slope_) * axis;
+    by_edge_ = by_edge_ + (weight * slope_ * 2.0 * edge_) * axis;
+    // Perpendicular to itself, U only rotates.
     const double turns = weight * k.bound / size;
-    const Tangent across{-way.b, way.a};
-    by_slide_[0] += turns * k.share * across.a * across.a;
-    by_slide_[1] += turns * k.share * across.a * across.b;
-    by_slide_[2] += turns * k.share * across.b * across.b;
+    const Tangent across{-axis.b, axis.a};
+    by_slide_[0] += turns * k.fraction * across.a * across.a;
+    by_slide_[1] += turns * k.fraction * across.a * across.b;
+    by_slide_[2] += turns * k.fraction * across.b * across.b;
     by_edge_ = by_edge_ + (turns * k.by_growth * slide_.dot(across)) * across;
   }
 
@@ -133,12 +133,12 @@ class PlaneSum {
 
 }  // namespace detail
 
-/// Force and derivatives at the end of a step in the plane; see partial_slip_step(), from whose
-/// force it differs by what that approximates: pieces that slip while their direction turns are
-/// chords there (1e-4 of the limit), so that its force has steps of that size, and integrals here.
-/// Along one direction it is partial_slip_line().
-/// @param stiffness, limit, memory as there
-/// @param slide of body 1 against body 2 in the step [m]
+/// Force and derivatives at the end of a step in the plane. The force differs from
+/// partial_slip_step() by the approximation there. Pieces that slip while their direction changes
+/// are chords there (1e-4 of the limit), so that force has jumps of this size; here they are
+/// integrals. Along one direction the result is that of partial_slip_line().
+/// @param stiffness, limit, memory as in partial_slip_line()
+/// @param slide of body 1 relative to body 2 in the step [m]
 inline PartialSlipPlane partial_slip_plane(double stiffness, double limit, const Tangent& slide,
                                            const PartialSlipMemory& memory) {
   PartialSlipPlane plane;

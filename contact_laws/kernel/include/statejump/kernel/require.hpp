@@ -8,24 +8,24 @@
 
 namespace statejump::kernel {
 
-/// An argument that is not allowed, as fields; what() is "[item: ]name = value, allowed is range".
+/// An argument out of range, as fields. what() is "[item: ]name = value, allowed is range".
 class OutOfRange : public std::invalid_argument {
  public:
-  /// @param item that the argument belongs to, as "slider 'J3'"; may be empty
-  /// @param name of the argument, @param value it has, @param range it may have, with its unit
+  /// @param item that the argument belongs to, for example "slider 'J3'"; may be empty
+  /// @param name of the argument, @param value its value, @param range allowed range, with its unit
   OutOfRange(std::string item, std::string name, double value, std::string range)
       : OutOfRange(std::move(item), std::move(name), true, value, digits(value), std::move(range)) {
   }
 
-  /// As above, for one of several words.
+  /// For an argument with one of several names as its value.
   OutOfRange(std::string name, const std::string& value, std::string range)
       : OutOfRange("", std::move(name), false, 0.0, value, std::move(range)) {}
 
   const std::string& item() const { return item_; }
   const std::string& name() const { return name_; }
-  bool is_number() const { return is_number_; }        ///< else a word
-  double number() const { return number_; }            ///< 0 for a word
-  const std::string& value() const { return value_; }  ///< the word, or the number with 9 digits
+  bool is_number() const { return is_number_; }        ///< else a text
+  double number() const { return number_; }            ///< 0 for a text
+  const std::string& value() const { return value_; }  ///< the text, or the number with 9 digits
   const std::string& range() const { return range_; }
 
  private:
@@ -54,9 +54,9 @@ class OutOfRange : public std::invalid_argument {
   std::string range_;
 };
 
-/// Refuses an argument out of range.
+/// Rejects an argument out of range.
 /// @param holds the condition; nothing happens when it is true
-/// @param name of the argument, @param value it has, @param range it may have, with its unit
+/// @param name of the argument, @param value its value, @param range allowed range, with its unit
 /// @throws OutOfRange
 inline void require(bool holds, const char* name, double value, const char* range) {
   if (!holds) throw OutOfRange("", name, value, range);

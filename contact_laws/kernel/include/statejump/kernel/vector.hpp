@@ -5,11 +5,11 @@
 
 namespace statejump::kernel {
 
-/// Vector in the world frame. Its unit is said where it is used. Not over-aligned, so it may be a
-/// member of any class without an aligned allocator.
+/// Vector in the world frame; each use documents its unit. Not over-aligned, so any class can
+/// contain it without an aligned allocator.
 using Vector3 = Eigen::Vector3d;
 
-/// Cross product written out: needs no Eigen/Geometry, which would double the compile time.
+/// Cross product without Eigen/Geometry, which would double the compile time.
 inline Vector3 cross(const Vector3& a, const Vector3& b) {
   return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(),
           a.x() * b.y() - a.y() * b.x()};

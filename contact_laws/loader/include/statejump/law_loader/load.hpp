@@ -7,25 +7,25 @@
 
 #include "statejump/kernel/laws/user_law.hpp"
 
-/// Finds laws of one's own, compiled by `statejump laws build`, and enters them in the catalogue.
+/// Finds user laws compiled by `statejump laws build` and adds them to the catalogue.
 namespace statejump::law_loader {
 
-/// Hash of the kernel headers of this build; a law has to have been compiled against the same.
+/// Hash of the kernel headers of this build; a law must be compiled with the same headers.
 const char* kernel_hash();
 
-/// Folders that are searched: those of $STATEJUMP_LAWS, a list as in $PATH, and
+/// Search folders: those of $STATEJUMP_LAWS, a list as in $PATH, and
 /// ${XDG_DATA_HOME:-~/.local/share}/statejump/laws.
 std::vector<std::filesystem::path> folders();
 
 /// Loads every *.so of folders() that is not loaded yet, folders in their order, files by name.
-/// Never throws: an object that cannot be used is entered with its problem, see
-/// kernel::laws::LoadedLaw. Call before looking up laws; not at the same time as that.
+/// Never throws: an unusable object is added with its problem, see kernel::laws::LoadedLaw. Call
+/// before looking up laws, and not concurrently with a look-up.
 void load_user_laws();
 
-/// A sentence for each object that cannot be used.
+/// One sentence for each unusable object.
 std::vector<std::string> problems();
 
-/// What load_user_laws() would enter for one file; an empty name: no law at all.
+/// The entry of load_user_laws() for one file; an empty name: not a law.
 kernel::laws::LoadedLaw inspect(const std::filesystem::path& file);
 
 }  // namespace statejump::law_loader

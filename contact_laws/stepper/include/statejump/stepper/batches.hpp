@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contacts and bodies of a scene, four at once where they allow it. Between two steps the arrays of
-// the scene have the motions of all bodies that anything else looks at; what a contact keeps, and
-// the motion of a body that feels nothing but one contact, is here until unload().
+// Contacts and bodies of a scene in batches of four, where possible. Between steps, the arrays of
+// the scene hold the motion of every body that other code reads. Contact states, and the motion of
+// bodies with a single contact, stay in the batches until unload().
 #pragma once
 
 #include <algorithm>
@@ -13,12 +13,12 @@
 #include <vector>
 
 #include "statejump/stepper/arrays.hpp"
+#include "statejump/stepper/body_lanes.hpp"
 #include "statejump/stepper/contact_lanes.hpp"
-#include "statejump/stepper/motion_lanes.hpp"
 
 namespace statejump::stepper {
 
-/// What the steps of batches read and write of a scene.
+/// Scene data read and written by batches.
 struct BatchedArrays {
   std::vector<Body>& bodies;
   std::vector<Contact>& contacts;
@@ -33,18 +33,18 @@ struct BatchedArrays {
 
 class Batches {
  public:
-  /// @param arrays prepared
+  /// @param arrays after Scene::prepare()
   explicit Batches(const BatchedArrays& arrays) : arrays_(arrays) {}
 
-  /// @param hertz_mindlin whether that is the law of contacts
-  /// @param nothing_between whether the first to sum up forces are those who move the bodies
+  /// @param hertz_mindlin whether all contacts have the Hertz–Mindlin law
+  /// @param nothing_between whether the integrator is the first to sum the forces
   void fill(bool hertz_mindlin, bool nothing_between);
 
-  /// Whether the fill has found anything to do at once.
+  /// Whether fill() found anything to batch.
   bool useful() const { return useful_; }
 
-  /// One step of all contacts in their order.
-  /// @param one makes the step of a contact by its place, false where it cannot be made
+  /// Steps all contacts in their order.
+  /// @param one steps a contact by its index; false if the step is impossible
   template <class One>
   bool step_contacts(const One& one) {
     if (arrays_.uses_avx2) {
@@ -53,37 +53,37 @@ class Batches {
     return arrays_.tracks_energy ? step_all<true>(one) : step_all<false>(one);
   }
 
-  /// Moves the bodies of batches. @return false where one has left its bound
+  /// Moves the bodies of batches. @return false if one has left its bound
   bool move() { return arrays_.uses_avx2 ? move_with_avx2() : move_all(); }
 
-  /// Places of the bodies that are not moved here, in their order.
+  /// Indices of the bodies that are not moved here, in their order.
   const std::vector<std::size_t>& others() const { return others_; }
 
-  /// Gives the arrays what their contacts keep and where their bodies are.
+  /// Writes the contact states and the body motions back to the arrays.
   void unload();
 
  private:
-  // Contacts in their order: of a batch, or each by itself.
-  struct Stretch {
+  // Consecutive contacts: a batch, or contacts stepped singly.
+  struct ContactRun {
     bool is_batch;
-    std::size_t first, count;  // of a batch its place in contacts_
+    std::size_t first, count;  // for a batch its index in contacts_
   };
 
   static bool allows(const Contact& contact) {
-    return !contact.turns && contact.joint != Joint::outer_balls && contact.joint != Joint::bore &&
-           contact.physics.slipMemory.empty() &&
+    return !contact.rotates && contact.joint != Joint::outer_balls &&
+           contact.joint != Joint::bore && contact.physics.slipMemory.empty() &&
            !(contact.joint == Joint::revolute && contact.tilted);
   }
-  // The contacts of a batch and, where these feel nothing else, their first bodies.
+  // The contacts of a batch and, if they are in no other interaction, their first bodies.
   struct Batch {
     ContactLanes contacts;
-    std::size_t mover;  // place in movers_, or none
+    std::size_t mover;  // index in movers_, or none
   };
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
   void fill_movers();
   void fill_bodies(bool is_simple);
-  std::vector<int> felt() const;
+  std::vector<int> interaction_counts() const;
   void add(std::size_t first, std::size_t count);
   void load(ContactLanes& batch, std::size_t lane);
 
@@ -115,7 +115,7 @@ class Batches {
     return {gather(a.position, b.position, c.position, d.position),
             gather(a.velocity, b.velocity, c.velocity, d.velocity)};
   }
-  [[gnu::always_inline]] inline Pack grown(const Places& at) const {
+  [[gnu::always_inline]] inline Pack thermal_stretch(const Places& at) const {
     const std::vector<Strain>& all = arrays_.strains;
     return 1.0 + Pack{all[at[0]].strain, all[at[1]].strain, all[at[2]].strain, all[at[3]].strain};
   }
@@ -130,26 +130,27 @@ class Batches {
   [[gnu::always_inline]] inline bool step_and_move(ContactLanes& batch, BodyLanes& bodies,
                                                    const One& one);
   template <bool tracks_energy, class One>
-  [[gnu::cold, gnu::noinline]] bool act_apart(ContactLanes& batch, BodyLanes& bodies,
-                                              const LanesStep& step, const One& one, Pack3& added);
-  [[gnu::always_inline]] inline void exert(const ContactLanes& batch, std::size_t lane,
+  [[gnu::cold, gnu::noinline]] bool apply_via_arrays(ContactLanes& batch, BodyLanes& bodies,
+                                                     const LanesStep& step, const One& one,
+                                                     Pack3& added);
+  [[gnu::always_inline]] inline void apply(const ContactLanes& batch, std::size_t lane,
                                            const Vector3& force);
   void unload(const BodyLanes& batch);
   template <class One>
-  [[gnu::cold, gnu::noinline]] bool make_one(ContactLanes& batch, std::size_t lane, const One& one);
+  [[gnu::cold, gnu::noinline]] bool step_one(ContactLanes& batch, std::size_t lane, const One& one);
   [[gnu::always_inline]] inline bool move_all();
 
   BatchedArrays arrays_;
   std::vector<Batch> contacts_;
-  std::vector<Stretch> stretches_;
-  std::vector<BodyLanes> movers_, bodies_;  // bodies that their contact moves, and others
+  std::vector<ContactRun> runs_;
+  std::vector<BodyLanes> movers_, bodies_;  // bodies moved with their contact, and others
   std::vector<std::size_t> others_;
   bool useful_ = false;
 };
 
 inline void Batches::fill(bool hertz_mindlin, bool nothing_between) {
   contacts_.clear();
-  stretches_.clear();
+  runs_.clear();
   const std::vector<Contact>& all = arrays_.contacts;
   for (std::size_t first = 0; first < all.size();) {
     std::size_t end = first;
@@ -157,16 +158,16 @@ inline void Batches::fill(bool hertz_mindlin, bool nothing_between) {
            all[end].joint == all[first].joint) {
       ++end;
     }
-    if (end > first + 1) {  // one alone is faster by itself
+    if (end > first + 1) {  // a single contact is faster without a batch
       add(first, end - first);
       first = end;
     } else {
-      if (stretches_.empty() || stretches_.back().is_batch) stretches_.push_back({false, first, 0});
-      ++stretches_.back().count;
+      if (runs_.empty() || runs_.back().is_batch) runs_.push_back({false, first, 0});
+      ++runs_.back().count;
       ++first;
     }
   }
-  // Energies of motion are summed body by body; without damping and gravity there are none.
+  // Motion energies are summed body by body; they are absent without damping and gravity.
   const bool is_simple =
       nothing_between &&
       (!arrays_.tracks_energy || (arrays_.newton.damping == 0 && arrays_.newton.gravity.isZero(0)));
@@ -176,29 +177,29 @@ inline void Batches::fill(bool hertz_mindlin, bool nothing_between) {
   useful_ = !contacts_.empty() || !bodies_.empty();
 }
 
-// How many contacts and other things each body feels.
-inline std::vector<int> Batches::felt() const {
-  std::vector<int> felt(arrays_.bodies.size(), 0);
+// Number of interactions of each body.
+inline std::vector<int> Batches::interaction_counts() const {
+  std::vector<int> interaction_counts(arrays_.bodies.size(), 0);
   const auto count = [&](const auto& list) {
     for (const auto& one : list) {
-      for (const int body : bodies_of(one)) ++felt[static_cast<std::size_t>(body)];
+      for (const int body : bodies_of(one)) ++interaction_counts[static_cast<std::size_t>(body)];
     }
   };
   count(arrays_.contacts);
   for (const Stage& stage : arrays_.stages) {
     std::visit([&](const auto& one) { count(entries(one)); }, stage);
   }
-  return felt;
+  return interaction_counts;
 }
 
 inline void Batches::fill_movers() {
   if (contacts_.empty()) return;
-  const std::vector<int> felt = this->felt();
+  const std::vector<int> interaction_counts = this->interaction_counts();
   for (Batch& batch : contacts_) {
     const ContactLanes& contacts = batch.contacts;
     bool alone = !contacts.any_moves_2;
     for (std::size_t lane = 0; lane < contacts.count; ++lane) {
-      alone = alone && contacts.moves_1[lane] && felt[contacts.body_1[lane]] == 1;
+      alone = alone && contacts.moves_1[lane] && interaction_counts[contacts.body_1[lane]] == 1;
     }
     if (!alone) continue;
     batch.mover = movers_.size();
@@ -207,7 +208,7 @@ inline void Batches::fill_movers() {
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       bodies.load(lane, contacts.body_1[lane], arrays_.bodies[contacts.body_1[lane]],
                   arrays_.newton);
-      if (lane >= contacts.count) bodies.bounded[lane] = 0;  // it moves on without its contact
+      if (lane >= contacts.count) bodies.bounded[lane] = 0;  // it moves without its contact
     }
   }
 }
@@ -222,7 +223,7 @@ inline void Batches::fill_bodies(bool is_simple) {
   for (std::size_t i = 0; i < arrays_.bodies.size(); ++i) {
     const Body& body = arrays_.bodies[i];
     if (!body.moves || moved[i]) continue;
-    if (body.turns || !is_simple) {
+    if (body.rotates || !is_simple) {
       others_.push_back(i);
       continue;
     }
@@ -242,7 +243,7 @@ inline void Batches::fill_bodies(bool is_simple) {
 }
 
 inline void Batches::add(std::size_t first, std::size_t count) {
-  stretches_.push_back({true, contacts_.size(), 1});
+  runs_.push_back({true, contacts_.size(), 1});
   contacts_.emplace_back().mover = none;
   ContactLanes& batch = contacts_.back().contacts;
   batch.first = first;
@@ -275,8 +276,8 @@ inline void Batches::load(ContactLanes& batch, std::size_t lane) {
   put(batch.velocity_2, lane, two.motion.velocity);
   put(batch.spin_1, lane, one.motion.angular_velocity);
   put(batch.spin_2, lane, two.motion.angular_velocity);
-  // Nothing turns, so that products with a spin are 0 and change at most the sign of a 0 that they
-  // are added to. A velocity that is not -0 never becomes it.
+  // If nothing rotates, products with a spin are 0 and change at most the sign of a 0 in a sum. A
+  // velocity that is not -0 never becomes -0.
   for (const Body* body : {&one, &two}) {
     for (int i = 0; i < 3; ++i) {
       const double velocity = body->motion.velocity[i];
@@ -309,11 +310,12 @@ template <bool tracks_energy>
 LanesStep Batches::step(ContactLanes& batch, const MotionLanes& one) {
   const MotionLanes two =
       batch.any_moves_2 ? motions(batch.body_2) : MotionLanes{batch.position_2, batch.velocity_2};
-  return step_lanes<tracks_energy>(batch, one, two, batch.length_1 * grown(batch.strain_1),
-                                   batch.length_2 * grown(batch.strain_2), arrays_.time_step);
+  return step_lanes<tracks_energy>(
+      batch, one, two, batch.length_1 * thermal_stretch(batch.strain_1),
+      batch.length_2 * thermal_stretch(batch.strain_2), arrays_.time_step);
 }
 
-inline void Batches::exert(const ContactLanes& batch, std::size_t lane, const Vector3& force) {
+inline void Batches::apply(const ContactLanes& batch, std::size_t lane, const Vector3& force) {
   if (batch.moves_1[lane]) arrays_.bodies[batch.body_1[lane]].added_force += force;
   if (batch.moves_2[lane]) arrays_.bodies[batch.body_2[lane]].added_force += -force;
 }
@@ -328,34 +330,34 @@ void Batches::account(const LanesStep& step, std::size_t lane) {
 }
 
 template <class One>
-bool Batches::make_one(ContactLanes& batch, std::size_t lane, const One& one) {
-  const std::size_t place = batch.first + lane;
-  Contact& contact = arrays_.contacts[place];
+bool Batches::step_one(ContactLanes& batch, std::size_t lane, const One& one) {
+  const std::size_t index = batch.first + lane;
+  Contact& contact = arrays_.contacts[index];
   batch.unload(lane, contact);
-  const bool made = one(place);
+  const bool made = one(index);
   batch.load(lane, contact);
   return made;
 }
 
-// Puts what the contacts of a batch do into the arrays.
+// Writes the forces and energies of a batch to the arrays.
 template <bool tracks_energy, class One>
 bool Batches::act(ContactLanes& batch, const LanesStep& step, const One& one) {
-  const bool whole = !any(step.left);
+  const bool whole = !any(step.deferred);
   for (std::size_t lane = 0; lane < batch.count; ++lane) {
-    if (!whole && step.left[lane]) {
-      if (!make_one(batch, lane, one)) return false;
+    if (!whole && step.deferred[lane]) {
+      if (!step_one(batch, lane, one)) return false;
     } else if (step.touches[lane]) {
       account<tracks_energy>(step, lane);
-      exert(batch, lane, get(step.force, lane));
+      apply(batch, lane, get(step.force, lane));
     }
   }
   return true;
 }
 
-// The same by way of the arrays, of bodies that are moved here. @param added forces [N]
+// Like apply(), through the arrays, for bodies that are moved here. @param added forces [N]
 template <bool tracks_energy, class One>
-bool Batches::act_apart(ContactLanes& batch, BodyLanes& bodies, const LanesStep& step,
-                        const One& one, Pack3& added) {
+bool Batches::apply_via_arrays(ContactLanes& batch, BodyLanes& bodies, const LanesStep& step,
+                               const One& one, Pack3& added) {
   unload(bodies);
   const bool made = act<tracks_energy>(batch, step, one);
   for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -369,8 +371,8 @@ template <bool tracks_energy, class One>
 bool Batches::step_and_move(ContactLanes& batch, BodyLanes& bodies, const One& one) {
   const LanesStep step = this->step<tracks_energy>(batch, {bodies.position, bodies.velocity});
   Pack3 added = select(step.touches, Pack3{} + step.force, Pack3{});
-  if (any(step.left)) {
-    if (!act_apart<tracks_energy>(batch, bodies, step, one, added)) return false;
+  if (any(step.deferred)) {
+    if (!apply_via_arrays<tracks_energy>(batch, bodies, step, one, added)) return false;
   } else if constexpr (tracks_energy) {
     for (std::size_t lane = 0; lane < batch.count; ++lane) {
       if (step.touches[lane]) account<true>(step, lane);
@@ -381,7 +383,7 @@ bool Batches::step_and_move(ContactLanes& batch, BodyLanes& bodies, const One& o
 
 template <bool tracks_energy, class One>
 bool Batches::step_all(const One& one) {
-  for (const Stretch& stretch : stretches_) {
+  for (const ContactRun& stretch : runs_) {
     if (!stretch.is_batch) {
       for (std::size_t i = stretch.first; i < stretch.first + stretch.count; ++i) {
         if (!one(i)) return false;
@@ -404,15 +406,15 @@ inline bool Batches::move_all() {
     const auto added = [&](std::size_t lane) -> const Vector3& {
       return arrays_.bodies[batch.body[lane]].added_force;
     };
-    const Mask left = move_lanes(batch, gather(added(0), added(1), added(2), added(3)),
-                                 arrays_.newton, arrays_.time_step);
+    const Mask deferred = move_lanes(batch, gather(added(0), added(1), added(2), added(3)),
+                                     arrays_.newton, arrays_.time_step);
     for (std::size_t lane = 0; lane < batch.count; ++lane) {
       Body& body = arrays_.bodies[batch.body[lane]];
       body.motion.position = get(batch.position, lane);
       body.motion.velocity = get(batch.velocity, lane);
       body.added_force = Vector3::Zero();
     }
-    if (any(left)) return false;
+    if (any(deferred)) return false;
   }
   return true;
 }

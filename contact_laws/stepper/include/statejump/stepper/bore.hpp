@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One step of a journal or ball with a meshed bore, which it may touch at several places: where
-// they are, what the law answers at each, what the pair keeps until the next step. The plugin's
-// functors and the stepper call the same functions, with YADE's objects or with plain values.
+// One step of a journal or ball with a meshed bore: several contacts, the law at each, and the
+// state until the next step. The plugin's functors and the stepper call the same functions, with
+// YADE's objects or with plain values.
 //
-// A list of contacts holds values here and pointers there: contact_of() is the contact of an entry.
+// A list of contacts holds values or pointers; contact_of() returns the contact of an entry.
 #pragma once
 
 #include <algorithm>
@@ -15,23 +15,23 @@
 
 #include "statejump/geometry/follow.hpp"
 #include "statejump/kernel/joint_kinematics.hpp"
+#include "statejump/stepper/checks.hpp"
 #include "statejump/stepper/contact.hpp"
 #include "statejump/stepper/link.hpp"
-#include "statejump/stepper/numbers.hpp"
 
 namespace statejump::stepper {
 
 /// Geometry of one of several contacts of a pair; the attributes of JointGeom.
-struct PlaceGeometry : ContactGeometry {
+struct BoreContactGeometry : ContactGeometry {
   Vector3 contactPoint = Vector3::Zero();  ///< [m]
-  double refR1 = 0.0, refR2 = 0.0;         ///< radii, that of the wall without its sign [m]
+  double refR1 = 0.0, refR2 = 0.0;         ///< radii, that of the wall as magnitude [m]
 };
 
 /// Geometry of a pair; the attributes of BoreGeom.
 struct BoreGeometry {
-  std::vector<PlaceGeometry> contacts;
-  std::vector<int> previous;  ///< which contact of the step before each continues, -1: none
-  std::vector<double> known;  ///< of follow_contacts()
+  std::vector<BoreContactGeometry> contacts;
+  std::vector<int> previous;  ///< index of the same contact in the previous step, -1: new
+  std::vector<double> known;  ///< state of follow_contacts()
   double strain_change = 0.0;
   Vector3 normal = Vector3::Zero(), contactPoint = Vector3::Zero();  ///< of the deepest contact
   double refR1 = 0.0, refR2 = 0.0;
@@ -42,19 +42,19 @@ struct BorePhysics : ContactPhysics {
   std::vector<ContactPhysics> contacts;
 };
 
-/// A contact of a journal or ball with a meshed bore, beside what a Contact says of it.
+/// Data of a contact with a meshed bore, in addition to its Contact.
 struct Bore {
   const geometry::BoreMesh* mesh = nullptr;
   bool is_ball = false;
-  double patch_angle = 0.0;   ///< [rad], of follow_contacts()
+  double patch_angle = 0.0;   ///< [rad], for follow_contacts()
   double largest_tilt = 0.0;  ///< between the axes of journal and bore [rad]
-  bool has_geometry = false;  ///< what is known of the wall is kept without contact, too
-  bool renewed = false;       ///< the geometry, since the arrays were filled
+  bool has_geometry = false;  ///< also without contact, to keep the known wall geometry
+  bool renewed = false;       ///< geometry created since the arrays were filled
   BoreGeometry geometry;
   BorePhysics physics;
 };
 
-/// The journal or ball at its temperature.
+/// The journal or ball at its current temperature.
 struct BoreProbe {
   bool is_ball;
   double radius;       ///< [m]
@@ -62,25 +62,25 @@ struct BoreProbe {
   Vector3 axis;        ///< world, unit; zero for a ball
 };
 
-/// The wall and what the temperature has made of it.
+/// The wall at its current temperature.
 struct BoreWall {
   const geometry::BoreMesh& mesh;
-  double grown;        ///< 1 + thermal strain [-]
-  double strain_rate;  ///< of the last step [1/s]
-  double patch_angle;  ///< [rad]
+  double thermal_stretch;  ///< 1 + thermal strain [-]
+  double strain_rate;      ///< of the last step [1/s]
+  double patch_angle;      ///< [rad]
 };
 
-enum class InBore : unsigned char {
-  apart,    ///< no contact, and there was none
-  contact,  ///< the geometry is that of this step
-  nowhere,  ///< no place of the parts against each other
-  conforms  ///< the wall is hollow with a radius not above that of the journal or ball
+enum class BoreSearch : unsigned char {
+  apart,      ///< no contact, and none before
+  contact,    ///< the geometry is that of this step
+  undefined,  ///< the relative position is undefined
+  conforming  ///< the concave wall's radius is not larger than that of the journal or ball
 };
 
 struct BoreStep {
-  InBore found;
-  double wall_radius = 0.0;         ///< where it conforms [m]
-  Vector3 place = Vector3::Zero();  ///< where it conforms [m]
+  BoreSearch found;
+  double wall_radius = 0.0;            ///< if conforming [m]
+  Vector3 position = Vector3::Zero();  ///< if conforming [m]
 };
 
 template <class Entry>
@@ -105,16 +105,16 @@ Entry new_contact() {
   }
 }
 
-/// Whether the axis of a journal is further from parallel to that of the bore than is allowed.
+/// Whether the angle between the axes of journal and bore exceeds the allowed one.
 inline bool tilted_in_bore(const Vector3& journal_axis, const geometry::BoreMesh& mesh,
                            const Quaternion& orientation, double allowed) {
   return !(journal_axis.cross(orientation * mesh.axis()).squaredNorm() <= allowed * allowed);
 }
 
-/// Makes the pair's list of contacts that of the places that are found now: contacts go on with
-/// their labels, and those that have just ended stay for one step, for the law to close their
-/// account.
-/// @param touches whether a found place is in contact; @param turn from the mesh into the world
+/// Updates the pair's contact list from the contacts found now. Continuing contacts keep their
+/// labels. Contacts that have just ended stay for one step, so that the law can complete their
+/// energy balance.
+/// @param touches whether a found position is in contact; @param turn from the mesh into the world
 template <class Pair, class Touches>
 void list_contacts(const std::vector<geometry::FollowedContact>& found, const Touches& touches,
                    const Eigen::Matrix3d& turn, Pair& pair) {
@@ -162,22 +162,23 @@ void list_contacts(const std::vector<geometry::FollowedContact>& found, const To
 
 /// All contacts of a journal or ball (1) with a bore (2).
 /// @param centres from the centre of body 2 to that of body 1 [m]
-/// @param keep whether the pair is in contact already; @param time_step [s]
-/// @param make gives the geometry of the pair, which it makes where there is none: even without
-///        contact it keeps what is known of the wall
+/// @param keep whether the pair is already in contact; @param time_step [s]
+/// @param make returns the geometry of the pair and creates it if necessary. It persists without
+///        contact, because it stores the known wall geometry.
 /// @throws as follow_contacts() and the kernel
-template <class Make>
+template <class CreatePhysics>
 BoreStep find_in_bore(const BoreProbe& probe, const BoreWall& wall,
                       const kernel::BodyMotion& motion_1, const kernel::BodyMotion& motion_2,
                       const Quaternion& orientation_2, const Vector3& centres, bool keep,
-                      double time_step, Make&& make) {
+                      double time_step, CreatePhysics&& make) {
   const geometry::BoreMesh& mesh = wall.mesh;
   const Eigen::Matrix3d turn = orientation_2.toRotationMatrix();
-  const double grown = wall.grown;
-  const Vector3 centre = mesh.centre() + (turn.transpose() * centres - mesh.centre()) / grown;
+  const double thermal_stretch = wall.thermal_stretch;
+  const Vector3 centre =
+      mesh.centre() + (turn.transpose() * centres - mesh.centre()) / thermal_stretch;
   const Vector3 axis = turn.transpose() * probe.axis;
-  const double radius = probe.radius / grown;
-  if (!is_plain(centre) || !(radius > 0)) return {InBore::nowhere};
+  const double radius = probe.radius / thermal_stretch;
+  if (!is_finite_fast(centre) || !(radius > 0)) return {BoreSearch::undefined};
 
   auto& pair = make();
   thread_local std::vector<geometry::FollowedContact> found;
@@ -188,7 +189,7 @@ BoreStep find_in_bore(const BoreProbe& probe, const BoreWall& wall,
   list_contacts(found, touches, turn, pair);
 
   pair.refR1 = pair.refR2 = probe.radius;
-  pair.strain_change = wall.strain_rate * time_step / grown;
+  pair.strain_change = wall.strain_rate * time_step / thermal_stretch;
   const Vector3 world_axis = probe.is_ball ? Vector3(Vector3::Zero()) : turn * mesh.axis();
   std::size_t next = 0;
   double deepest = 0;
@@ -197,26 +198,26 @@ BoreStep find_in_bore(const BoreProbe& probe, const BoreWall& wall,
     const bool is_new = pair.previous[next] < 0;
     auto& geometry = contact_of(pair.contacts[next++]);
     const Vector3 foot = centre - mesh.centre() + one.distance * one.normal;
-    const double wall_radius = grown / one.curvature;
+    const double wall_radius = thermal_stretch / one.curvature;
     if (wall_radius > 0 && !(wall_radius > probe.radius)) {
-      return {InBore::conforms, wall_radius,
+      return {BoreSearch::conforming, wall_radius,
               motion_1.position + turn * (probe.radius * one.normal)};
     }
     kernel::JointContact here;
     here.normal = turn * one.normal;
-    here.penetration_depth = grown * (radius - one.distance);
+    here.penetration_depth = thermal_stretch * (radius - one.distance);
     here.effective_radius = kernel::internal_effective_radius(probe.radius, wall_radius);
     here.arm_1 = (probe.radius - 0.5 * here.penetration_depth) * here.normal;
     here.arm_2 = centres + here.arm_1;
     here.relative_velocity = kernel::material_velocity(motion_1, here.arm_1) -
                              kernel::material_velocity(motion_2, here.arm_2);
-    // What expansion alone does to the depth: the foot moves away from the wall's centre. The
-    // clearance is the sum of that, so that motion along an uneven wall does not count as
+    // Expansion alone moves the foot away from the wall's centre and changes the depth. The
+    // clearance is the sum of these changes, so motion along an uneven wall does not count as
     // expansion.
     const double reach = foot.dot(one.normal);
     const double clearance_rate = wall.strain_rate * reach - probe.radius_rate;
     const double clearance =
-        is_new ? grown * reach - probe.radius
+        is_new ? thermal_stretch * reach - probe.radius
                : geometry.eccentricity - geometry.penetrationDepth + clearance_rate * time_step;
     here.eccentricity = here.penetration_depth + clearance;
     geometry.refR1 = probe.radius;
@@ -234,12 +235,12 @@ BoreStep find_in_bore(const BoreProbe& probe, const BoreWall& wall,
       pair.refR2 = std::abs(wall_radius);
     }
   }
-  return {keep || next > 0 ? InBore::contact : InBore::apart};
+  return {keep || next > 0 ? BoreSearch::contact : BoreSearch::apart};
 }
 
-/// The law at every contact of a pair, whose physics follow the list of the geometry.
-/// @param step makes the step of one contact of its geometry and physics: false where it is open
-/// @return whether any touches
+/// Applies the law at every contact of a pair; the list of physics follows the list of geometries.
+/// @param step steps one contact from its geometry and physics; false if it is open
+/// @return whether any contact touches
 template <class Geometry, class Physics, class Step>
 bool bore_law_step(const Geometry& geometry, Physics& pair, Step&& step) {
   using Entry = typename decltype(pair.contacts)::value_type;
@@ -273,7 +274,7 @@ bool bore_law_step(const Geometry& geometry, Physics& pair, Step&& step) {
   for (std::size_t i = 0; i < count; ++i) {
     const auto& here = contact_of(geometry.contacts[i]);
     auto& physics = contact_of(pair.contacts[i]);
-    // The part of the wall's radius that expansion has changed; the rest is another place.
+    // Only expansion changes this radius; a different radius at another position does not count.
     physics.previousBearingRadius = here.bearingRadius * (1 - geometry.strain_change);
     if (!step(here, physics)) continue;
     touching = true;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One step of one contact of a clearance joint: where its two parts are, what its law answers, what
-// it keeps until the next step. The plugin's functors and the stepper call the same functions, with
-// YADE's objects or with plain values; the attributes have the same names.
+// One step of one contact of a clearance joint: geometry, law, and the state until the next step.
+// The plugin's functors and the stepper call the same functions, with YADE's objects or with plain
+// values. The attributes have the same names.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 #include "statejump/kernel/frame.hpp"
 #include "statejump/kernel/joint_kinematics.hpp"
 #include "statejump/kernel/laws/joint_response.hpp"
-#include "statejump/stepper/numbers.hpp"
+#include "statejump/stepper/checks.hpp"
 
 namespace statejump::stepper {
 
@@ -56,7 +56,7 @@ struct ContactPhysics {
   std::vector<Vector3> slipMemory;  ///< 8 G* r [N/m], elastic displacement along both axes [m]
   double slipSlope = 0.0;           ///< [m^3/N^2]
   double slipMerged = 0.0;          ///< [N]
-  // What the kernel holds of slipMemory, see PartialSlipMemory::Held.
+  // ShiftedPrefix of slipMemory, see PartialSlipMemory.
   int slipHeld = 0;
   Vector3 slipShift = Vector3::Zero();  ///< [m]
   Vector3 slipSums = Vector3::Zero();   ///< [N], [N], [J]
@@ -73,15 +73,15 @@ struct ContactPhysics {
   double previousDepth = 0.0;          ///< [m]
 };
 
-/// Length of a part at the reference temperature and what the temperature does to it.
-struct Part {
-  double length;       ///< radius, or distance of a face [m]
-  double grown;        ///< 1 + thermal strain [-]
-  double strain_rate;  ///< of the last step [1/s]
-  double expanded() const { return length * grown; }
+/// Length at the reference temperature with its thermal expansion.
+struct ThermalLength {
+  double length;           ///< radius, or distance of a face [m]
+  double thermal_stretch;  ///< 1 + thermal strain [-]
+  double strain_rate;      ///< of the last step [1/s]
+  double expanded() const { return length * thermal_stretch; }
 };
 
-/// Values of one contact and one step [J]; elastic is what is stored now.
+/// Energies of one contact in one step [J]; elastic is the energy stored now.
 struct ContactEnergy {
   double elastic;
   double friction;
@@ -89,15 +89,15 @@ struct ContactEnergy {
   double thermal_work;
 };
 
-/// What became of a pair of parts in a step.
-enum class Found {
-  apart,    ///< no contact, and there was none
+/// Result of the contact search for a pair in a step.
+enum class ContactSearch {
+  apart,    ///< no contact, and none before
   contact,  ///< the geometry is that of this step
-  closed,   ///< the clearance is closed, or a centre inside the other ball: no contact
+  closed,   ///< no contact: the clearance is closed, or a centre is inside the other ball
   tilted    ///< the axes are not parallel
 };
 
-/// Takes over a contact of this step.
+/// Stores the contact geometry of this step.
 /// @param motion_1, motion_2 of the two bodies; @param time_step [s]
 template <class Geometry>
 void update(const kernel::JointContact& contact, const kernel::BodyMotion& motion_1,
@@ -110,7 +110,7 @@ void update(const kernel::JointContact& contact, const kernel::BodyMotion& motio
   geometry.relativeVelocity = contact.relative_velocity;
   geometry.arm1 = contact.arm_1;
   geometry.arm2 = contact.arm_2;
-  // The history turns with the mean spin of both bodies about the normal.
+  // The history rotates with the mean spin of both bodies about the normal.
   geometry.twistAngle =
       0.5 * time_step *
       (motion_1.angular_velocity + motion_2.angular_velocity).dot(geometry.normal);
@@ -118,20 +118,21 @@ void update(const kernel::JointContact& contact, const kernel::BodyMotion& motio
 
 /// Journal (1) in a bearing (2).
 /// @param axis unit, of the bearing; @param keep whether the contact exists already
-/// @param tilted says whether the axes are further from parallel than is allowed
-/// @param make gives the geometry to fill; a new one begins with the normal that it is given
-template <class Tilted, class Make>
-Found find_revolute(const Part& journal, const Part& bearing, const kernel::BodyMotion& motion_1,
-                    const kernel::BodyMotion& motion_2, const Vector3& axis, bool keep,
-                    double time_step, Tilted&& tilted, Make&& make) {
+/// @param tilted returns whether the axes are tilted by more than is allowed
+/// @param make returns the geometry to fill; a new one starts with the given normal
+template <class Tilted, class CreatePhysics>
+ContactSearch find_revolute(const ThermalLength& journal, const ThermalLength& bearing,
+                            const kernel::BodyMotion& motion_1, const kernel::BodyMotion& motion_2,
+                            const Vector3& axis, bool keep, double time_step, Tilted&& tilted,
+                            CreatePhysics&& make) {
   const double journal_radius = journal.expanded();
   const double bearing_radius = bearing.expanded();
-  if (!(journal_radius > 0 && bearing_radius > journal_radius)) return Found::closed;
+  if (!(journal_radius > 0 && bearing_radius > journal_radius)) return ContactSearch::closed;
   if (!keep && !kernel::revolute_touches(motion_1.position, journal_radius, motion_2.position,
                                          bearing_radius, axis)) {
-    return Found::apart;
+    return ContactSearch::apart;
   }
-  if (tilted()) return Found::tilted;
+  if (tilted()) return ContactSearch::tilted;
   const kernel::JointContact found =
       kernel::revolute_contact(motion_1, journal_radius, motion_2, bearing_radius, axis);
   auto& geometry = make(found.normal);
@@ -141,19 +142,20 @@ Found find_revolute(const Part& journal, const Part& bearing, const kernel::Body
   geometry.clearanceRate =
       bearing.length * bearing.strain_rate - journal.length * journal.strain_rate;
   update(found, motion_1, motion_2, time_step, geometry);
-  return Found::contact;
+  return ContactSearch::contact;
 }
 
-/// Ball (1) in a socket (2); the rest as find_revolute().
-template <class Make>
-Found find_ball(const Part& ball, const Part& socket, const kernel::BodyMotion& motion_1,
-                const kernel::BodyMotion& motion_2, bool keep, double time_step, Make&& make) {
+/// Ball (1) in a socket (2); otherwise as find_revolute().
+template <class CreatePhysics>
+ContactSearch find_ball(const ThermalLength& ball, const ThermalLength& socket,
+                        const kernel::BodyMotion& motion_1, const kernel::BodyMotion& motion_2,
+                        bool keep, double time_step, CreatePhysics&& make) {
   const double ball_radius = ball.expanded();
   const double socket_radius = socket.expanded();
-  if (!(ball_radius > 0 && socket_radius > ball_radius)) return Found::closed;
+  if (!(ball_radius > 0 && socket_radius > ball_radius)) return ContactSearch::closed;
   if (!keep &&
       !kernel::ball_touches(motion_1.position, ball_radius, motion_2.position, socket_radius)) {
-    return Found::apart;
+    return ContactSearch::apart;
   }
   const kernel::JointContact found =
       kernel::ball_contact(motion_1, ball_radius, motion_2, socket_radius);
@@ -163,26 +165,27 @@ Found find_ball(const Part& ball, const Part& socket, const kernel::BodyMotion& 
   geometry.axis = Vector3::Zero();
   geometry.clearanceRate = socket.length * socket.strain_rate - ball.length * ball.strain_rate;
   update(found, motion_1, motion_2, time_step, geometry);
-  return Found::contact;
+  return ContactSearch::contact;
 }
 
-/// Two balls, each outside the other; the rest as find_revolute(). The radius of the second counts
-/// as that of a bearing turned inside out, negative. @return closed when the centre of one lies
-/// inside the other, where no contact can be computed
-template <class Make>
-Found find_outer_balls(const Part& ball_1, const Part& ball_2, const kernel::BodyMotion& motion_1,
-                       const kernel::BodyMotion& motion_2, bool keep, double time_step,
-                       Make&& make) {
+/// Two balls in external contact; otherwise as find_revolute(). The second radius is negative, as
+/// for a bearing turned inside out. @return closed when the centre of one ball is inside the other,
+/// where no contact can be computed
+template <class CreatePhysics>
+ContactSearch find_outer_balls(const ThermalLength& ball_1, const ThermalLength& ball_2,
+                               const kernel::BodyMotion& motion_1,
+                               const kernel::BodyMotion& motion_2, bool keep, double time_step,
+                               CreatePhysics&& make) {
   const double radius_1 = ball_1.expanded();
   const double radius_2 = ball_2.expanded();
   if (!keep &&
       !kernel::outer_balls_touch(motion_1.position, radius_1, motion_2.position, radius_2)) {
-    return Found::apart;
+    return ContactSearch::apart;
   }
   const double larger = std::max(radius_1, radius_2);
   if (!(radius_1 > 0 && radius_2 > 0 &&
         (motion_1.position - motion_2.position).squaredNorm() > larger * larger)) {
-    return Found::closed;
+    return ContactSearch::closed;
   }
   const kernel::JointContact found =
       kernel::outer_ball_contact(motion_1, radius_1, motion_2, radius_2);
@@ -193,26 +196,26 @@ Found find_outer_balls(const Part& ball_1, const Part& ball_2, const kernel::Bod
   geometry.clearanceRate =
       -(ball_1.length * ball_1.strain_rate + ball_2.length * ball_2.strain_rate);
   update(found, motion_1, motion_2, time_step, geometry);
-  return Found::contact;
+  return ContactSearch::contact;
 }
 
-/// Pad of a slider (1) on a face of its slot (2); the rest as find_revolute().
+/// Pad of a slider (1) on a face of its slot (2); otherwise as find_revolute().
 /// @param normal unit, world, from the slider into the face
-template <class Make>
-Found find_plane(const Part& pad, const Part& face, const kernel::BodyMotion& motion_1,
-                 const kernel::BodyMotion& motion_2, const Vector3& normal, bool keep,
-                 double time_step, Make&& make) {
+template <class CreatePhysics>
+ContactSearch find_plane(const ThermalLength& pad, const ThermalLength& face,
+                         const kernel::BodyMotion& motion_1, const kernel::BodyMotion& motion_2,
+                         const Vector3& normal, bool keep, double time_step, CreatePhysics&& make) {
   const double radius = pad.expanded();
   const kernel::JointContact found =
       kernel::plane_contact(motion_1, radius, motion_2, normal, face.expanded());
-  if (found.penetration_depth <= 0 && !keep) return Found::apart;
+  if (found.penetration_depth <= 0 && !keep) return ContactSearch::apart;
   auto& geometry = make(found.normal);
   geometry.journalRadius = radius;
   geometry.bearingRadius = std::numeric_limits<double>::infinity();
   geometry.axis = Vector3::Zero();
   geometry.clearanceRate = face.length * face.strain_rate - pad.length * pad.strain_rate;
   update(found, motion_1, motion_2, time_step, geometry);
-  return Found::contact;
+  return ContactSearch::contact;
 }
 
 template <class Physics>
@@ -224,13 +227,13 @@ kernel::ContactParameters contact_parameters(const Physics& physics) {
           physics.effectiveMass};
 }
 
-/// History of friction, carried into the tangent plane of this step. Stored forces act on body 2,
-/// the kernel's on body 1. Memory is not copied but borrowed, until this ends.
+/// Friction history, rotated into the tangent plane of this step. Stored forces act on body 2, the
+/// kernel's on body 1. The memory is moved in, not copied, and moved back on destruction.
 template <class Physics>
-class BorrowedHistory {
+class ScopedHistory {
  public:
   template <class Geometry>
-  BorrowedHistory(const Geometry& geometry, Physics& physics) : physics_(physics) {
+  ScopedHistory(const Geometry& geometry, Physics& physics) : physics_(physics) {
     history.tangential_force = kernel::transport(-physics.shearForce, geometry.previousNormal,
                                                  geometry.normal, geometry.twistAngle);
     history.tangential_stiffness = physics.ks;
@@ -244,31 +247,31 @@ class BorrowedHistory {
         physics.slipSlope,
         physics.slipMerged,
         {physics.slipHeld, {shift[0], shift[1]}, {sums[0], sums[1]}, sums[2], line[0], line[1]}};
-    borrowed_ = true;
+    moved_in_ = true;
   }
-  BorrowedHistory(const BorrowedHistory&) = delete;
-  BorrowedHistory& operator=(const BorrowedHistory&) = delete;
-  ~BorrowedHistory() {
+  ScopedHistory(const ScopedHistory&) = delete;
+  ScopedHistory& operator=(const ScopedHistory&) = delete;
+  ~ScopedHistory() {
     kernel::PartialSlipMemory& memory = history.memory;
-    if (!borrowed_ && memory.size() == 0) return;
-    const kernel::PartialSlipMemory::Held& held = memory.held();
+    if (!moved_in_ && memory.size() == 0) return;
+    const kernel::PartialSlipMemory::ShiftedPrefix& prefix = memory.prefix();
     physics_.slipAxis = history.tangential_axis;
     physics_.slipSlope = memory.slope();
     physics_.slipMerged = memory.merged();
-    physics_.slipHeld = held.count;
-    physics_.slipShift = {held.shift.a, held.shift.b, 0.0};
-    physics_.slipSums = {held.force.a, held.force.b, held.squares};
-    physics_.slipLine = {held.at_centre, held.at_last, 0.0};
+    physics_.slipHeld = prefix.count;
+    physics_.slipShift = {prefix.shift.a, prefix.shift.b, 0.0};
+    physics_.slipSums = {prefix.force.a, prefix.force.b, prefix.squares};
+    physics_.slipLine = {prefix.at_centre, prefix.at_last, 0.0};
     physics_.slipMemory = memory.take_points();
   }
   kernel::ContactHistory history;
 
  private:
   Physics& physics_;
-  bool borrowed_ = false;
+  bool moved_in_ = false;
 };
 
-/// What the contact keeps until the next step: stiffnesses and forces.
+/// Stores stiffnesses and forces until the next step.
 template <class Physics>
 void store(const kernel::ContactResponse& response, const kernel::ContactHistory& history,
            const Vector3& normal, Physics& physics) {
@@ -279,10 +282,12 @@ void store(const kernel::ContactResponse& response, const kernel::ContactHistory
   physics.shearForce = -history.tangential_force;
 }
 
-/// The energies of one contact. Expansion works on it through the clearance c and the radii: with
-/// V(delta, radii) and delta = eccentricity - c, the part of dV that no motion of the bodies
-/// explains is -F dc plus what the radii change of V at fixed depth. Trapezoidal, as the motion is.
-/// @param dissipation_force of the dissipation law [N], @param radius kept until the next step [m]
+/// Energies of one contact. Expansion does work on it through the clearance c and the radii. With
+/// V(delta, radii) and delta = eccentricity - c, this work is the part of dV without body motion:
+/// -F dc plus the change of V by the radii at fixed depth. The trapezoidal rule is used, as for the
+/// motion.
+/// @param dissipation_force of the dissipation law [N]
+/// @param radius stored until the next step [m]
 /// @param add_radius_work adds the work of the changing radii to a number [J]
 template <class Geometry, class Physics, class AddRadiusWork>
 ContactEnergy account(const kernel::ContactResponse& response, double dissipation_force,
@@ -306,32 +311,32 @@ ContactEnergy account(const kernel::ContactResponse& response, double dissipatio
           response.friction_dissipation, response.damping_dissipation, thermal_work};
 }
 
-/// What the laws ask of whoever steps them:
-///   time_step() [s], tracks_energy(), add(ContactEnergy)
-///   exert(wrench)              forces on the two bodies
-///   judges                     whether an answer is judged before it acts; else whoever steps the
-///                              contact asks afterwards what it keeps
-///   accepts(k, force, physics) of one that judges: whether an answer that is not plain is good:
-///                              normal stiffness k [N/m], force on body 1 [N]; else it fails
+/// Interface that the laws need from the calling stepper:
+///  time_step() [s], tracks_energy(), add(ContactEnergy)
+///  apply(wrench)              adds forces to the two bodies
+///  checks_response            whether a response is checked before it acts; else the caller checks
+///                             the stored state afterwards
+///  accepts(k, force, physics) if checks_response: decides on a response that fails the fast check,
+///                             with normal stiffness k [N/m] and force on body 1 [N]; else it fails
 ///
-/// Whether the answer of a contact can be used.
+/// Whether the response of a contact can be used.
 template <class Physics, class Host>
 [[gnu::always_inline]] inline bool is_usable(const kernel::ContactResponse& response,
                                              const Physics& physics, Host&& host) {
-  if constexpr (std::decay_t<Host>::judges) {
-    return (is_plain_stiffness(response.normal_stiffness, physics, host.time_step()) &&
-            physics.tangensOfFrictionAngle >= 0 && is_plain(response.force_on_1)) ||
+  if constexpr (std::decay_t<Host>::checks_response) {
+    return (is_stable_stiffness(response.normal_stiffness, physics, host.time_step()) &&
+            physics.tangensOfFrictionAngle >= 0 && is_finite_fast(response.force_on_1)) ||
            host.accepts(response.normal_stiffness, response.force_on_1, physics);
   } else {
     return true;
   }
 }
 
-/// Hertz and Mindlin. @return false when the contact is open; true, without forces, when it failed
+/// Hertz and Mindlin. @return false if the contact is open; true, without forces, if it failed
 template <class Geometry, class Physics, class Host>
 bool hertz_mindlin_step(const Geometry& geometry, Physics& physics, Host&& host) {
-  BorrowedHistory borrowed(geometry, physics);
-  kernel::ContactHistory& history = borrowed.history;
+  ScopedHistory scoped(geometry, physics);
+  kernel::ContactHistory& history = scoped.history;
   const kernel::ContactKinematics kinematics{geometry.normal, geometry.penetrationDepth,
                                              geometry.effectiveRadius, geometry.relativeVelocity,
                                              host.time_step()};
@@ -352,18 +357,18 @@ bool hertz_mindlin_step(const Geometry& geometry, Physics& physics, Host&& host)
   }
   if (!touches) return false;
   store(response, history, geometry.normal, physics);
-  host.exert(kernel::contact_wrench(response.force_on_1, geometry.arm1, geometry.arm2));
+  host.apply(kernel::contact_wrench(response.force_on_1, geometry.arm1, geometry.arm2));
   return true;
 }
 
-/// Why a law by name does not fit a contact.
+/// Reason why named laws are incompatible with a contact.
 enum class Misfit { none, bulging_wall, no_axis };
 
-/// Laws by name. @tparam Law a JointLaw or a KnownJointLaw
+/// Named laws. @tparam Law a JointLaw or a StaticJointLaw
 template <class Law>
 struct Named {
   Law law;
-  bool needs_axis = false;  ///< some of the laws have no meaning without a bearing's axis
+  bool needs_axis = false;  ///< some of the laws need a bearing's axis
 };
 using NamedLaw = Named<kernel::laws::JointLaw>;
 
@@ -376,9 +381,9 @@ Misfit misfit(const Named<Law>& named, const Geometry& geometry) {
   return named.needs_axis && geometry.axis.isZero() ? Misfit::no_axis : Misfit::none;
 }
 
-/// Begins a contact and says when it began [s]. The bodies have moved uniformly over the last step,
-/// at the velocity of the half step, and the clearance has changed by clearanceRate dt: the
-/// touching is where that straight line crosses 0.
+/// Begins a contact and returns its start time [s]. In the last step the bodies moved uniformly, at
+/// the velocity of the half step, and the clearance changed by clearanceRate dt. The contact starts
+/// where this line crosses 0.
 template <class Geometry, class Physics>
 double begin(const Geometry& geometry, Physics& physics, double time, double time_step) {
   physics.begun = true;
@@ -390,32 +395,32 @@ double begin(const Geometry& geometry, Physics& physics, double time, double tim
   return ever_apart ? time - since : time;
 }
 
-/// Contacts that have begun, and when the first of them did.
-struct Begun {
+/// Number of contacts that have begun, and the first start time.
+struct FirstTouch {
   double first = std::numeric_limits<double>::quiet_NaN();  ///< [s]
   int count = 0;
   void add(double touched) {
     if (count == 0 || touched < first) first = touched;
     ++count;
   }
-  void add(const Begun& others) {
+  void add(const FirstTouch& others) {
     if (others.count == 0) return;
     if (count == 0 || others.first < first) first = others.first;
     count += others.count;
   }
 };
 
-/// Laws by name, for a contact without a Misfit that has begun if it touches.
-/// @return false when the contact is open; true, without forces, when it failed
+/// Step with named laws, for a contact without Misfit that has begun if it touches.
+/// @return false if the contact is open; true, without forces, if it failed
 /// @throws std::domain_error outside the range of a law
 template <class Law, class Geometry, class Physics, class Host>
 bool joint_law_step(const Law& law, const Geometry& geometry, Physics& physics,
                     const kernel::BodyMotion& motion_1, const kernel::BodyMotion& motion_2,
                     Host&& host) {
   namespace laws = kernel::laws;
-  BorrowedHistory borrowed(geometry, physics);
-  kernel::ContactHistory& history = borrowed.history;
-  history.memory.set_accounts(host.tracks_energy());
+  ScopedHistory scoped(geometry, physics);
+  kernel::ContactHistory& history = scoped.history;
+  history.memory.set_tracks_energy(host.tracks_energy());
   const laws::JointKinematics kinematics{
       {geometry.penetrationDepth, geometry.normal, geometry.arm1, geometry.arm2,
        geometry.relativeVelocity, geometry.effectiveRadius, geometry.eccentricity},
@@ -434,10 +439,10 @@ bool joint_law_step(const Law& law, const Geometry& geometry, Physics& physics,
   if (host.tracks_energy()) {
     host.add(account(
         contact, response.dissipation_force, geometry.journalRadius,
-        [&](double& work) {  // V(delta, R1, R2) of any law is known by value only
+        [&](double& work) {  // V(delta, R1, R2) of a general law is known only by values
           if (geometry.journalRadius == physics.previousRadius &&
               geometry.bearingRadius == physics.previousBearingRadius) {
-            work += 0.0;  // as for each depth
+            work += 0.0;  // the same sum as with the loop
             return;
           }
           laws::NormalGeometry before = kinematics.geometry;
@@ -452,8 +457,8 @@ bool joint_law_step(const Law& law, const Geometry& geometry, Physics& physics,
   }
   if (!touches) return false;
   store(contact, history, geometry.normal, physics);
-  host.exert(response.wrench);
-  // A law that remembers nothing gives force, not history.
+  host.apply(response.wrench);
+  // A law without memory returns a force but no history.
   if (!(physics.ks > 0)) physics.shearForce = -contact.tangential_force;
   physics.dissipationSlope = response.dissipation_slope;
   physics.frictionSlope = response.friction_slope;

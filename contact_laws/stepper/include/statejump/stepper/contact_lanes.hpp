@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hertz and Mindlin for four contacts at once: the operations of find_revolute(), find_ball(),
-// find_plane() and hertz_mindlin_step(), in their order and without their branches, for contacts
-// whose bodies do not turn and that are open or touch and go on touching. What else happens to a
-// contact is for those functions to do: it is found here, and nothing is changed.
+// find_plane() and hertz_mindlin_step(), in their order and without branches. The bodies do not
+// rotate, and each contact stays open or stays in contact. Any other case is detected and left
+// unchanged for those functions.
 #pragma once
 
 #include <array>
@@ -15,29 +15,28 @@
 
 namespace statejump::stepper {
 
-/// Up to four contacts of one kind of joint, and what they keep from step to step. Lanes that are
-/// not used repeat the first.
+/// Up to four contacts of one joint type and their state. Unused lanes repeat the first.
 struct ContactLanes {
-  std::size_t first;  ///< place in Scene::contacts; the others follow
+  std::size_t first;  ///< index in Scene::contacts; the others follow
   std::size_t count;
   Joint joint;
   std::array<std::size_t, lanes> body_1, body_2, strain_1, strain_2;
   std::array<bool, lanes> moves_1, moves_2;
   bool any_moves_2, damps_normal, damps_tangential;
-  bool spins;  // where none does, what spins add is 0
+  bool spins;  // false: products with spins are 0
   Mask used, real;
   Pack length_1, length_2;  // [m]
-  Pack3 axis;               // unit, of the bearing; of a plane its normal
+  Pack3 axis;               // unit, of the bearing; for a plane its normal
   Pack3 position_2, velocity_2, spin_1, spin_2;
   Pack young, shear, friction, normal_damping, tangential_damping, mass;
-  Pack plain_stiffness;  // [N/m]
-  // State of a contact that is real.
+  Pack stable_stiffness;  // [N/m]
+  // State of a real contact.
   Pack3 normal, tangential_force;  // on body 1 [N]
   Pack stiffness;                  // tangential [N/m]
   Mask slipping;
   Pack elastic_force, elastic_energy, clearance, radius;  // of the last step
 
-  /// Takes over a contact; the rest of a lane stays what it is from step to step.
+  /// Loads the state of a contact; the other members of a lane stay constant between steps.
   void load(std::size_t lane, const Contact& contact) {
     const ContactPhysics& physics = contact.physics;
     real[lane] = contact.real ? -1 : 0;
@@ -49,7 +48,7 @@ struct ContactLanes {
     damps_normal = any(normal_damping > 0);
     damps_tangential = any(tangential_damping > 0);
     mass[lane] = physics.effectiveMass;
-    plain_stiffness[lane] = contact.plain_stiffness;
+    stable_stiffness[lane] = contact.stable_stiffness;
     put(normal, lane, contact.geometry.normal);
     put(tangential_force, lane, -physics.shearForce);
     stiffness[lane] = physics.ks;
@@ -60,7 +59,7 @@ struct ContactLanes {
     radius[lane] = physics.previousRadius;
   }
 
-  /// Gives back what the next step of the contact asks for.
+  /// Stores the state that the next step of the contact needs.
   void unload(std::size_t lane, Contact& contact) const {
     if (!contact.real) return;
     ContactPhysics& physics = contact.physics;
@@ -75,12 +74,12 @@ struct ContactLanes {
   }
 };
 
-/// Four contacts of one step.
+/// Results of four contacts in one step.
 struct LanesStep {
-  Mask left;                             ///< not computed here: it begins, ends or fails
-  Mask touches;                          ///< of the others: real, the rest is open
+  Mask deferred;                         ///< not computed here: the contact begins, ends or fails
+  Mask touches;                          ///< of the other lanes: in contact; the rest is open
   Pack3 force;                           ///< on body 1 [N]
-  Pack friction, damping, thermal_work;  ///< as ContactEnergy
+  Pack friction, damping, thermal_work;  ///< as in ContactEnergy
 };
 
 /// Motion of body 1 or 2 in each lane.
@@ -95,13 +94,14 @@ namespace detail {
   return stiffness < largest;
 }
 
-/// kernel::transport() without twist. @param left gains the lanes where the normals are opposite
+/// kernel::transport() without twist. @param left gains the lanes with opposite normals
 [[gnu::always_inline]] inline Pack3 transport(const Pack3& tangential, const Pack3& n_old,
-                                              const Pack3& n_new, const Mask& real, Mask& left) {
+                                              const Pack3& n_new, const Mask& real,
+                                              Mask& deferred) {
   const Pack magnitude_squared = dot(tangential, tangential);
   const Pack3 half = n_old + n_new;
   const Pack half_squared = dot(half, half);
-  left |= real & ~(half_squared > 1e-16);
+  deferred |= real & ~(half_squared > 1e-16);
   Pack3 turned = tangential - half * (2.0 * dot(tangential, n_new) / half_squared);
   turned = turned - n_new * dot(turned, n_new);
   const Pack ratio = dot(turned, turned) / magnitude_squared;
@@ -113,88 +113,122 @@ namespace detail {
   return select(vanishes, Pack3{}, turned * factor);
 }
 
-}  // namespace detail
-
-/// One step of four contacts. Those that touch have their new state in lanes, those that are left
-/// their old.
-/// @param length_1, length_2 radii, or pad and distance of the face, as they are now [m]
-template <bool tracks_energy>
-[[gnu::always_inline]] inline LanesStep step_lanes(ContactLanes& at, const MotionLanes& one,
-                                                   const MotionLanes& two, const Pack& length_1,
-                                                   const Pack& length_2, double time_step) {
-  LanesStep step{};
-  const Pack3 centres = one.position - two.position;
+/// Geometry of four contacts.
+struct LanesGeometry {
+  Pack3 centres;  ///< from body 2 to body 1 [m]
   Pack3 normal;
-  Pack eccentricity, depth, radius;
+  Pack eccentricity, depth, radius;  ///< [m]
+};
+
+/// find_revolute(), find_ball() and find_plane(). @param deferred gains contacts that begin or fail
+[[gnu::always_inline]] inline LanesGeometry find_lanes(const ContactLanes& at, const Pack3& centres,
+                                                       const Pack& length_1, const Pack& length_2,
+                                                       Mask& deferred) {
+  LanesGeometry found;
+  found.centres = centres;
   if (at.joint == Joint::plane) {
-    normal = at.axis;
-    eccentricity = dot(centres, normal);
-    depth = length_1 - (length_2 - eccentricity);
-    radius = length_1;
-    step.left = ~at.real & ~(depth <= 0.0);
-  } else {
-    Pack3 offset = centres;
-    if (at.joint == Joint::revolute) offset = centres - at.axis * dot(centres, at.axis);
-    const Pack squared = dot(offset, offset);
-    const Pack gap = length_2 - length_1;
-    const Mask open = squared <= gap * gap;
-    step.left = ~((length_1 > 0.0) & (length_2 > length_1) &
-                  (length_2 < std::numeric_limits<double>::infinity())) |
-                (~at.real & ~open) | (at.real & ~(squared > std::numeric_limits<double>::min()));
-    eccentricity = root(squared);
-    normal = offset * (1.0 / eccentricity);
-    depth = eccentricity - gap;
-    radius = length_1 * (length_2 / gap);
+    found.normal = at.axis;
+    found.eccentricity = dot(centres, found.normal);
+    found.depth = length_1 - (length_2 - found.eccentricity);
+    found.radius = length_1;
+    deferred = ~at.real & ~(found.depth <= 0.0);
+    return found;
   }
-  if (!any(at.real)) {
-    step.left &= at.used;
-    return step;
-  }
-  Pack3 velocity;
-  if (at.spins) {
-    const Pack3 arm_1 = normal * (length_1 - 0.5 * depth);
-    const Pack3 arm_2 = centres + arm_1;
-    velocity = (one.velocity + cross(at.spin_1, arm_1)) - (two.velocity + cross(at.spin_2, arm_2));
-  } else {
-    velocity = one.velocity - two.velocity;
-  }
+  Pack3 offset = centres;
+  if (at.joint == Joint::revolute) offset = centres - at.axis * dot(centres, at.axis);
+  const Pack squared = dot(offset, offset);
+  const Pack gap = length_2 - length_1;
+  const Mask open = squared <= gap * gap;
+  deferred = ~((length_1 > 0.0) & (length_2 > length_1) &
+               (length_2 < std::numeric_limits<double>::infinity())) |
+             (~at.real & ~open) | (at.real & ~(squared > std::numeric_limits<double>::min()));
+  found.eccentricity = root(squared);
+  found.normal = offset * (1.0 / found.eccentricity);
+  found.depth = found.eccentricity - gap;
+  found.radius = length_1 * (length_2 / gap);
+  return found;
+}
 
-  // hertz() and the normal part of contact_step()
-  const Pack contact_radius = root(radius * depth);
-  const Pack normal_stiffness = 2.0 * at.young * contact_radius;
-  // Without a depth there is no root. Both moduli are above 0 where any stiffness is plain.
-  step.left |=
-      at.real & ~((contact_radius > 0.0) & detail::are_below(normal_stiffness, at.plain_stiffness));
-  const Pack elastic_force = 2.0 / 3.0 * normal_stiffness * depth;
-  const Pack approach_speed = dot(velocity, normal);
-  Pack normal_force = elastic_force;
-  Pack damping_power{};
+/// Velocity of 1 relative to 2 of the material at the contact point [m/s].
+[[gnu::always_inline]] inline Pack3 relative_velocity(const ContactLanes& at,
+                                                      const MotionLanes& one,
+                                                      const MotionLanes& two,
+                                                      const LanesGeometry& geometry,
+                                                      const Pack& length_1) {
+  if (!at.spins) return one.velocity - two.velocity;
+  const Pack3 arm_1 = geometry.normal * (length_1 - 0.5 * geometry.depth);
+  const Pack3 arm_2 = geometry.centres + arm_1;
+  return (one.velocity + cross(at.spin_1, arm_1)) - (two.velocity + cross(at.spin_2, arm_2));
+}
+
+/// Normal contact of four contacts.
+struct LanesNormal {
+  Pack contact_radius;        ///< a [m]
+  Pack elastic_force, force;  ///< [N]
+  Pack approach_speed;        ///< [m/s]
+  Pack damping_power;         ///< [W]
+};
+
+/// hertz() and the normal part of contact_step(). @param deferred gains unstable contacts
+[[gnu::always_inline]] inline LanesNormal normal_lanes(const ContactLanes& at,
+                                                       const LanesGeometry& geometry,
+                                                       const Pack3& velocity, Mask& deferred) {
+  LanesNormal normal;
+  normal.contact_radius = root(geometry.radius * geometry.depth);
+  const Pack stiffness = 2.0 * at.young * normal.contact_radius;
+  // Without a depth the root is not positive. Stable stiffnesses imply that both moduli are > 0.
+  deferred |=
+      at.real & ~((normal.contact_radius > 0.0) & are_below(stiffness, at.stable_stiffness));
+  normal.elastic_force = 2.0 / 3.0 * stiffness * geometry.depth;
+  normal.approach_speed = dot(velocity, geometry.normal);
+  normal.force = normal.elastic_force;
+  normal.damping_power = Pack{};
   if (at.damps_normal) {
-    const Pack damping = 2.0 * at.normal_damping * root(at.mass * normal_stiffness);
+    const Pack damping = 2.0 * at.normal_damping * root(at.mass * stiffness);
     const Mask damped = at.normal_damping > 0.0;
-    normal_force = damped ? not_negative(elastic_force + damping * approach_speed) : normal_force;
-    damping_power = (normal_force - elastic_force) * approach_speed;
+    normal.force = damped ? not_negative(normal.elastic_force + damping * normal.approach_speed)
+                          : normal.force;
+    normal.damping_power = (normal.force - normal.elastic_force) * normal.approach_speed;
   }
+  return normal;
+}
 
-  // mindlin_step()
-  const Pack3 old_force =
-      detail::transport(at.tangential_force, at.normal, normal, at.real, step.left);
-  const Pack stiffness = 8.0 * at.shear * contact_radius;
-  const Pack limit = at.friction * normal_force;
-  const Pack3 tangential_velocity = velocity - normal * approach_speed;
-  const Pack3 slide = tangential_velocity * time_step;
+/// Tangential contact of four contacts.
+struct LanesFriction {
+  Pack3 velocity;  ///< tangential [m/s]
+  Pack3 force;     ///< of the spring, on body 1 [N]
+  Pack stiffness;  ///< k_t [N/m]
+  Pack limit;      ///< mu F_N [N]
+  Mask free;       ///< without friction
+  Mask slipping;
+};
+
+/// mindlin_step(). @param step its friction loss is set; it defers contacts whose normal reverses
+template <bool tracks_energy>
+[[gnu::always_inline]] inline LanesFriction friction_lanes(const ContactLanes& at,
+                                                           const Pack3& normal,
+                                                           const LanesNormal& pressed,
+                                                           const Pack3& velocity, double time_step,
+                                                           LanesStep& step) {
+  LanesFriction friction;
+  const Pack3 old_force = transport(at.tangential_force, at.normal, normal, at.real, step.deferred);
+  friction.stiffness = 8.0 * at.shear * pressed.contact_radius;
+  friction.limit = at.friction * pressed.force;
+  friction.velocity = velocity - normal * pressed.approach_speed;
+  const Pack& limit = friction.limit;
+  const Pack3 slide = friction.velocity * time_step;
   const Mask stored = at.stiffness > 0.0;
   const Pack old_compliance = stored ? 1.0 / at.stiffness : 0.0;
-  const Mask free = ~(limit > 0.0);
-  const Mask loading = (stiffness >= at.stiffness) & stored;
-  const Pack kept = loading ? 1.0 : stiffness * old_compliance;
-  Pack3 force = old_force * kept - slide * stiffness;
-  Pack force_squared = dot(force, force);
-  Mask slipping = force_squared > limit * limit;
-  const bool slips = any(slipping & at.real & ~free);
+  friction.free = ~(limit > 0.0);
+  const Mask loading = (friction.stiffness >= at.stiffness) & stored;
+  const Pack kept = loading ? 1.0 : friction.stiffness * old_compliance;
+  Pack3 force = old_force * kept - slide * friction.stiffness;
+  const Pack force_squared = dot(force, force);
+  friction.slipping = force_squared > limit * limit;
+  const bool slips = any(friction.slipping & at.real & ~friction.free);
   Pack compliance, old_squared, old_work;
   if constexpr (tracks_energy) {
-    compliance = 1.0 / stiffness;
+    compliance = 1.0 / friction.stiffness;
     old_squared = dot(old_force, old_force);
     old_work = dot(old_force, slide);
     step.friction = loading ? 0.5 * old_squared * (old_compliance - compliance)
@@ -206,54 +240,87 @@ template <bool tracks_energy>
     if constexpr (tracks_energy) {
       const Pack slip = (trial - limit) * compliance;
       const Pack loss = 0.5 * (kept * dot(old_force, direction) + limit) * slip;
-      step.friction = slipping ? step.friction + loss : step.friction;
+      step.friction = friction.slipping ? step.friction + loss : step.friction;
     }
-    force = select(slipping, direction * limit, force);
+    force = select(friction.slipping, direction * limit, force);
   }
-  force = select(free, Pack3{}, force);
-  slipping |= free;
+  friction.force = select(friction.free, Pack3{}, force);
+  friction.slipping |= friction.free;
   if constexpr (tracks_energy) {
     const Pack released = 0.5 * (old_squared * old_compliance - old_work);
-    step.friction = not_negative(free ? released : step.friction);
+    step.friction = not_negative(friction.free ? released : step.friction);
   }
+  return friction;
+}
 
-  // the tangential part of contact_step()
-  Pack3 with_damping = force;
-  if (at.damps_tangential) {
-    const Mask damped = (at.tangential_damping > 0.0) & ~free & ~slipping;
-    const Pack damping = 2.0 * at.tangential_damping * root(at.mass * stiffness);
-    Pack3 sum = force - tangential_velocity * damping;
-    const Pack squared = dot(sum, sum);
-    const Mask over = squared > limit * limit;
-    if (any(over & damped)) sum = select(over, sum * (limit / root(squared)), sum);
-    with_damping = select(damped, sum, force);
-    if constexpr (tracks_energy) {
-      const Pack power = over ? not_negative(dot(force - sum, tangential_velocity))
-                              : damping * dot(tangential_velocity, tangential_velocity);
-      step.damping = damped ? power * time_step : 0.0;
-    }
+/// The tangential part of contact_step(). @param damping_loss set if energy is tracked [J]
+/// @return tangential force with its viscous part [N]
+template <bool tracks_energy>
+[[gnu::always_inline]] inline Pack3 damp_lanes(const ContactLanes& at,
+                                               const LanesFriction& friction, double time_step,
+                                               Pack& damping_loss) {
+  if (!at.damps_tangential) return friction.force;
+  const Mask damped = (at.tangential_damping > 0.0) & ~friction.free & ~friction.slipping;
+  const Pack damping = 2.0 * at.tangential_damping * root(at.mass * friction.stiffness);
+  Pack3 sum = friction.force - friction.velocity * damping;
+  const Pack squared = dot(sum, sum);
+  const Mask over = squared > friction.limit * friction.limit;
+  if (any(over & damped)) sum = select(over, sum * (friction.limit / root(squared)), sum);
+  if constexpr (tracks_energy) {
+    const Pack power = over ? not_negative(dot(friction.force - sum, friction.velocity))
+                            : damping * dot(friction.velocity, friction.velocity);
+    damping_loss = damped ? power * time_step : 0.0;
   }
-  step.force = with_damping - normal * normal_force;
-  step.left &= at.used;
-  step.touches = at.real & at.used & ~step.left;
+  return select(damped, sum, friction.force);
+}
 
-  if constexpr (tracks_energy) {  // account()
-    step.damping = damping_power * time_step + step.damping;
-    const Pack energy = 0.4 * elastic_force * depth;
-    const Pack clearance = eccentricity - depth;
-    Pack work = -(0.5 * (elastic_force + at.elastic_force)) * (clearance - at.clearance);
-    work += 0.5 * (energy + at.elastic_energy) / (2.0 * (0.5 * (radius + at.radius))) *
-            (radius - at.radius);
-    step.thermal_work = at.radius > 0.0 ? work : 0.0;
-    at.elastic_force = step.touches ? elastic_force : at.elastic_force;
-    at.elastic_energy = step.touches ? energy : at.elastic_energy;
-    at.clearance = step.touches ? clearance : at.clearance;
-    at.radius = step.touches ? radius : at.radius;
+/// account(); updates the energy state of touching lanes.
+[[gnu::always_inline]] inline void account_lanes(ContactLanes& at, const LanesGeometry& geometry,
+                                                 const LanesNormal& normal, double time_step,
+                                                 LanesStep& step) {
+  step.damping = normal.damping_power * time_step + step.damping;
+  const Pack energy = 0.4 * normal.elastic_force * geometry.depth;
+  const Pack clearance = geometry.eccentricity - geometry.depth;
+  Pack work = -(0.5 * (normal.elastic_force + at.elastic_force)) * (clearance - at.clearance);
+  work += 0.5 * (energy + at.elastic_energy) / (2.0 * (0.5 * (geometry.radius + at.radius))) *
+          (geometry.radius - at.radius);
+  step.thermal_work = at.radius > 0.0 ? work : 0.0;
+  at.elastic_force = step.touches ? normal.elastic_force : at.elastic_force;
+  at.elastic_energy = step.touches ? energy : at.elastic_energy;
+  at.clearance = step.touches ? clearance : at.clearance;
+  at.radius = step.touches ? geometry.radius : at.radius;
+}
+
+}  // namespace detail
+
+/// One step of four contacts. Touching lanes receive their new state; deferred lanes keep the old
+/// one.
+/// @param length_1, length_2 current radii, or pad and distance of the face [m]
+template <bool tracks_energy>
+[[gnu::always_inline]] inline LanesStep step_lanes(ContactLanes& at, const MotionLanes& one,
+                                                   const MotionLanes& two, const Pack& length_1,
+                                                   const Pack& length_2, double time_step) {
+  LanesStep step{};
+  const detail::LanesGeometry geometry =
+      detail::find_lanes(at, one.position - two.position, length_1, length_2, step.deferred);
+  if (!any(at.real)) {
+    step.deferred &= at.used;
+    return step;
   }
-  at.normal = select(step.touches, normal, at.normal);
-  at.tangential_force = select(step.touches, force, at.tangential_force);
-  at.stiffness = step.touches ? stiffness : at.stiffness;
-  at.slipping = step.touches ? slipping : at.slipping;
+  const Pack3 velocity = detail::relative_velocity(at, one, two, geometry, length_1);
+  const detail::LanesNormal normal = detail::normal_lanes(at, geometry, velocity, step.deferred);
+  const detail::LanesFriction friction =
+      detail::friction_lanes<tracks_energy>(at, geometry.normal, normal, velocity, time_step, step);
+  const Pack3 tangential_force =
+      detail::damp_lanes<tracks_energy>(at, friction, time_step, step.damping);
+  step.force = tangential_force - geometry.normal * normal.force;
+  step.deferred &= at.used;
+  step.touches = at.real & at.used & ~step.deferred;
+  if constexpr (tracks_energy) detail::account_lanes(at, geometry, normal, time_step, step);
+  at.normal = select(step.touches, geometry.normal, at.normal);
+  at.tangential_force = select(step.touches, friction.force, at.tangential_force);
+  at.stiffness = step.touches ? friction.stiffness : at.stiffness;
+  at.slipping = step.touches ? friction.slipping : at.slipping;
   return step;
 }
 

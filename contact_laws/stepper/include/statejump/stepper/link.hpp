@@ -16,7 +16,7 @@ namespace statejump::stepper {
 using kernel::Vector3;
 using Quaternion = Eigen::Quaterniond;
 
-/// A link and what it keeps from step to step; the attributes of ThermalLink.
+/// A link and its state between steps; the attributes of ThermalLink.
 struct Link {
   int id1 = -1;
   int id2 = -1;
@@ -27,7 +27,7 @@ struct Link {
   double dampingRatio = 0;      ///< [-]
   double pinDamping = 0;        ///< [N m s/rad]
   bool tipTurnsWithLink = false;
-  bool tensionOnly = false;             ///< a cable: it never pushes
+  bool tensionOnly = false;             ///< a cable: never in compression
   double axialForce = 0;                ///< [N], compression positive
   double temperatureChange = 0;         ///< [K]
   double previousTension = 0;           ///< [N]
@@ -37,7 +37,7 @@ struct Link {
   Vector3 tipDirection = Vector3::Zero();
 };
 
-/// Where a link is.
+/// Direction and length of a link.
 struct Span {
   Vector3 direction;  ///< unit, from root to tip
   double length;      ///< [m]
@@ -60,22 +60,22 @@ inline double damping_coefficient(const Link& link, double inverse_mass) {
 }
 
 /// The forces of a link in one step. With extension e = L - l_T the tension is
-/// N = k_T e + c (L' - l_T'), k_T = E A / l_T, and
-///   N L' = d(k_T e^2 / 2)/dt + c (L' - l_T')^2 + [N + k_T e^2 / (2 l_T)] l_T',
-/// so the thermal work on the link is -integral of [N + k_T e^2 / (2 l_T)] dl_T. A cable that is
-/// shorter than l_T has e = 0 and no force; the dashpot of one that shortens takes away no more
-/// than its spring pulls.
+///  N = k_T e + c (L' - l_T'), k_T = E A / l_T, and
+///  N L' = d(k_T e^2 / 2)/dt + c (L' - l_T')^2 + [N + k_T e^2 / (2 l_T)] l_T',
+/// so the thermal work on the link is -integral of [N + k_T e^2 / (2 l_T)] dl_T. A cable shorter
+/// than l_T has e = 0 and no force. The dashpot of a shortening cable is limited to the spring's
+/// tension.
 struct LinkStep {
   Span span;
-  Vector3 relative_velocity;  ///< tip against root [m/s]
+  Vector3 relative_velocity;  ///< tip relative to root [m/s]
   Vector3 velocity_across;    ///< [m/s]
   double stress_free_length;  ///< l_T [m]
   double stiffness;           ///< k_T [N/m]
   double damping;             ///< c [N s/m]
   double damping_across;      ///< [N s/m]
-  double extension;           ///< e [m]; of a slack cable 0
+  double extension;           ///< e [m]; 0 for a slack cable
   double extension_rate;      ///< [m/s]
-  double viscous_force;       ///< the dashpot's part of N [N]
+  double viscous_force;       ///< dashpot part of N [N]
   double tension;             ///< N [N]
 };
 
@@ -84,7 +84,7 @@ inline double stress_free_length(const Link& link, double temperature_change) {
   return link.stressFreeLength * (1 + link.thermalExpansion * temperature_change);
 }
 
-/// @param temperature_rate gives dT' at this time [K/s]; asked in the first step only
+/// @param temperature_rate returns dT' at this time [K/s]; called only in the first step
 /// @param damping damping_coefficient() [N s/m]; @param time [s]
 template <class Rate>
 LinkStep link_step(Link& link, const Span& span, const Vector3& root_velocity,
@@ -96,8 +96,8 @@ LinkStep link_step(Link& link, const Span& span, const Vector3& root_velocity,
   const double length_rate = step.relative_velocity.dot(span.direction);
   link.temperatureChange = temperature_change;
   step.stress_free_length = stress_free_length(link, temperature_change);
-  // Of the last step, as the velocities are: at a corner of the program the rate of one instant
-  // would set the dashpot against a speed that the tip does not have yet.
+  // Mean rate over the last step, like the velocities. At a corner of the program, the
+  // instantaneous rate would oppose a speed that the tip does not have yet.
   const double since = time - link.previousTime;
   const double stress_free_rate =
       link.previousStressFreeLength > 0 && since > 0
@@ -115,7 +115,7 @@ LinkStep link_step(Link& link, const Span& span, const Vector3& root_velocity,
     step.tension = 0;
   }
   link.axialForce = -step.tension;
-  // A moment on the link as a force across its tip, and the opposite at its root.
+  // A moment on the link, applied as a transverse force at its tip and the opposite at its root.
   step.damping_across = link.pinDamping / (span.length * span.length);
   step.velocity_across = step.relative_velocity - length_rate * span.direction;
   return step;
@@ -127,21 +127,21 @@ inline double stable_step(const LinkStep& step, double inverse_mass) {
                   kernel::critical_time_step(1 / inverse_mass, 0, step.damping_across));
 }
 
-/// Force on the tip [N] of the link alone; the root gets the opposite.
+/// Force on the tip [N] from the link alone; the root gets the opposite.
 inline Vector3 force_on_tip(const LinkStep& step) {
   return -step.tension * step.span.direction - step.damping_across * step.velocity_across;
 }
 
-/// The smallest turn from one unit vector to another, as a quaternion of any length.
-inline Quaternion smallest_turn(const Vector3& from, const Vector3& to) {
+/// The smallest rotation from one unit vector to another, as a quaternion of any length.
+inline Quaternion smallest_rotation(const Vector3& from, const Vector3& to) {
   Quaternion turn;
-  // (1 + cos, sin axis) has half the angle. Next to opposite vectors rounding, 1e-16, takes more
+  // (1 + cos, sin axis) has half the angle. Near opposite vectors, rounding of 1e-16 removes more
   // than half of the digits of 1 + cos.
   constexpr double opposite = 1e-8;
   const double scalar = 1 + from.dot(to);
   if (!(scalar > opposite)) {
-    // (2 cos(angle/2), 2 sin(angle/2) axis); of opposite vectors any axis across will do. Eigen's
-    // FromTwoVectors decomposes a matrix here, which every source would compile.
+    // (2 cos(angle/2), 2 sin(angle/2) axis); for opposite vectors any perpendicular axis is valid.
+    // Eigen's FromTwoVectors decomposes a matrix here, which every source would compile.
     const Vector3 sum = from + to, difference = to - from;
     Vector3 axis = sum.cross(difference);
     if (!(axis.squaredNorm() > 0)) axis = difference.unitOrthogonal();
@@ -154,20 +154,20 @@ inline Quaternion smallest_turn(const Vector3& from, const Vector3& to) {
   return turn;
 }
 
-/// Whether a turn about z alone leads from an orientation about z to a direction across z.
-inline bool turns_in_plane(const Link& link, const Vector3& direction,
-                           const Quaternion& orientation) {
+/// Whether a rotation about z alone leads from an orientation about z to a direction in the plane.
+inline bool rotates_in_plane(const Link& link, const Vector3& direction,
+                             const Quaternion& orientation) {
   return orientation.x() == 0 && orientation.y() == 0 && link.tipDirection.z() == 0 &&
          direction.z() == 0;
 }
 
-/// The turn about z from one unit vector across z to another, in the half of all quaternions in
-/// which another one is; it asks for no more of that.
-inline Quaternion turn_in_plane(const Vector3& from, const Vector3& to,
-                                const Quaternion& same_half) {
+/// The rotation about z from one unit vector in the plane to another. Its quaternion is in the same
+/// half space as another one, which is used only for this choice.
+inline Quaternion rotation_in_plane(const Vector3& from, const Vector3& to,
+                                    const Quaternion& same_half) {
   const double cosine = from.x() * to.x() + from.y() * to.y();
   const double sine = from.x() * to.y() - from.y() * to.x();
-  // tan(a/2) = sin/(1 + cos) = (1 - cos)/sin, of which one does not cancel.
+  // tan(a/2) = sin/(1 + cos) = (1 - cos)/sin; one of the two does not cancel.
   const double w = cosine >= 0 ? 1 + cosine : sine;
   const double z = cosine >= 0 ? sine : 1 - cosine;
   const double length = std::sqrt(w * w + z * z);
@@ -175,28 +175,28 @@ inline Quaternion turn_in_plane(const Vector3& from, const Vector3& to,
   return {w * scale, 0, 0, z * scale};
 }
 
-/// Turns the tip with its link, and returns the force on the tip [N] that carries a moment on it.
+/// Rotates the tip with its link, and returns the force on the tip [N] that carries its moment.
 ///
-/// A couple of forces +-(M x u) / L carries the moment M of the step's contacts, its part along the
-/// link excepted: u L x (M x u) / L = M - (M.u) u.
+/// A couple of forces +-(M x u) / L carries the moment M of the step's contacts, except its part
+/// along the link: u L x (M x u) / L = M - (M.u) u.
 /// @param moment M [N m]; @param orientation, spin of the tip; out
-inline Vector3 turn_tip(Link& link, const LinkStep& step, const Vector3& moment,
-                        Quaternion& orientation, Vector3& spin) {
+inline Vector3 rotate_tip(Link& link, const LinkStep& step, const Vector3& moment,
+                          Quaternion& orientation, Vector3& spin) {
   const Vector3& direction = step.span.direction;
   const double inverse_length = 1 / step.span.length;
   const Vector3 carrying = moment.cross(direction) * inverse_length;
   if (link.tipDirection.isZero()) link.tipDirection = orientation.conjugate() * direction;
-  if (turns_in_plane(link, direction, orientation)) {
-    orientation = turn_in_plane(link.tipDirection, direction, orientation);
+  if (rotates_in_plane(link, direction, orientation)) {
+    orientation = rotation_in_plane(link.tipDirection, direction, orientation);
   } else {
-    orientation = smallest_turn(orientation * link.tipDirection, direction) * orientation;
+    orientation = smallest_rotation(orientation * link.tipDirection, direction) * orientation;
     orientation.coeffs() *= 1 / orientation.norm();
   }
   spin = direction.cross(step.relative_velocity) * inverse_length;
   return carrying;
 }
 
-/// Energies of one link and one step [J]; elastic is what is stored now.
+/// Energies of one link in one step [J]; elastic is the energy stored now.
 struct LinkEnergy {
   double elastic;
   double damping;
@@ -205,12 +205,12 @@ struct LinkEnergy {
   bool works;  ///< whether there is thermal work: not in the first step
 };
 
-/// What its energy loses per stress-free length as that grows [N]: k_T e^2 / (2 l_T).
+/// Energy loss of the spring per increase of the stress-free length [N]: k_T e^2 / (2 l_T).
 inline double softening(double elastic_energy, double stress_free_length) {
   return elastic_energy / stress_free_length;
 }
 
-/// Of the last step; 0 before the first.
+/// Softening of the last step; 0 before the first.
 inline double previous_softening(const Link& link) {
   if (!(link.previousStressFreeLength > 0)) return 0;
   const double stiffness =
@@ -219,7 +219,7 @@ inline double previous_softening(const Link& link) {
                    link.previousStressFreeLength);
 }
 
-/// @param last_softening previous_softening() [N]; out: that of this step
+/// @param last_softening previous_softening() [N]; out: value of this step
 inline LinkEnergy energy(const Link& link, const LinkStep& step, double time_step,
                          double& last_softening) {
   LinkEnergy energy{0.5 * step.stiffness * step.extension * step.extension,
@@ -236,7 +236,7 @@ inline LinkEnergy energy(const Link& link, const LinkStep& step, double time_ste
   return energy;
 }
 
-/// Keeps what the next step asks for. @param time [s]
+/// Stores the state that the next step needs. @param time [s]
 inline void keep(Link& link, const LinkStep& step, double time) {
   link.previousTension = step.tension;
   link.previousExtension = step.extension;
@@ -244,9 +244,10 @@ inline void keep(Link& link, const LinkStep& step, double time) {
   link.previousTime = time;
 }
 
-/// A torsion spring; the attributes of TorsionSpring. With the stretch s, the angle less the free
-/// one, its moment is M0 + K_M (s - clamp(s; -a, a)) + M_f, where friction M_f is that of a spring
-/// k_f behind a slider: M_f = clamp(k_f (s - s_f); -M_c, M_c), and s_f follows where it slips.
+/// A torsion spring; the attributes of TorsionSpring. The stretch s is the angle minus the free
+/// angle. The moment is M0 + K_M (s - clamp(s; -a, a)) + M_f. The friction moment M_f is that of a
+/// spring k_f in series with a slider: M_f = clamp(k_f (s - s_f); -M_c, M_c), and s_f follows
+/// during slip.
 struct Torsion {
   double stiffness = 0;  ///< K_M [N m/rad]
   double freeAngle = 0;  ///< [rad]
@@ -261,8 +262,8 @@ struct Torsion {
   double slipAngle = 0;          ///< s_f [rad]
 };
 
-/// Largest component of a link's direction along the axis: rounding of a scene laid out in a turned
-/// plane is far below it, and what it neglects is the square of it.
+/// Largest component of a link's direction along the axis. Rounding in a rotated plane is far
+/// smaller, and the neglected terms are its square.
 constexpr double largest_tilt = 1e-6;
 
 inline bool is_planar(const Span& span, const Vector3& axis) {
@@ -274,7 +275,7 @@ inline double largest_stiffness(const Torsion& spring) {
   return spring.frictionLimit > 0 ? spring.stiffness + spring.frictionStiffness : spring.stiffness;
 }
 
-/// Energies of one spring and one step [J]; elastic is what is stored now.
+/// Energies of one spring in one step [J]; elastic is the energy stored now.
 struct TorsionEnergy {
   double elastic;
   double friction;
@@ -296,7 +297,7 @@ inline TorsionEnergy torsion_step(Torsion& spring, const Span& first, const Span
   if (std::abs(friction) > spring.frictionLimit) {
     friction = std::copysign(spring.frictionLimit, friction);
     const double slid_to = stretch - friction / spring.frictionStiffness;
-    // Leapfrog does its work with the mean of the moments of two steps.
+    // Leapfrog does work with the mean of the moments of two steps.
     energy.friction = 0.5 * (friction + spring.frictionMoment) * (slid_to - spring.slipAngle);
     spring.slipAngle = slid_to;
   }
@@ -306,13 +307,13 @@ inline TorsionEnergy torsion_step(Torsion& spring, const Span& first, const Span
   return energy;
 }
 
-/// 1/I of turning a link by a couple on its two ends [1/(kg m2)].
+/// Inverse inertia of a link under a couple on its two ends [1/(kg m2)].
 /// @param inverse_mass 1/m1 + 1/m2 [1/kg]
 inline double inverse_inertia(const Span& span, double inverse_mass) {
   return inverse_mass / (span.length * span.length);
 }
 
-/// Force on the tip [N] of a link that a moment [N m] turns; the root gets the opposite.
+/// Force on the tip [N] of a link loaded by a moment [N m]; the root gets the opposite.
 inline Vector3 couple(const Span& span, const Vector3& axis, double moment) {
   const Vector3 across = axis.cross(span.direction);
   return moment / span.length * across;

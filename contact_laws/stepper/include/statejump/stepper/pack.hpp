@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Four numbers that are computed with at once. Each lane gets the bits that a double would get:
-// sum, product, quotient and square root are rounded correctly in any width. Vectors are the
-// compiler's, so that one source serves every processor: with AVX2 an operation is one instruction,
+// Four numbers in one vector operation. Each lane gets the bits of scalar arithmetic, because sum,
+// product, quotient and square root are correctly rounded in any width. The vector types are those
+// of the compiler, so one source serves every processor. With AVX2 an operation is one instruction,
 // without it two.
 //
-// All functions here, and those that take or return what is defined here, are part of their
-// callers, each of which is compiled for one processor: no vector is handed over in a register, and
-// sources that use this are compiled with -Wno-psabi.
+// All functions with these types are inlined into callers compiled for one processor, so no vector
+// is passed in a register. Sources that use this header are compiled with -Wno-psabi.
 #pragma once
 
 #include <cmath>
@@ -18,15 +17,15 @@
 namespace statejump::stepper {
 
 constexpr std::size_t lanes = 4;
-// Aligned in so many words: without AVX the compiler would give them to half of their size only.
+// Aligned explicitly: without AVX the compiler would align them to half of their size only.
 using Pack [[gnu::vector_size(lanes * sizeof(double)), gnu::aligned(lanes * sizeof(double))]] =
     double;
-/// Each 0 or -1.
+/// Lanes are 0 or -1.
 using Mask
     [[gnu::vector_size(lanes * sizeof(std::int64_t)), gnu::aligned(lanes * sizeof(std::int64_t))]] =
         std::int64_t;
 
-/// Whether the processor has instructions for them; other families than x86 are not asked.
+/// Whether the processor has AVX2; always false for other families than x86.
 inline bool has_avx2() {
 #ifdef __x86_64__
   return __builtin_cpu_supports("avx2") != 0;
@@ -35,7 +34,7 @@ inline bool has_avx2() {
 #endif
 }
 
-/// Vectors, one in each lane.
+/// One vector in each lane.
 struct Pack3 {
   Pack x, y, z;
 };
@@ -66,7 +65,7 @@ struct Pack3 {
 [[gnu::always_inline]] inline Pack3 operator*(const Pack3& a, double b) {
   return {a.x * b, a.y * b, a.z * b};
 }
-/// In the order in which Eigen adds three numbers.
+/// Sums in the order in which Eigen adds three numbers.
 [[gnu::always_inline]] inline Pack dot(const Pack3& a, const Pack3& b) {
   return a.x * b.x + (a.y * b.y + a.z * b.z);
 }

@@ -15,19 +15,20 @@ namespace statejump::stepper {
 
 using kernel::Vector3;
 
-/// A slider between two bodies; the attributes of PrismaticJoint. Body 1 slides against body 2
-/// along an axis fixed in space. With the slide s = (x1 - x2 - offset) . axis the force on body 1
-/// against the axis is friction and stop,
+/// A slider between two bodies; the attributes of PrismaticJoint. Body 1 slides relative to body 2
+/// along an axis fixed in space. With the slide s = (x1 - x2 - offset) . axis, the force on body 1
+/// opposite to the axis is friction and stop,
 ///
-///     F_f = clamp(k_t b; -f, f),   s_f follows where it slips: a spring behind a slider;
-///     stop: Hertz's K d^1.5 and a spring k_s d of the depth d by which s is beyond a clearance.
+///    F_f = clamp(k_t b; -f, f),   s_f follows during slip: a spring in series with a slider;
+///    stop: Hertz's K d^1.5 and a spring k_s d, where d is the excess of s over a clearance.
 ///
-/// The bend b of the spring is what s - s_f has beyond half of the play w: b = (s - s_f) -
-/// clamp(s - s_f; -w/2, w/2). Within the play nothing but stops resists.
+/// The spring deflection b is the part of s - s_f beyond half of the play w: b = (s - s_f) -
+/// clamp(s - s_f; -w/2, w/2). Within the play only stops resist.
 ///
-/// Across the axis a spring k_n holds both bodies together. Forces act at the bodies' centres and
-/// do not turn them. Each spring has the dashpot of a damping ratio: that of friction while it
-/// sticks, within its limit, that of a stop or of a closed play as long as it does not pull.
+/// Across the axis a spring k_n constrains both bodies. Forces act at the bodies' centres and do
+/// not rotate them. Each spring has a dashpot with the damping ratio. The dashpot of friction acts
+/// during stick, within the friction limit. That of a stop or of a closed play acts unless it would
+/// pull.
 struct Prismatic {
   int id1 = -1;
   int id2 = -1;
@@ -48,28 +49,28 @@ struct Prismatic {
   double stopForce = 0;  ///< of stop and its dashpot, against the axis [N]
 };
 
-/// Where the two bodies are, and how fast: 1 against 2.
+/// Position and velocity of body 1 relative to body 2.
 struct PrismaticMotion {
   Vector3 apart;     ///< x1 - x2 [m]
   Vector3 velocity;  ///< v1 - v2 [m/s]
   double mass;       ///< 1/(1/m1 + 1/m2) [kg]; 0: neither moves
 };
 
-/// What a step answers.
+/// Result of a step.
 struct PrismaticStep {
   Vector3 force;        ///< on body 1 [N]; body 2 gets the opposite
-  double elastic;       ///< stored now [J]
+  double elastic;       ///< energy stored now [J]
   double friction;      ///< loss of this step [J]
   double damping;       ///< loss of this step by dashpots [J]
   double largest_step;  ///< stable time step of the joint alone [s]
 };
 
-/// Depth of the stop that the slide is beyond [m]; below 0 where there is none.
+/// Depth of the slide beyond its stop [m]; negative if there is none.
 inline double stop_depth(const Prismatic& joint) {
   return joint.slide > 0 ? joint.slide - joint.clearancePlus : -joint.slide - joint.clearanceMinus;
 }
 
-/// Largest stiffness that the joint has at its present slide [N/m].
+/// Largest stiffness of the joint at its current slide [N/m].
 inline double largest_stiffness(const Prismatic& joint) {
   const double depth = stop_depth(joint);
   double stop = 1.5 * joint.stopStiffness * std::sqrt(std::max(0.0, depth));
@@ -78,12 +79,12 @@ inline double largest_stiffness(const Prismatic& joint) {
   return std::max(joint.stiffnessAcross, sticks + stop);
 }
 
-/// Of the dashpot of that spring [N s/m]. @param mass 1/(1/m1 + 1/m2) [kg]
+/// Damping coefficient of that stiffness [N s/m]. @param mass 1/(1/m1 + 1/m2) [kg]
 inline double largest_damping(const Prismatic& joint, double mass) {
   return kernel::viscous_damping(joint.dampingRatio, mass, largest_stiffness(joint));
 }
 
-/// What s - s_f has beyond the play [m].
+/// Part of s - s_f beyond the play [m].
 inline double friction_bend(const Prismatic& joint) {
   const double bend = joint.slide - joint.slipPosition;
   return bend - std::clamp(bend, -0.5 * joint.play, 0.5 * joint.play);
@@ -107,7 +108,7 @@ inline PrismaticStep prismatic_step(Prismatic& joint, const PrismaticMotion& mot
                      0.5 * joint.stiffnessAcross * across.squaredNorm(), 0,
                      damping_across * speed_across.squaredNorm() * time_step, 0};
 
-  double along = 0;  // against the axis
+  double along = 0;  // opposite to the axis
   if (joint.frictionLimit > 0) {
     const double limit = joint.frictionLimit;
     double friction = joint.frictionStiffness * friction_bend(joint);
@@ -115,7 +116,7 @@ inline PrismaticStep prismatic_step(Prismatic& joint, const PrismaticMotion& mot
       friction = std::copysign(limit, friction);
       const double slid_to =
           slide - friction / joint.frictionStiffness - std::copysign(0.5 * joint.play, friction);
-      // Leapfrog does its work with the mean of the forces of two steps.
+      // Leapfrog does work with the mean of the forces of two steps.
       step.friction = 0.5 * (friction + joint.frictionForce) * (slid_to - joint.slipPosition);
       joint.slipPosition = slid_to;
       along = friction;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene of clearance joints, links and torsion springs as plain arrays, and its steps: what a
-// step of YADE's engines does, in the same order, without YADE.
+// A scene of clearance joints, links and torsion springs as plain arrays, and its steps. A step
+// does the work of YADE's engines, in the same order, without YADE.
 #pragma once
 
 #include <algorithm>
@@ -14,17 +14,17 @@
 #include <variant>
 #include <vector>
 
-#include "statejump/kernel/laws/known_law.hpp"
+#include "statejump/kernel/laws/static_law.hpp"
 #include "statejump/stepper/arrays.hpp"
 #include "statejump/stepper/batches.hpp"
 #include "statejump/stepper/bore.hpp"
-#include "statejump/stepper/numbers.hpp"
+#include "statejump/stepper/checks.hpp"
 #include "statejump/stepper/stable_link.hpp"
 #include "statejump/thermal/program.hpp"
 
 namespace statejump::stepper {
 
-/// The law of contacts that is not made of laws by name.
+/// Default contact law, not composed of named laws.
 struct HertzMindlin {};
 
 class Scene {
@@ -44,34 +44,34 @@ class Scene {
   std::vector<Bore> bores;
   std::vector<Stage> stages;
   std::variant<HertzMindlin, NamedLaw> law;
-  NamedLaw bore_law;  ///< of contacts with meshed bores
+  NamedLaw bore_law;  ///< for contacts with meshed bores
   Energies energies;
   StoredEnergies stored;  ///< of the last step of a run
-  Begun begun, begun_in_bores;
-  bool any_contact = false;  ///< a contact has been computed since the arrays were filled
+  FirstTouch begun, begun_in_bores;
+  bool any_contact = false;  ///< a contact was computed since the arrays were filled
 
-  /// Physics of a contact that begins, by its place; none where the materials allow none.
-  using Make = std::function<std::optional<ContactPhysics>(std::size_t)>;
+  /// Creates the physics of a contact that begins, by its index; empty for invalid materials.
+  using CreatePhysics = std::function<std::optional<ContactPhysics>(std::size_t)>;
 
-  /// Looks at the last step of a run between its forces and its motions, at one time: positions,
-  /// forces, contacts, and velocities half a step old.
+  /// Observes the last step of a run between forces and motion. Positions, forces and contacts are
+  /// of one time, velocities half a step older.
   using Observe = std::function<void()>;
 
-  /// Says what rests and what moves; call it when the arrays are filled.
+  /// Determines which bodies rest and move; call it after filling the arrays.
   void prepare();
 
-  /// Makes steps until one cannot be made here: a failure, which is for the ordinary loop to tell,
-  /// or a body that leaves its bound, after which the collider has to look again. That step is left
-  /// half made: fill the arrays again and make the steps before it.
-  /// @param observe of the last step; may be empty
-  /// @return steps that were made whole
-  long run(long steps, const Make& make, const Observe& observe = {});
+  /// Makes steps until one is impossible here: a failure, which YADE's own loop reports, or a body
+  /// that leaves its bound, after which the collider must run. That step is left incomplete: fill
+  /// the arrays again and repeat the steps before it.
+  /// @param observe called in the last step; may be empty
+  /// @return number of complete steps
+  long run(long steps, const CreatePhysics& make, const Observe& observe = {});
 
-  /// Whether all that a step leaves behind are numbers.
-  bool is_sound() const;
+  /// Whether all numbers that a step leaves behind are finite.
+  bool has_finite_state() const;
 
  private:
-  // Where contacts put what they do.
+  // Receives the forces and energies of contacts.
   struct Host {
     Scene& scene;
     const Contact& contact;
@@ -83,23 +83,23 @@ class Scene {
       scene.energies.joint_damping += energy.damping;
       scene.energies.joint_thermal_work += energy.thermal_work;
     }
-    void exert(const kernel::Wrench& wrench) {
+    void apply(const kernel::Wrench& wrench) {
       Body& one = scene.bodies[static_cast<std::size_t>(contact.body_1)];
       Body& two = scene.bodies[static_cast<std::size_t>(contact.body_2)];
       if (one.moves) {
         one.added_force += wrench.force_1;
-        if (one.turns) one.added_torque += wrench.torque_1;
+        if (one.rotates) one.added_torque += wrench.torque_1;
       }
       if (two.moves) {
         two.added_force += wrench.force_2;
-        if (two.turns) two.added_torque += wrench.torque_2;
+        if (two.rotates) two.added_torque += wrench.torque_2;
       }
     }
-    static constexpr bool judges = false;  // step_contact() does
+    static constexpr bool checks_response = false;  // step_contact() checks
   };
 
-  // Whether a journal's axis is further from parallel to the bearing's than is allowed.
-  bool tilt(const Body& journal, const Vector3& axis) const {
+  // Whether the angle between a journal's axis and the bearing's exceeds the allowed one.
+  bool is_tilted(const Body& journal, const Vector3& axis) const {
     return !(axis_of(journal.orientation).cross(axis).squaredNorm() <= largest_tilt * largest_tilt);
   }
   Body& body(int id) { return bodies[static_cast<std::size_t>(id)]; }
@@ -107,86 +107,87 @@ class Scene {
   bool step(const Contacts& contacts_of_all, const Move& move);
   bool sums_before_moving() const;
   bool change_temperatures();
-  bool leaves_lengths(std::size_t program) const;
+  bool keeps_lengths_positive(std::size_t program) const;
   void measure_links();
   void heat();
   template <class Law>
-  bool step_contact(const Law& law, std::size_t place, const Make& make);
+  bool step_contact(const Law& law, std::size_t index, const CreatePhysics& make);
   template <class Law>
   bool step_named(const Named<Law>& named, const Contact& contact, const ContactGeometry& geometry,
-                  ContactPhysics& physics, Begun& begun_contacts, bool& touches);
+                  ContactPhysics& physics, FirstTouch& begun_contacts, bool& touches);
   template <class Act>
   decltype(auto) with_law(Act&& act) const;
-  bool step_in_bore(std::size_t place, const Make& make);
-  InBore find(const Contact& contact, Bore& bore);
+  bool step_in_bore(std::size_t index, const CreatePhysics& make);
+  BoreSearch find(const Contact& contact, Bore& bore);
   bool accepts(const ContactPhysics& physics) const;
-  Found find(Contact& contact);
+  ContactSearch find(Contact& contact);
   bool act(Links& group);
-  bool act(std::vector<TorsionPlace>& springs);
+  bool act(std::vector<TorsionEntry>& springs);
   bool act(std::vector<Prismatic>& joints);
   bool act(std::vector<Guide>& guides);
   void sum();
   void account_motion(const Body& body);
-  bool move_all(const std::vector<std::size_t>& places, bool last);
+  bool move_all(const std::vector<std::size_t>& indices, bool last);
 
   std::vector<std::size_t> moving_;
-  std::vector<double> changes_;        // temperature changes of the programs in this step [K]
-  std::vector<double> plain_changes_;  // of the programs: below them leaves_lengths() holds [K]
-  std::vector<Vector3> kept_;          // moments on tips, forces across planes
+  std::vector<double> changes_;  // temperature changes of the programs in this step [K]
+  std::vector<double>
+      safe_changes_;  // of the programs: for smaller changes keeps_lengths_positive() holds [K]
+  std::vector<Vector3> scratch_;  // moments on tips, forces across planes
   bool summed_ = false;
 };
 
 inline void Scene::prepare() {
   for (Body& each : bodies) {
     each.added_force = each.added_torque = Vector3::Zero();
-    each.turns = can_turn(each);
-    each.moves = !rests(each);
+    each.rotates = can_rotate(each);
+    each.moves = !is_at_rest(each);
   }
   for (Stage& stage : stages) {
     auto* links = std::get_if<Links>(&stage);
     if (!links) continue;
-    for (LinkPlace& place : links->places) {
-      Body& tip = body(place.link.id2);
-      place.inverse_mass = body(place.link.id1).inverse_mass + tip.inverse_mass;
-      place.damping = damping_coefficient(place.link, place.inverse_mass);
-      place.softening = previous_softening(place.link);
-      if (!place.link.tipTurnsWithLink) continue;
-      tip.turns = tip.moves = tip.turn_may_wait = true;
+    for (LinkEntry& entry : links->links) {
+      Body& tip = body(entry.link.id2);
+      entry.inverse_mass = body(entry.link.id1).inverse_mass + tip.inverse_mass;
+      entry.damping = damping_coefficient(entry.link, entry.inverse_mass);
+      entry.softening = previous_softening(entry.link);
+      if (!entry.link.tipTurnsWithLink) continue;
+      tip.rotates = tip.moves = tip.rotation_deferrable = true;
     }
   }
   for (const Contact& contact : contacts) {
     if (contact.joint != Joint::plane && contact.joint != Joint::bore) continue;
-    for (const int id : bodies_of(contact)) body(id).turn_may_wait = false;
+    for (const int id : bodies_of(contact)) body(id).rotation_deferrable = false;
   }
   moving_.clear();
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i].moves) moving_.push_back(i);
   }
   changes_.assign(programs.size(), 0);
-  plain_changes_.assign(programs.size(), std::numeric_limits<double>::infinity());
+  safe_changes_.assign(programs.size(), std::numeric_limits<double>::infinity());
   const auto limit = [&](std::size_t program, double change) {
-    plain_changes_[program] = std::min(plain_changes_[program], change);
+    safe_changes_[program] = std::min(safe_changes_[program], change);
   };
   for (const Heater& heater : heaters) {
     for (const Heater::Target& target : heater.targets) {
-      limit(heater.program, plain_change(target.expansion));
+      limit(heater.program, safe_temperature_change(target.expansion));
     }
   }
   for (const Stage& stage : stages) {
     const auto* links = std::get_if<Links>(&stage);
     if (!links) continue;
-    for (const LinkPlace& place : links->places) {
-      const bool has_length = place.link.stressFreeLength > 0;
-      limit(place.program, has_length ? plain_change(place.link.thermalExpansion) : 0);
+    for (const LinkEntry& entry : links->links) {
+      const bool has_length = entry.link.stressFreeLength > 0;
+      limit(entry.program, has_length ? safe_temperature_change(entry.link.thermalExpansion) : 0);
     }
   }
   for (Contact& contact : contacts) {
     const Body& one = body(contact.body_1);
     const Body& two = body(contact.body_2);
-    contact.turns = one.turns || two.turns;
+    contact.rotates = one.rotates || two.rotates;
     contact.axis = axis_of(two.orientation);
-    contact.tilted = tilt(one, contact.axis);
-    contact.plain_stiffness = plain_stiffness(contact.physics, time_step);
+    contact.tilted = is_tilted(one, contact.axis);
+    contact.stable_stiffness = stable_stiffness(contact.physics, time_step);
   }
 }
 
@@ -197,25 +198,25 @@ inline bool Scene::sums_before_moving() const {
   });
 }
 
-// Calls act with the law of contacts, as one of a known type where it can.
+// Calls act with the contact law, with its static type if it is precompiled.
 template <class Act>
 decltype(auto) Scene::with_law(Act&& act) const {
   const auto* named = std::get_if<NamedLaw>(&law);
   if (!named) return act(std::get<HertzMindlin>(law));
-  return kernel::laws::with_usual_types(named->law, [&](const auto& known) {
+  return kernel::laws::with_precompiled_law(named->law, [&](const auto& known) {
     return act(Named<std::decay_t<decltype(known)>>{known, named->needs_axis});
   });
 }
 
-inline long Scene::run(long steps, const Make& make, const Observe& observe) {
+inline long Scene::run(long steps, const CreatePhysics& make, const Observe& observe) {
   return with_law([&](const auto& one) {
-    const auto contact = [&](std::size_t place) { return step_contact(one, place, make); };
+    const auto contact = [&](std::size_t index) { return step_contact(one, index, make); };
     long done = 0;
     if (steps > 1) {
       Batches batches({bodies, contacts, stages, strains, energies, newton, time_step,
                        tracks_energy, uses_avx2});
       batches.fill(std::is_same_v<decltype(one), const HertzMindlin&>, !sums_before_moving());
-      // The last step is not made in batches: it leaves all that anybody may ask for.
+      // The last step is not batched: it leaves all data in the arrays.
       while (done < steps - 1 && batches.useful() &&
              step([&] { return batches.step_contacts(contact); },
                   [&] { return batches.move() && move_all(batches.others(), false); })) {
@@ -260,12 +261,12 @@ bool Scene::step(const Contacts& contacts_of_all, const Move& move) {
   return true;
 }
 
-inline bool Scene::is_sound() const {
+inline bool Scene::has_finite_state() const {
   const auto of_links = [](const auto& stage) {
     using Kind = std::decay_t<decltype(stage)>;
     if constexpr (std::is_same_v<Kind, Links>) {
-      return std::all_of(stage.places.begin(), stage.places.end(), [](const LinkPlace& place) {
-        return std::isfinite(place.link.axialForce);
+      return std::all_of(stage.links.begin(), stage.links.end(), [](const LinkEntry& entry) {
+        return std::isfinite(entry.link.axialForce);
       });
     } else {
       return true;
@@ -290,13 +291,14 @@ inline bool Scene::is_sound() const {
 inline bool Scene::change_temperatures() {
   for (std::size_t i = 0; i < programs.size(); ++i) {
     changes_[i] = programs[i].temperature_change(time);
-    if (!is_below(std::abs(changes_[i]), plain_changes_[i]) && !leaves_lengths(i)) return false;
+    if (!is_below(std::abs(changes_[i]), safe_changes_[i]) && !keeps_lengths_positive(i))
+      return false;
   }
   return true;
 }
 
-// Whether the temperature of a program leaves a length of all that it heats.
-[[gnu::cold, gnu::noinline]] inline bool Scene::leaves_lengths(std::size_t program) const {
+// Whether all lengths heated by a program stay positive.
+[[gnu::cold, gnu::noinline]] inline bool Scene::keeps_lengths_positive(std::size_t program) const {
   const double change = changes_[program];
   const auto of_heater = [&](const Heater& heater) {
     return heater.program != program || std::all_of(heater.targets.begin(), heater.targets.end(),
@@ -307,8 +309,8 @@ inline bool Scene::change_temperatures() {
   const auto of_stage = [&](const Stage& stage) {
     const auto* links = std::get_if<Links>(&stage);
     return !links ||
-           std::all_of(links->places.begin(), links->places.end(), [&](const LinkPlace& place) {
-             return place.program != program || stress_free_length(place.link, change) > 0;
+           std::all_of(links->links.begin(), links->links.end(), [&](const LinkEntry& entry) {
+             return entry.program != program || stress_free_length(entry.link, change) > 0;
            });
   };
   return std::all_of(heaters.begin(), heaters.end(), of_heater) &&
@@ -343,13 +345,13 @@ inline void Scene::account_motion(const Body& each) {
   energies.gravity_work += -newton.gravity.dot(motion.velocity) * each.mass * time_step;
 }
 
-inline bool Scene::move_all(const std::vector<std::size_t>& places, bool last) {
-  for (const std::size_t i : places) {
+inline bool Scene::move_all(const std::vector<std::size_t>& indices, bool last) {
+  for (const std::size_t i : indices) {
     Body& each = bodies[i];
     sum_forces(each, !summed_);
     if (tracks_energy) account_motion(each);
     move(each, newton, time_step, last);
-    if (left_its_bound(each)) return false;
+    if (left_bound(each)) return false;
   }
   return true;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contacts of a scene in one step: where they touch, what their laws answer. Part of scene.hpp.
+// Contacts of a scene in one step: search and laws. Part of scene.hpp.
 #pragma once
 
 #include <cstddef>
@@ -12,13 +12,13 @@
 
 namespace statejump::stepper {
 
-inline Found Scene::find(Contact& contact) {
+inline ContactSearch Scene::find(Contact& contact) {
   const Body& one = body(contact.body_1);
   const Body& two = body(contact.body_2);
   const Strain& strain_1 = strains[contact.strain_1];
   const Strain& strain_2 = strains[contact.strain_2];
-  const Part part_1{contact.length_1, 1 + strain_1.strain, strain_1.rate};
-  const Part part_2{contact.length_2, 1 + strain_2.strain, strain_2.rate};
+  const ThermalLength part_1{contact.length_1, 1 + strain_1.strain, strain_1.rate};
+  const ThermalLength part_2{contact.length_2, 1 + strain_2.strain, strain_2.rate};
   const auto geometry = [&](const Vector3& first_normal) -> ContactGeometry& {
     if (!contact.real) {
       contact.geometry = {};
@@ -28,8 +28,8 @@ inline Found Scene::find(Contact& contact) {
   };
   switch (contact.joint) {
     case Joint::revolute: {
-      const Vector3 axis = contact.turns ? axis_of(two.orientation) : contact.axis;
-      const auto tilted = [&] { return contact.turns ? tilt(one, axis) : contact.tilted; };
+      const Vector3 axis = contact.rotates ? axis_of(two.orientation) : contact.axis;
+      const auto tilted = [&] { return contact.rotates ? is_tilted(one, axis) : contact.tilted; };
       return find_revolute(part_1, part_2, one.motion, two.motion, axis, contact.real, time_step,
                            tilted, geometry);
     }
@@ -48,37 +48,37 @@ inline Found Scene::find(Contact& contact) {
 }
 
 template <class Law>
-bool Scene::step_contact(const Law& one, std::size_t place, const Make& make) {
-  Contact& contact = contacts[place];
-  if (contact.joint == Joint::bore) return step_in_bore(place, make);
-  const Found found = find(contact);
-  if (found == Found::apart) return true;
-  if (found != Found::contact) return false;
+bool Scene::step_contact(const Law& one, std::size_t index, const CreatePhysics& make) {
+  Contact& contact = contacts[index];
+  if (contact.joint == Joint::bore) return step_in_bore(index, make);
+  const ContactSearch found = find(contact);
+  if (found == ContactSearch::apart) return true;
+  if (found != ContactSearch::contact) return false;
   if (!contact.real) {
-    const std::optional<ContactPhysics> made = make(place);
+    const std::optional<ContactPhysics> made = make(index);
     if (!made) return false;
     contact.physics = *made;
-    contact.plain_stiffness = plain_stiffness(contact.physics, time_step);
+    contact.stable_stiffness = stable_stiffness(contact.physics, time_step);
     contact.real = contact.renewed = true;
     contact.made = iteration;
   }
   any_contact = true;
-  // Asked behind all that is computed, which is quicker; a step that cannot be made is left half
-  // made anyway. A force that is no number stays none: is_sound() sees it when the steps are made.
+  // The check comes after the computation, which is faster; a failed step is left incomplete
+  // anyway. A NaN force persists: has_finite_state() detects it after the steps.
   if constexpr (std::is_same_v<Law, HertzMindlin>) {
     const ContactPhysics& physics = contact.physics;
     contact.real = hertz_mindlin_step(contact.geometry, contact.physics, Host{*this, contact});
-    return !contact.real || is_below(physics.kn, contact.plain_stiffness) || accepts(physics);
+    return !contact.real || is_below(physics.kn, contact.stable_stiffness) || accepts(physics);
   } else {
     return step_named(one, contact, contact.geometry, contact.physics, begun, contact.real);
   }
 }
 
-// @param touches becomes whether the contact is not open
+// @param touches out: whether the contact is in contact
 template <class Law>
 bool Scene::step_named(const Named<Law>& named, const Contact& contact,
                        const ContactGeometry& geometry, ContactPhysics& physics,
-                       Begun& begun_contacts, bool& touches) {
+                       FirstTouch& begun_contacts, bool& touches) {
   if (misfit(named, geometry) != Misfit::none) return false;
   if (geometry.penetrationDepth > 0 && !physics.begun) {
     begun_contacts.add(begin(geometry, physics, time, time_step));
@@ -89,22 +89,22 @@ bool Scene::step_named(const Named<Law>& named, const Contact& contact,
   } catch (const std::exception&) {
     return false;
   }
-  // A law of one's own may answer anything.
-  return !touches || is_plain_stiffness(physics.kn, physics, time_step) || accepts(physics);
+  // A user law may return any number.
+  return !touches || is_stable_stiffness(physics.kn, physics, time_step) || accepts(physics);
 }
 
-// What the wall's geometry and the kernel throw is for the ordinary loop to tell, as all that is
-// neither apart nor contact.
-inline InBore Scene::find(const Contact& contact, Bore& bore) {
+// YADE's own loop reports exceptions of the wall's geometry and of the kernel, as for all results
+// except apart and contact.
+inline BoreSearch Scene::find(const Contact& contact, Bore& bore) {
   const Body& one = body(contact.body_1);
   const Body& two = body(contact.body_2);
   const Strain& strain_1 = strains[contact.strain_1];
   const Strain& strain_2 = strains[contact.strain_2];
-  const Part part{contact.length_1, 1 + strain_1.strain, strain_1.rate};
+  const ThermalLength part{contact.length_1, 1 + strain_1.strain, strain_1.rate};
   const BoreProbe probe{bore.is_ball, part.expanded(), part.length * part.strain_rate,
                         bore.is_ball ? Vector3(Vector3::Zero()) : axis_of(one.orientation)};
   if (!bore.is_ball && tilted_in_bore(probe.axis, *bore.mesh, two.orientation, bore.largest_tilt)) {
-    return InBore::nowhere;
+    return BoreSearch::undefined;
   }
   const auto geometry = [&]() -> BoreGeometry& {
     if (!bore.has_geometry) {
@@ -120,18 +120,18 @@ inline InBore Scene::find(const Contact& contact, Bore& bore) {
                         geometry)
         .found;
   } catch (const std::exception&) {
-    return InBore::nowhere;
+    return BoreSearch::undefined;
   }
 }
 
-inline bool Scene::step_in_bore(std::size_t place, const Make& make) {
-  Contact& contact = contacts[place];
+inline bool Scene::step_in_bore(std::size_t index, const CreatePhysics& make) {
+  Contact& contact = contacts[index];
   Bore& bore = bores[contact.bore];
-  const InBore found = find(contact, bore);
-  if (found == InBore::apart) return true;
-  if (found != InBore::contact) return false;
+  const BoreSearch found = find(contact, bore);
+  if (found == BoreSearch::apart) return true;
+  if (found != BoreSearch::contact) return false;
   if (!contact.real) {
-    std::optional<ContactPhysics> made = make(place);
+    std::optional<ContactPhysics> made = make(index);
     if (!made) return false;
     bore.physics = {};
     static_cast<ContactPhysics&>(bore.physics) = *std::move(made);
@@ -139,11 +139,11 @@ inline bool Scene::step_in_bore(std::size_t place, const Make& make) {
     contact.made = iteration;
   }
   any_contact = true;
-  bool good = true;
+  bool valid = true;
   contact.real = bore_law_step(
       bore.geometry, bore.physics, [&](const ContactGeometry& here, ContactPhysics& physics) {
         bool touches = false;
-        good = good && step_named(bore_law, contact, here, physics, begun_in_bores, touches);
+        valid = valid && step_named(bore_law, contact, here, physics, begun_in_bores, touches);
         return touches;
       });
   if (!contact.real) {
@@ -151,13 +151,13 @@ inline bool Scene::step_in_bore(std::size_t place, const Make& make) {
     bore.physics = {};
     bore.has_geometry = false;
   }
-  return good;
+  return valid;
 }
 
-// Whether what a contact keeps of its step is good after all.
+// Whether the stored response of a contact is valid in the detailed check.
 [[gnu::cold, gnu::noinline]] inline bool Scene::accepts(const ContactPhysics& physics) const {
-  return judge(physics.kn, physics.normalForce + physics.shearForce, physics, time_step) ==
-         Answer::good;
+  return check_response(physics.kn, physics.normalForce + physics.shearForce, physics, time_step) ==
+         ResponseCheck::valid;
 }
 
 }  // namespace statejump::stepper

@@ -11,27 +11,27 @@
 
 namespace statejump::stepper {
 
-// Where the links are, as long as the bodies stay where they are. All of them ahead of the rest of
-// a step: their roots and quotients wait for nothing but positions, and a processor that looks some
-// hundred operations ahead would else come to each of them when the last one is done.
+// Measures all links while the bodies do not move, before the other operations of a step. Their
+// roots and quotients depend only on positions. Out-of-order execution, which looks some hundred
+// operations ahead, can then overlap them.
 inline void Scene::measure_links() {
   for (Stage& stage : stages) {
     auto* links = std::get_if<Links>(&stage);
     if (!links) continue;
-    for (LinkPlace& place : links->places) {
-      place.span =
-          span_of(body(place.link.id1).motion.position, body(place.link.id2).motion.position);
+    for (LinkEntry& entry : links->links) {
+      entry.span =
+          span_of(body(entry.link.id1).motion.position, body(entry.link.id2).motion.position);
     }
   }
 }
 
 inline bool Scene::act(Links& group) {
-  auto& links = group.places;
+  auto& links = group.links;
   if (group.needs_moments) {
     sum();
-    kept_.resize(links.size());
+    scratch_.resize(links.size());
     for (std::size_t i = 0; i < links.size(); ++i) {
-      if (links[i].link.tipTurnsWithLink) kept_[i] = body(links[i].link.id2).torque;
+      if (links[i].link.tipTurnsWithLink) scratch_[i] = body(links[i].link.id2).torque;
     }
   }
   for (std::size_t i = 0; i < links.size(); ++i) {
@@ -41,21 +41,21 @@ inline bool Scene::act(Links& group) {
     if (!span.is_proper()) return false;
     const LinkStep now = link_step(
         link, span, root.motion.velocity, tip.motion.velocity, changes_[program],
-        [&, place = program] { return programs[place].temperature_rate(time); }, damping, time);
+        [&, index = program] { return programs[index].temperature_rate(time); }, damping, time);
     if (inverse > 0 && !is_stable(now, inverse, time_step)) return false;
     Vector3 force = force_on_tip(now);
     if (link.tipTurnsWithLink) {
       if ((tip.blocked & all_rotations) != all_rotations) return false;
-      if (tip.turn_waits && !turns_in_plane(link, span.direction, tip.orientation)) {
+      if (tip.rotation_deferred && !rotates_in_plane(link, span.direction, tip.orientation)) {
         turn(tip, time_step);
       }
-      tip.turn_waits = false;
-      force += turn_tip(link, now, kept_[i], tip.orientation, tip.motion.angular_velocity);
+      tip.rotation_deferred = false;
+      force += rotate_tip(link, now, scratch_[i], tip.orientation, tip.motion.angular_velocity);
     }
-    // A force that is no number stays none in what it moves, where is_sound() sees it.
+    // A NaN force persists in the moved bodies, where has_finite_state() detects it.
     if (tip.moves) {
       tip.added_force += force;
-    } else if (!root.moves && !is_plain(force)) {
+    } else if (!root.moves && !is_finite_fast(force)) {
       return false;
     }
     if (root.moves) root.added_force += -force;
@@ -71,24 +71,24 @@ inline bool Scene::act(Links& group) {
   return true;
 }
 
-inline bool Scene::act(std::vector<TorsionPlace>& springs) {
-  for (TorsionPlace& place : springs) {
+inline bool Scene::act(std::vector<TorsionEntry>& springs) {
+  for (TorsionEntry& entry : springs) {
     const auto span = [&](const std::array<int, 2>& ends) {
       return span_of(body(ends[0]).motion.position, body(ends[1]).motion.position);
     };
     const auto mobility = [&](const std::array<int, 2>& ends) {
       return body(ends[0]).inverse_mass + body(ends[1]).inverse_mass;
     };
-    const Span first = span(place.first);
-    const Span second = span(place.second);
-    Torsion& spring = place.spring;
+    const Span first = span(entry.first);
+    const Span second = span(entry.second);
+    Torsion& spring = entry.spring;
     if (!first.is_proper() || !second.is_proper() || !is_planar(first, spring.axis) ||
         !is_planar(second, spring.axis) || has_friction_without_stiffness(spring)) {
       return false;
     }
     const TorsionEnergy energy = torsion_step(spring, first, second);
-    const double inverse = inverse_inertia(first, mobility(place.first)) +
-                           inverse_inertia(second, mobility(place.second));
+    const double inverse = inverse_inertia(first, mobility(entry.first)) +
+                           inverse_inertia(second, mobility(entry.second));
     if (inverse > 0 &&
         !(time_step <= kernel::critical_time_step(1 / inverse, largest_stiffness(spring)))) {
       return false;
@@ -98,8 +98,8 @@ inline bool Scene::act(std::vector<TorsionPlace>& springs) {
       if (body(ends[1]).moves) body(ends[1]).added_force += force;
       if (body(ends[0]).moves) body(ends[0]).added_force += -force;
     };
-    add(place.first, couple(first, spring.axis, spring.moment));
-    add(place.second, couple(second, spring.axis, -spring.moment));
+    add(entry.first, couple(first, spring.axis, spring.moment));
+    add(entry.second, couple(second, spring.axis, -spring.moment));
     if (tracks_energy) {
       stored.torsion += energy.elastic;
       energies.torsion_friction += energy.friction;
@@ -119,7 +119,7 @@ inline bool Scene::act(std::vector<Prismatic>& joints) {
                        {one.motion.position - two.motion.position,
                         one.motion.velocity - two.motion.velocity, inverse > 0 ? 1 / inverse : 0},
                        time_step);
-    if (!(time_step <= step.largest_step) || !is_plain(step.force)) return false;
+    if (!(time_step <= step.largest_step) || !is_finite_fast(step.force)) return false;
     if (one.moves) one.added_force += step.force;
     if (two.moves) two.added_force += -step.force;
     if (tracks_energy) {
@@ -133,15 +133,15 @@ inline bool Scene::act(std::vector<Prismatic>& joints) {
 
 inline bool Scene::act(std::vector<Guide>& guides) {
   sum();
-  kept_.resize(guides.size());
+  scratch_.resize(guides.size());
   for (std::size_t i = 0; i < guides.size(); ++i) {
     Body& held = body(guides[i].body);
     const Vector3& normal = guides[i].normal;
-    kept_[i] = held.force.dot(normal) * normal;
-    if (!is_plain(kept_[i])) return false;
+    scratch_[i] = held.force.dot(normal) * normal;
+    if (!is_finite_fast(scratch_[i])) return false;
     held.motion.velocity -= held.motion.velocity.dot(normal) * normal;
   }
-  for (std::size_t i = 0; i < guides.size(); ++i) body(guides[i].body).added_force += -kept_[i];
+  for (std::size_t i = 0; i < guides.size(); ++i) body(guides[i].body).added_force += -scratch_[i];
   return true;
 }
 

@@ -9,13 +9,14 @@
 
 namespace statejump::kernel::laws {
 
-/// What an impact dissipation law needs.
+/// Input of an impact dissipation law.
 struct ImpactParameters {
-  double restitution = parameter::restitution.standard;  ///< e [-], in [0, 1]; 1: no loss
-  double impact_speed = 1.0;  ///< delta_dot_0 [m/s], > 0: approach speed when the contact begins
+  double restitution = parameter::restitution.default_value;  ///< e [-], in [0, 1]; 1: no loss
+  double impact_speed = 1.0;  ///< delta_dot_0 [m/s], > 0: approach speed when the contact began
 };
 
-/// Checks an impact where it enters; whether a law takes e = 0 is its own, see restitution_of().
+/// Checks an impact when it is set. Whether a law accepts e = 0 depends on the law, see
+/// restitution_of().
 /// @throws std::invalid_argument that names the field, its value and its range
 inline void validate(const ImpactParameters& impact) {
   check(parameter::restitution_from_zero, impact.restitution);
@@ -27,16 +28,16 @@ inline void validate(const ImpactParameters& impact) {
 /// the bodies never pull on each other. For F_elastic = K delta^n this is K delta^n + chi delta^n
 /// delta_dot. A free impact never reaches the clip; a joint pulled apart does.
 ///
-/// What restitution comes out. v dv/(1 + lambda v) = -(F_elastic/m) d(delta), lambda = chi/K, has
-/// the same right side going in and coming out, so for every elastic law the true restitution e'
-/// solves, with a = lambda v0,
+/// Resulting restitution. The equation v dv/(1 + lambda v) = -(F_elastic/m) d(delta), lambda =
+/// chi/K, has the same right side during approach and rebound. So for every elastic law the true
+/// restitution e' solves, with a = lambda v0,
 ///
-///     a - ln(1 + a) = -a e' - ln(1 - a e'),   e' = 1 - 2a/3 + ... for small a.
+///    a - ln(1 + a) = -a e' - ln(1 - a e'),   e' = 1 - 2a/3 + ... for small a.
 ///
-/// lankarani_nikravesh and hunt_crossley (a = 3/2 (1 - e) to first order) return e for e -> 1 only;
-/// flores (a = 8/5 (1 - e)) returns 1 - 16/15 (1 - e) there, in exchange for e' -> 0 as e -> 0.
-/// @param elastic_force [N], >= 0; @param damping_ratio chi/K [s/m]; @param penetration_rate
-///        delta_dot [m/s], positive while approaching
+/// lankarani_nikravesh and hunt_crossley (a = 3/2 (1 - e) to first order) return e only for e -> 1.
+/// flores (a = 8/5 (1 - e)) returns 1 - 16/15 (1 - e) there, but e' -> 0 as e -> 0.
+/// @param elastic_force [N], >= 0; @param damping_ratio chi/K [s/m]
+/// @param penetration_rate delta_dot [m/s], positive while approaching
 inline double damped_force(double elastic_force, double damping_ratio, double penetration_rate) {
   return elastic_force * std::max(0.0, 1.0 + damping_ratio * penetration_rate);
 }
@@ -54,7 +55,7 @@ struct LankaraniNikravesh {
   static constexpr LawInfo info{"lankarani_nikravesh",
                                 "chi = 3/4 K (1 - e^2)/v0",
                                 "Lankarani, Nikravesh, J. Mech. Des. 112, 1990",
-                                "0 < e <= 1, v0 > 0; restitution as asked for e -> 1 only",
+                                "0 < e <= 1, v0 > 0; returns the requested e only for e -> 1",
                                 Trait::holds_static_load,
                                 {&parameter::restitution, &parameter::smallest_impact_speed}};
   double operator()(const ImpactParameters& impact) const {
@@ -69,7 +70,7 @@ struct HuntCrossley {
   static constexpr LawInfo info{"hunt_crossley",
                                 "chi = 3/2 K (1 - e)/v0",
                                 "Hunt, Crossley, J. Appl. Mech. 42, 1975",
-                                "0 < e <= 1, v0 > 0; restitution as asked for e -> 1 only",
+                                "0 < e <= 1, v0 > 0; returns the requested e only for e -> 1",
                                 Trait::holds_static_load,
                                 {&parameter::restitution, &parameter::smallest_impact_speed}};
   double operator()(const ImpactParameters& impact) const {
@@ -78,7 +79,7 @@ struct HuntCrossley {
 };
 
 /// Flores, Machado, Silva and Martins, Multibody Syst. Dyn. 25, 2011: chi/K = 8/5 (1 - e)/(e v0)
-/// [s/m]. Meant for the whole range of e; for e -> 1 the loss is 16/15 of that asked for. See
+/// [s/m]. Meant for the whole range of e; for e -> 1 the loss is 16/15 of the requested one. See
 /// damped_force().
 struct FloresDissipation {
   static constexpr LawInfo info{"flores",
@@ -92,30 +93,32 @@ struct FloresDissipation {
   }
 };
 
-/// The coefficient that returns e exactly: a = lambda v0 of damped_force() for e' = e,
+/// Dissipation that returns e exactly: a = lambda v0 of damped_force() for e' = e,
 ///
-///     a - ln(1 + a) = -a e - ln(1 - a e),   chi/K = a/v0.
+///    a - ln(1 + a) = -a e - ln(1 - a e),   chi/K = a/v0.
 ///
-/// With q = -ln(1 - a e), a = (1 - exp(-q))/e, the root of a (1 + e) - ln(1 + a) - q that is not 0
-/// is found by Newton's method from above: the function is concave there, so that the steps do not
-/// pass it. Starts: a < 1/e, and a e < 3/2 (1 - e). No constant is fitted. e = 0 would need a
-/// damper without bound; e below 1e-6 is taken for 1e-6, the largest error of this law. a = 1/e for
-/// small e: the force rises 1/e times as fast, and an explicit integrator needs steps that resolve
-/// a depth smaller by e^0.4. It takes as long as many steps: prepare() solves for it once.
+/// With q = -ln(1 - a e), a = (1 - exp(-q))/e, Newton's method finds the nonzero root of a (1 + e)
+/// - ln(1 + a) - q from above. The function is concave there, so that the steps do not overshoot.
+/// Starts: a < 1/e, and a e < 3/2 (1 - e). No constant is fitted.
+///
+/// e = 0 would need an infinite damper; e < 1e-6 is replaced by 1e-6, which is the largest error of
+/// this law. For small e, a = 1/e: the force rises 1/e times as fast. An explicit integrator then
+/// has to resolve a depth smaller by e^0.4. The solution costs as much as many time steps, so
+/// prepare() computes it once.
 struct ExactRestitution {
   static constexpr LawInfo info{
       "exact_restitution",
       "chi = K a/v0, a - ln(1 + a) = -a e - ln(1 - a e)",
       "energy balance of F = K delta^n + chi delta^n d(delta)/dt, as in "
       "Hunt, Crossley, J. Appl. Mech. 42, 1975, without small losses",
-      "0 <= e <= 1, v0 > 0; restitution as asked, to 1e-6",
+      "0 <= e <= 1, v0 > 0; returns the requested e, to 1e-6",
       Trait::holds_static_load,
       {&parameter::restitution_from_zero, &parameter::smallest_impact_speed}};
   double operator()(const ImpactParameters& impact) const {
     const double e = std::max(impact.restitution, smallest);
     return (e == known_for_ ? known_ : coefficient(e)) / impact.impact_speed;
   }
-  /// Solves for the coefficient of the impacts to come; what is answered stays the same.
+  /// Computes the coefficient of later impacts in advance; results do not change.
   void prepare(double restitution) {
     known_for_ = std::max(restitution, smallest);
     known_ = coefficient(known_for_);

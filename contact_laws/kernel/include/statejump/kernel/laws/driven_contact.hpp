@@ -15,26 +15,26 @@
 
 namespace statejump::kernel::laws {
 
-/// One contact without bodies around it, to be led along a path of depth and slide.
+/// One contact without bodies, driven along a path of depth and slide.
 struct DrivenContact {
-  JointLaw law;             ///< its tangential velocity law is not used: the path gives the slide
-  ElasticPair elastic;      ///< E*, G* [Pa], > 0
+  JointLaw law;         ///< its tangential velocity law is not used: the path prescribes the slide
+  ElasticPair elastic;  ///< E*, G* [Pa], > 0
   NormalGeometry geometry;  ///< see driven_geometry()
 };
 
-/// Where the path leads in one step, from the present point on. Along a straight line: the laws are
-/// given the whole step.
+/// End point of one step of the path, which is a straight line from the current point. The laws
+/// receive the whole step.
 struct DrivenTarget {
   double depth = 0.0;                  ///< delta [m]; <= 0: the contact is open
-  std::optional<double> normal_force;  ///< [N], >= 0; there: the depth is that which carries it
+  std::optional<double> normal_force;  ///< [N], >= 0; if given, the depth follows from it
   double slide_x = 0.0;                ///< of body 1 against body 2 since the start of the path [m]
   double slide_y = 0.0;                ///< across it [m]
   std::optional<double> tangential_force;  ///< along x [N], positive along the slide that causes
-                                           ///< it; there: slide_x is that which causes it
-  double duration = 0.0;                   ///< of the step [s]; 0: no rate is known
+                                           ///< it; if given, slide_x follows from it
+  double duration = 0.0;  ///< of the step [s]; 0: rates are unknown and count as zero
 };
 
-/// What the contact is and does at the end of a step.
+/// State of the contact at the end of a step.
 struct DrivenState {
   double depth = 0.0;                      ///< [m]
   double slide_x = 0.0;                    ///< [m]
@@ -45,13 +45,13 @@ struct DrivenState {
   double normal_elastic_energy = 0.0;      ///< [J]
   double tangential_elastic_energy = 0.0;  ///< [J]
   double friction_dissipation = 0.0;       ///< since the start of the path [J]
-  double damping_dissipation = 0.0;        ///< of the dissipation law, likewise [J]
-  double impact_speed = 0.0;  ///< approach speed when the present contact began [m/s]; 0: open
+  double damping_dissipation = 0.0;  ///< of the dissipation law, since the start of the path [J]
+  double impact_speed = 0.0;  ///< approach speed when the current contact began [m/s]; 0: open
   ContactHistory history;     ///< of the friction law
 };
 
-/// Radii whose effective radius R = R1 R2/(R2 - R1) and clearance c = R2 - R1 are given:
-/// R1^2 + c R1 = R c. An infinite clearance is a flat wall, R1 = R.
+/// Radii with the given effective radius R = R1 R2/(R2 - R1) and clearance c = R2 - R1: R1^2 + c R1
+/// = R c. An infinite clearance is a flat wall, R1 = R.
 /// @param effective_radius R [m], > 0, @param radial_clearance c [m], > 0
 /// @param contact_length [m], > 0, of a line contact
 inline NormalGeometry driven_geometry(double effective_radius, double radial_clearance,
@@ -66,9 +66,9 @@ inline NormalGeometry driven_geometry(double effective_radius, double radial_cle
   return {journal_radius, journal_radius + radial_clearance, contact_length};
 }
 
-/// Checks a contact where it enters.
+/// Checks a contact when it is set.
 /// @throws std::invalid_argument that names the field, its value and its range, or the law that
-///         needs what is not there
+///        needs a missing field
 inline void validate(const DrivenContact& contact) {
   validate(contact.law);
   require(std::isfinite(contact.elastic.effective_young_modulus) &&
@@ -85,10 +85,10 @@ inline void validate(const DrivenContact& contact) {
 
 namespace detail {
 
-/// Smallest number of [low, high] for which a predicate holds that holds at high and, once it
-/// holds, goes on to hold; by bisection down to neighbouring numbers.
+/// Smallest number in [low, high] for which a monotone predicate holds, found by bisection down to
+/// neighbouring numbers. The predicate must hold at high and at every number above the first.
 template <class Predicate>
-double first_where(double low, double high, const Predicate& holds) {
+double first_true(double low, double high, const Predicate& holds) {
   for (;;) {
     const double middle = low + 0.5 * (high - low);
     if (!(middle > std::min(low, high) && middle < std::max(low, high))) return high;
@@ -97,8 +97,8 @@ double first_where(double low, double high, const Predicate& holds) {
 }
 
 /// Depth [m] at which a normal law carries a force [N], >= 0.
-/// @throws std::domain_error the law's range ends below that force
-inline double depth_under(const DrivenContact& contact, double force) {
+/// @throws std::domain_error if the largest force of the law is smaller
+inline double depth_at_force(const DrivenContact& contact, double force) {
   const NormalMaterial material{contact.elastic.effective_young_modulus};
   const auto carries = [&](double depth) {
     return evaluate(contact.law.normal, depth, contact.geometry, material).force >= force;
@@ -117,25 +117,25 @@ inline double depth_under(const DrivenContact& contact, double force) {
     }
     high = std::min(2.0 * high, last);
   }
-  return first_where(0.0, high, carries);
+  return first_true(0.0, high, carries);
 }
 
 }  // namespace detail
 
-/// Leads a contact along a straight path. An open contact carries nothing and forgets what it
-/// carried; when it closes again it begins anew, with the slide from where the depth is 0 on.
+/// Drives a contact along a straight path. An open contact carries no force and has no history.
+/// When it closes again, a new contact begins, with the slide from depth 0 on.
 ///
-/// A tangential force is turned into the slide that causes it: friction does not fall while the
-/// slide grows, so the least slide that reaches the force is found by bisection, to the last bit.
-/// @param before state that the last step left; default-made: nothing has touched yet
-/// @throws std::domain_error a depth outside the range of the normal law; a force that friction
-///         cannot reach
+/// A given tangential force determines the slide. The friction force does not decrease with the
+/// slide, so bisection finds the smallest slide that reaches the force, to the last bit.
+/// @param before state after the previous step; default-constructed: no contact yet
+/// @throws std::domain_error for a depth outside the range of the normal law, or a force that
+///        friction cannot reach
 inline DrivenState drive(const DrivenContact& contact, const DrivenState& before,
                          const DrivenTarget& target) {
   const NormalMaterial material{contact.elastic.effective_young_modulus};
   DrivenState after = before;
   after.depth =
-      target.normal_force ? detail::depth_under(contact, *target.normal_force) : target.depth;
+      target.normal_force ? detail::depth_at_force(contact, *target.normal_force) : target.depth;
   const NormalState normal = evaluate(contact.law.normal, after.depth, contact.geometry, material);
   const bool touching = after.depth > 0.0;
   const double duration = target.duration > 0.0 ? target.duration : 1.0;
@@ -152,16 +152,16 @@ inline DrivenState drive(const DrivenContact& contact, const DrivenState& before
   after.damping_dissipation += (after.normal_force - normal.force) * rate * duration;
 
   const double stiffness = tangential_stiffness(contact.elastic, normal.stiffness);
-  // Only while it touches does the contact slide: the part of the step after it closes, or before
-  // it opens.
+  // The contact slides only while it touches: in the part of the step after it closes, or before it
+  // opens.
   const double one = std::max(before.depth, after.depth);
   const double other = std::min(before.depth, after.depth);
-  const double share = one > 0.0 && other < 0.0 ? one / (one - other) : 1.0;
+  const double fraction = one > 0.0 && other < 0.0 ? one / (one - other) : 1.0;
   const auto friction = [&](double slide_x, ContactHistory& history) {
     const Vector3 slide(slide_x - before.slide_x, target.slide_y - before.slide_y, 0.0);
     return evaluate(
         contact.law.friction, contact.law.friction_parameters,
-        {after.normal_force, stiffness, slide * (share / duration), duration, Vector3::UnitZ()},
+        {after.normal_force, stiffness, slide * (fraction / duration), duration, Vector3::UnitZ()},
         history);
   };
   after.slide_x = target.slide_x;
@@ -173,12 +173,13 @@ inline DrivenState drive(const DrivenContact& contact, const DrivenState& before
       return -friction(slide_x, trial).force_on_1.x();
     };
     const double limit = contact.law.friction_parameters.friction_coefficient * after.normal_force;
-    const double margin = 1e-14 * limit;  // the limit itself, as a file gives it, can be reached
+    const double margin =
+        1e-14 * limit;  // so that the limit itself, rounded as in a file, can be reached
     const double side = force < at(before.slide_x) ? -1.0 : 1.0;
     const auto reaches = [&](double slide_x) { return side * (at(slide_x) - force) >= -margin; };
     after.slide_x = before.slide_x;
     if (!reaches(after.slide_x)) {
-      // From half of what would cause it without slip up to sliding as far as nothing here goes.
+      // Start at half the slide without slip; stop at a slide that is too large for any joint.
       double far = stiffness > 0.0 ? 0.5 * std::max(std::abs(force), limit) / stiffness : 0.0;
       const double beyond = 1e3 * contact.geometry.journal_radius;
       while (far > 0.0 && far < beyond && !reaches(before.slide_x + side * far)) far *= 2.0;
@@ -189,14 +190,14 @@ inline DrivenState drive(const DrivenContact& contact, const DrivenState& before
                       force, limit);
         throw std::domain_error(text);
       }
-      after.slide_x = detail::first_where(before.slide_x, before.slide_x + side * far, reaches);
+      after.slide_x = detail::first_true(before.slide_x, before.slide_x + side * far, reaches);
     }
   }
-  const FrictionResponse answer = friction(after.slide_x, after.history);
-  after.tangential_force_x = 0.0 - answer.force_on_1.x();
-  after.tangential_force_y = 0.0 - answer.force_on_1.y();
-  after.tangential_elastic_energy = answer.elastic_energy;
-  after.friction_dissipation += answer.dissipation;
+  const FrictionResponse response = friction(after.slide_x, after.history);
+  after.tangential_force_x = 0.0 - response.force_on_1.x();
+  after.tangential_force_y = 0.0 - response.force_on_1.y();
+  after.tangential_elastic_energy = response.elastic_energy;
+  after.friction_dissipation += response.dissipation;
   return after;
 }
 

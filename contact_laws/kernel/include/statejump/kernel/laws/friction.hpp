@@ -12,14 +12,15 @@
 
 namespace statejump::kernel::laws {
 
-/// Parameters of the friction laws; each reads what it needs.
+/// Parameters of the friction laws; each law reads those that it needs.
 struct FrictionParameters {
-  double friction_coefficient = parameter::friction_coefficient.standard;  ///< mu [-], >= 0
-  double v0 = parameter::v0.standard;  ///< [m/s], 0 <= v0 < v1; ambrosio: no friction up to here
-  double v1 = parameter::v1.standard;  ///< [m/s], ambrosio: full friction from here
+  double friction_coefficient = parameter::friction_coefficient.default_value;  ///< mu [-], >= 0
+  double v0 =
+      parameter::v0.default_value;  ///< [m/s], 0 <= v0 < v1; ambrosio: no friction up to here
+  double v1 = parameter::v1.default_value;  ///< [m/s], ambrosio: full friction from here
 };
 
-/// Checks friction parameters where they enter.
+/// Checks friction parameters when they are set.
 /// @throws std::invalid_argument that names the field, its value and its range
 inline void validate(const FrictionParameters& parameters) {
   check(parameter::friction_coefficient, parameters.friction_coefficient);
@@ -28,26 +29,26 @@ inline void validate(const FrictionParameters& parameters) {
   require(std::isfinite(parameters.v1), "v1", parameters.v1, "(v0, inf) m/s");
 }
 
-/// What a friction law sees of the contact at this step.
+/// Input of a friction law in this step.
 struct FrictionKinematics {
   double normal_force;          ///< F_N [N], >= 0
   double tangential_stiffness;  ///< k_t [N/m]; read by laws with a memory
-  Vector3 tangential_velocity;  ///< v_t of 1 against 2 [m/s], see tangential_velocity.hpp
+  Vector3 tangential_velocity;  ///< v_t of 1 relative to 2 [m/s], see tangential_velocity.hpp
   double time_step;             ///< dt [s], >= 0
-  Vector3 normal;               ///< unit, across the tangent plane
+  Vector3 normal;               ///< unit, perpendicular to the tangent plane
 };
 
-/// What a friction law answers.
+/// Output of a friction law.
 struct FrictionResponse {
   Vector3 force_on_1;     ///< [N], at most mu F_N; body 2 gets the opposite
   double elastic_energy;  ///< stored by the law [J], >= 0
   double dissipation;     ///< of this step [J], >= 0
 };
 
-/// A friction law either remembers (Trait::has_memory: it is given the slide of the step, as
-/// velocity times step) or is a function of the velocity at one instant, smooth enough for an
-/// adaptive integrator. `largest_slope()` is that of the force against the velocity [N s/m]: a
-/// viscous damper that an explicit integrator has to resolve.
+/// A friction law either has a memory (Trait::has_memory) or is a function of the velocity at one
+/// instant. With a memory it receives the slide of the step, as velocity times step. Without, it is
+/// smooth enough for an adaptive integrator. `largest_slope()` is the largest slope of force over
+/// velocity [N s/m]: a viscous damper that an explicit integrator has to resolve.
 
 /// No friction; the force is exactly zero.
 struct NoFriction {
@@ -62,11 +63,11 @@ struct NoFriction {
 
 /// Ambrosio's regularised Coulomb friction, the paper's eqs (9) and (10):
 ///
-///     F_T = mu mu_d F_N,   mu_d = 0 (v <= v0), (v - v0)/(v1 - v0) between, 1 (v >= v1),
+///    F_T = mu mu_d F_N,   mu_d = 0 (v <= v0), (v - v0)/(v1 - v0) between, 1 (v >= v1),
 ///
-/// directed against v_t, which the paper leaves unsaid. Dissipation F_T v dt of the step [J].
-/// Limits: zero up to v0, so it cannot hold a static load: a joint left alone creeps, at
-/// v0 + (v1 - v0) T/(mu F_N) under a tangential load T. Stores no energy, has no history.
+/// directed opposite to v_t, which the paper does not state. Dissipation F_T v dt of the step [J].
+/// Limits: zero up to v0, so it cannot hold a static load. Under a tangential load T a joint creeps
+/// at v0 + (v1 - v0) T/(mu F_N). Stores no energy, has no history.
 struct AmbrosioFriction {
   static double largest_slope(const FrictionParameters& parameters, double normal_force) {
     return parameters.friction_coefficient * normal_force / (parameters.v1 - parameters.v0);
@@ -93,8 +94,8 @@ struct AmbrosioFriction {
 };
 
 /// Mindlin's history spring under Coulomb's limit: mindlin_step() with limit mu F_N. The caller
-/// rotates the history with the contact, see transport(). Holds a static load up to mu F_N. Its
-/// k_t = 8 G* a is that of a circular contact; for a line contact the caller says what k_t is.
+/// rotates the history with the contact, see transport(). Holds a static load up to mu F_N. k_t = 8
+/// G* a is that of a circular contact; for a line contact the caller supplies k_t.
 struct MindlinFriction {
   static double largest_slope(const FrictionParameters&, double) { return 0.0; }
   static constexpr LawInfo info{"mindlin",
@@ -112,8 +113,8 @@ struct MindlinFriction {
   }
 };
 
-/// Hertz's contact that slides at its rim before it slides as a whole: partial_slip_step() with
-/// k = k_t, limit mu F_N. The caller rotates axis and force of the history with the contact.
+/// Hertz contact with partial slip, which starts at the rim: partial_slip_step() with k = k_t,
+/// limit mu F_N. The caller rotates axis and force of the history with the contact.
 struct MindlinDeresiewiczFriction {
   static double largest_slope(const FrictionParameters&, double) { return 0.0; }
   static constexpr LawInfo info{
@@ -136,20 +137,19 @@ struct MindlinDeresiewiczFriction {
     }
     const Vector3 second = cross(kinematics.normal, first);
     const Vector3& velocity = kinematics.tangential_velocity;
-    const PartialSlipResponse answer = partial_slip_step(
+    const PartialSlipResponse response = partial_slip_step(
         kinematics.tangential_stiffness, parameters.friction_coefficient * kinematics.normal_force,
         kinematics.time_step * Tangent{velocity.dot(first), velocity.dot(second)}, history.memory);
-    history.tangential_force = -answer.force.a * first - answer.force.b * second;
+    history.tangential_force = -response.force.a * first - response.force.b * second;
     history.tangential_stiffness = std::max(0.0, kinematics.tangential_stiffness);
-    history.slipping = answer.slipping;
+    history.slipping = response.slipping;
     if (history.memory.size() == 0) first = Vector3::Zero();
-    return {history.tangential_force, answer.elastic, answer.dissipation};
+    return {history.tangential_force, response.elastic, response.dissipation};
   }
-  /// History of a contact that was loaded at a constant ratio of both forces: no ring has slipped,
-  /// slide = 3/2 F_T/k_t. @param force_on_1 [N], within the limit; @param under velocity is not
-  /// read
-  ContactHistory loaded(const FrictionParameters& parameters, const Vector3& force_on_1,
-                        FrictionKinematics under) const {
+  /// History of a contact loaded at a constant ratio of both forces: no annulus has slipped, slide
+  /// = 3/2 F_T/k_t. @param force_on_1 [N], within the limit; @param under the velocity is not read
+  ContactHistory preloaded(const FrictionParameters& parameters, const Vector3& force_on_1,
+                           FrictionKinematics under) const {
     under.tangential_velocity = -1.5 / under.tangential_stiffness * force_on_1;
     under.time_step = 1.0;
     ContactHistory history;
@@ -158,7 +158,8 @@ struct MindlinDeresiewiczFriction {
   }
 
  private:
-  /// A unit vector across another: the axis that it leans to least, without its part along it.
+  /// A unit vector perpendicular to another: the coordinate axis with the smallest component, made
+  /// orthogonal.
   static Vector3 perpendicular(const Vector3& normal) {
     Eigen::Index least = 0;
     normal.cwiseAbs().minCoeff(&least);

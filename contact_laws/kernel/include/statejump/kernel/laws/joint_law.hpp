@@ -11,19 +11,19 @@
 
 namespace statejump::kernel::laws {
 
-/// The four laws of one clearance joint and their parameters. A plain value: validate() once.
+/// The four laws of one clearance joint and their parameters. A plain value; call validate() once.
 struct JointLaw {
   NormalLaw normal = HertzInternal{};
   DissipationLaw dissipation = NoDissipation{};
   FrictionLaw friction = NoFriction{};
   TangentialVelocityLaw tangential_velocity = MaterialVelocity{};
-  FrictionParameters friction_parameters;                ///< mu, v0, v1
-  double restitution = parameter::restitution.standard;  ///< e [-], see restitution_of()
-  /// Floor of the impact speed that scales dissipation [m/s], > 0. A contact that begins slower, as
-  /// one that a slow expansion closes does, would otherwise be damped without bound.
-  double smallest_impact_speed = parameter::smallest_impact_speed.standard;
+  FrictionParameters friction_parameters;                     ///< mu, v0, v1
+  double restitution = parameter::restitution.default_value;  ///< e [-], see restitution_of()
+  /// Lower bound of the impact speed that scales dissipation [m/s], > 0. A contact that begins more
+  /// slowly, for example one closed by a slow expansion, would have unbounded damping.
+  double smallest_impact_speed = parameter::smallest_impact_speed.default_value;
   /// Axial length of a line contact [m], > 0; point laws ignore it.
-  double contact_length = parameter::contact_length.standard;
+  double contact_length = parameter::contact_length.default_value;
 };
 
 /// Names of the four laws, as case files spell them.
@@ -34,7 +34,7 @@ struct JointLawNames {
   std::string tangential_velocity = MaterialVelocity::info.name;
 };
 
-/// The laws of these names with default parameters.
+/// The laws with these names, with default parameters.
 /// @throws std::invalid_argument that lists the known names
 inline JointLaw joint_law(const JointLawNames& names) {
   JointLaw law;
@@ -45,18 +45,18 @@ inline JointLaw joint_law(const JointLawNames& names) {
   return law;
 }
 
-/// Why two laws of a joint do not go together; empty: they do.
-inline std::string contradiction(const JointLaw& law) {
-  if (go_together(law.normal, law.friction)) return "";
+/// Reason why two laws of a joint are incompatible; empty if they are compatible.
+inline std::string incompatibility(const JointLaw& law) {
+  if (are_compatible(law.normal, law.friction)) return "";
   return std::string("friction_law = '") + law_info(law.friction).name +
          "' is that of a point contact and needs normal_law " +
          names_with<NormalLaw>(Trait::point_contact) + ", not '" + law_info(law.normal).name + "'";
 }
 
-/// Checks the parameters where they enter, and that the laws go together.
+/// Checks the parameters when they are set, and that the laws are compatible.
 /// @throws std::invalid_argument that names the field, its value and its range
 inline void validate(const JointLaw& law) {
-  if (const std::string wrong = contradiction(law); !wrong.empty()) {
+  if (const std::string wrong = incompatibility(law); !wrong.empty()) {
     throw std::invalid_argument(wrong);
   }
   validate(law.friction_parameters);
@@ -65,10 +65,10 @@ inline void validate(const JointLaw& law) {
   check(parameter::contact_length, law.contact_length);
 }
 
-/// Tangential stiffness of any normal law, k_t = 4 (G*/E*) k_n [N/m]: Mindlin's ratio of the two
-/// stiffnesses of a circular contact, where it is 8 G* a exactly (k_n = 2 E* a). For a line contact
-/// it is a choice: the tangential compliance of an infinite cylinder has the same logarithm as the
-/// normal one.
+/// Tangential stiffness of any normal law, k_t = 4 (G*/E*) k_n [N/m]. This is Mindlin's ratio of
+/// the two stiffnesses of a circular contact, where it is exactly 8 G* a (k_n = 2 E* a). For a line
+/// contact it is a choice: the tangential compliance of an infinite cylinder has the same logarithm
+/// as the normal one.
 /// @param normal_stiffness dF_N/d(delta) [N/m], elastic
 inline double tangential_stiffness(const ElasticPair& elastic, double normal_stiffness) {
   return 4.0 * elastic.effective_shear_modulus / elastic.effective_young_modulus * normal_stiffness;

@@ -12,34 +12,33 @@
 
 namespace statejump::kernel::laws {
 
-/// Where the two bodies of a joint are at this step. Arguments are trusted: this is the inner loop.
+/// Kinematics of the two bodies of a joint in this step. The inner loop does not check them.
 struct JointKinematics {
-  JointContact contact;     ///< of revolute_contact() or plane_contact()
-  NormalGeometry geometry;  ///< R1, R2 at the current temperature, contact length; R2 = +infinity
-                            ///< for a flat wall, which the hertz_* laws alone cover
+  JointContact contact;     ///< from revolute_contact() or plane_contact()
+  NormalGeometry geometry;  ///< R1, R2 at the current temperature, contact length. R2 = +infinity
+                            ///< is a flat wall, which only the hertz_* laws accept.
   BodyMotion motion_1;      ///< of the journal (slider)
   BodyMotion motion_2;      ///< of the bearing (slot)
-  Vector3 axis;             ///< unit, of the bearing; read by the velocity law 'paper' only
+  Vector3 axis;             ///< unit, of the bearing; read only by the velocity law 'paper'
   double impact_speed;      ///< approach speed when this contact began [m/s]
   double clearance_rate;  ///< dc/dt by expansion [m/s]; delta_dot = approach speed - clearance_rate
   double time_step;       ///< dt [s], >= 0
 };
 
-/// What the contact answers, and what of it the two bodies feel.
+/// Contact forces of a joint and their effect on the two bodies.
 struct JointResponse {
   ContactResponse contact;   ///< forces at the contact, energies of this step
-  Wrench wrench;             ///< by the same tangential velocity law as the velocity of friction
+  Wrench wrench;             ///< from the same tangential velocity law as the velocity of friction
   double dissipation_force;  ///< of the dissipation law alone [N]; times clearance_rate it is work
                              ///< of the expansion
   double dissipation_slope;  ///< dF/d(approach speed) of the dissipation law [N s/m], >= 0
-  double friction_slope;     ///< largest dF_T/dv of the friction law [N s/m], >= 0; with ambrosio a
+  double friction_slope;     ///< largest dF_T/dv of the friction law [N s/m], >= 0; for ambrosio a
                              ///< viscous damper that an explicit integrator has to resolve
 };
 
 namespace detail {
 
-/// Laws of the catalogue for contact_step(). Nothing is set that is set again before it is read:
-/// this is the inner loop.
+/// Laws of the catalogue for contact_step(). Members are set once: this is the inner loop.
 template <class Law>
 struct CatalogueLaws {
   const Law& law;
@@ -54,18 +53,19 @@ struct CatalogueLaws {
   static constexpr bool always_spring = false;
 
   CatalogueLaws(const Law& its_law, const ContactParameters& its_parameters,
-                const JointKinematics& its_place)
+                const JointKinematics& its_kinematics)
       : law(its_law),
         parameters(its_parameters),
-        at(its_place),
+        at(its_kinematics),
         friction_parameters{parameters.friction_coefficient, law.friction_parameters.v0,
                             law.friction_parameters.v1},
         normal_state(evaluate(law.normal, at.contact.penetration_depth, at.geometry,
                               NormalMaterial{parameters.elastic.effective_young_modulus})),
-        relative_velocity(with(law.tangential_velocity,
-                               [&](const auto& l) {
-                                 return l.velocity(at.contact, at.motion_1, at.motion_2, at.axis);
-                               })),
+        relative_velocity(visit_law(law.tangential_velocity,
+                                    [&](const auto& l) {
+                                      return l.velocity(at.contact, at.motion_1, at.motion_2,
+                                                        at.axis);
+                                    })),
         damping{0.0, at.clearance_rate, 0.0} {}
 
   const NormalState& normal() const { return normal_state; }
@@ -79,26 +79,26 @@ struct CatalogueLaws {
   }
   MindlinEnergy friction(double stiffness, double, double normal_force, const Vector3& velocity,
                          ContactHistory& history) {
-    const FrictionResponse answer =
+    const FrictionResponse response =
         evaluate(law.friction, friction_parameters,
                  {normal_force, stiffness, velocity, at.time_step, at.contact.normal}, history);
-    tangential_force = answer.force_on_1;
-    return {answer.elastic_energy, answer.dissipation};
+    tangential_force = response.force_on_1;
+    return {response.elastic_energy, response.dissipation};
   }
   const Vector3& friction_force(const ContactHistory&) const { return tangential_force; }
 };
 
 }  // namespace detail
 
-/// Any joint law in contact_step(), with k_t = tangential_stiffness(); the viscous part c_t belongs
-/// to the history spring, so friction laws without one (none, ambrosio) have none.
-/// hertz_internal + none + mindlin + material is hertz_mindlin() up to rounding of k_t.
+/// Any joint law in contact_step(), with k_t = tangential_stiffness(). The viscous part c_t belongs
+/// to the history spring, so friction laws without one (none, ambrosio) have no c_t. hertz_internal
+/// + none + mindlin + material equals hertz_mindlin() up to rounding of k_t.
 ///
-/// Velocity and wrench come from one tangential velocity law, never mixed. Energy: as there.
-/// @param law a JointLaw or a KnownJointLaw; its friction coefficient is not read: that of the
-///        contact pair counts
+/// Velocity and wrench come from the same tangential velocity law. Energy: as in hertz_mindlin().
+/// @param law a JointLaw or a StaticJointLaw. Its friction coefficient is not read; that of the
+///        contact pair applies.
 /// @param parameters see validate(); not checked here
-/// @param history of this contact, rotated into the present tangent plane by the caller; updated
+/// @param history of this contact, rotated into the current tangent plane by the caller; updated
 /// @throws std::domain_error when the depth is outside the range of the normal law
 template <class Law>
 JointResponse joint_response(const Law& law, const ContactParameters& parameters,
@@ -107,7 +107,7 @@ JointResponse joint_response(const Law& law, const ContactParameters& parameters
   detail::CatalogueLaws<Law> laws(law, parameters, at);
   const ContactResponse response = contact_step(laws, parameters, contact.normal,
                                                 contact.penetration_depth, at.time_step, history);
-  const Wrench wrench = with(law.tangential_velocity, [&](const auto& l) {
+  const Wrench wrench = visit_law(law.tangential_velocity, [&](const auto& l) {
     return l.wrench(contact, response.force_on_1, at.axis);
   });
   return {response, wrench, laws.damping.force, laws.damping.ratio * response.elastic_normal_force,
@@ -115,9 +115,9 @@ JointResponse joint_response(const Law& law, const ContactParameters& parameters
 }
 
 /// Change of the potential V(delta, R1, R2) of the normal law when only the radii change, at fixed
-/// depth [J]; what their change does to the depth, -F dc, is not part of it. By a central
-/// difference along the change, with 1e-5 of the smaller of clearance and R1 as its step: the
-/// change of one time step itself is too small to subtract. Relative error about 1e-9.
+/// depth [J]. The effect of the radii on the depth, -F dc, is not included. Computed by a central
+/// difference along the change, with a step of 1e-5 of the smaller of clearance and R1. The change
+/// in one time step is too small to subtract. Relative error about 1e-9.
 /// @param before, after radii [m]; @param depth [m]
 template <class Law>
 double radius_energy_change(const Law& law, const NormalMaterial& material, double depth,

@@ -11,23 +11,23 @@
 
 namespace statejump::kernel::laws {
 
-/// What a program may ask of a law besides its numbers. Who has to know what a law can do asks
-/// this, never its name or its type.
+/// Properties of a law besides its numbers. Code that depends on what a law can do reads its
+/// traits, never its name or type.
 enum class Trait : unsigned {
-  /// a body at rest can stay at rest under a load that this law carries
+  /// a body at rest can stay at rest under a load carried by this law
   holds_static_load = 1U << 0,
   /// no force at all
   frictionless = 1U << 1,
-  /// is given the slide of the step and keeps a history; else a function of one instant's velocity
+  /// receives the slide of the step and keeps a history; else a function of the current velocity
   has_memory = 1U << 2,
-  /// has no meaning without the axis of a bearing: neither in a socket nor on a flat face
+  /// needs the axis of a bearing: invalid in a socket and on a flat face
   needs_axis = 1U << 3,
-  /// takes the negative bearing radius of a wall that bulges: the bearing's curvature has its sign
+  /// accepts the negative bearing radius of a bulging wall: the bearing's curvature has its sign
   accepts_bulging_wall = 1U << 4,
-  /// Hertz's point contact F = 4/3 E* sqrt(R) delta^1.5, 1/R = 1/R1 - 1/R2 with
+  /// Hertz's point contact F = 4/3 E* sqrt(R) delta^1.5; 1/R = 1/R1 - 1/R2 with
   /// accepts_bulging_wall and 1/R1 + 1/R2 without
   point_contact = 1U << 5,
-  /// has a meaning only under a normal law that is a point_contact
+  /// valid only under a normal law that is a point_contact
   needs_point_contact = 1U << 6,
 };
 
@@ -46,19 +46,18 @@ constexpr Traits operator|(Trait a, Trait b) {
   return Traits(a) | Traits(b);
 }
 
-/// A parameter of a law, as data: one range and one default for every place that checks or lists
-/// it.
+/// A parameter of a law, as data: one range and one default for all checks and listings.
 struct LawParameter {
   const char* name;  ///< of the field of its parameter struct
   const char* unit;  ///< "-" for a ratio
   double low;        ///< smallest value
   double high;       ///< largest value, allowed unless infinite
   bool low_excluded;
-  double standard;  ///< default value
+  double default_value;  ///< default value
   const char* meaning;
   const char* source;
 
-  /// NaN is not allowed.
+  /// False for NaN.
   constexpr bool allows(double value) const {
     const bool above = low_excluded ? value > low : value >= low;
     return above && (value < high || (value == high && high < infinity));
@@ -74,21 +73,22 @@ struct LawParameter {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 };
 
-/// Checks a parameter where it enters.
+/// Checks a parameter when it is set.
 /// @throws std::invalid_argument that names the parameter, its value and its range
 inline void check(const LawParameter& parameter, double value) {
   if (parameter.allows(value)) return;
   require(false, parameter.name, value, parameter.range().c_str());
 }
 
-/// What a law says of itself, as data.
+/// Description of a law, as data.
 struct LawInfo {
   const char* name;     ///< as case files spell it
   const char* formula;  ///< plain text
   const char* source;   ///< publication and equation
-  const char* range;    ///< where it is valid; what is an error outside
+  const char* range;    ///< range of validity; values outside are an error
   Traits traits;
-  std::array<const LawParameter*, 4> parameters;  ///< that it reads; the rest are null
+  std::array<const LawParameter*, 4>
+      parameters;  ///< those that it reads; the remaining ones are null
 
   constexpr bool has(Trait trait) const { return traits.has(trait); }
 };

@@ -31,7 +31,7 @@ struct NormalMaterial {
   double effective_young_modulus;  ///< E* [Pa], > 0
 };
 
-/// What a normal law answers at one penetration depth.
+/// Output of a normal law at one penetration depth.
 struct NormalState {
   double force;           ///< F [N], >= 0, compressive
   double stiffness;       ///< dF/d(delta) [N/m], >= 0
@@ -39,7 +39,7 @@ struct NormalState {
   double elastic_energy;  ///< integral of F over delta [J], >= 0
 };
 
-/// Checks geometry and material where they enter; the laws trust them.
+/// Checks geometry and material when they are set; the laws do not check them.
 /// @throws std::invalid_argument that names the field, its value and its range
 inline void validate(const NormalGeometry& geometry, const NormalMaterial& material) {
   const auto positive = [](double value, const char* name, const char* range) {
@@ -56,7 +56,7 @@ namespace detail {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// Refuses a depth outside a law's range, NaN included.
+/// Rejects a depth outside a law's range, NaN included.
 /// @throws std::domain_error that names law, value and limit
 inline void require_depth(double depth, double limit, const char* law) {
   if (depth < limit) return;
@@ -73,11 +73,11 @@ inline NormalState from_hertz(const HertzState& state) {
 /// Line contact with delta = f/(pi E*) u, u = s + ln(4 pi E* dR/f), f = F/L; s = -1 is Johnson's
 /// formula, s = +1 ESDU's.
 ///
-/// With y = delta/(4 dR) the relation is u e^-u = y e^-s, so u = -W(-y e^-s) on the lower branch of
-/// Lambert's W, where u > 1: closed form, no iteration of ours. Then
+/// With y = delta/(4 dR) the relation is u e^-u = y e^-s. So u = -W(-y e^-s) on the lower branch of
+/// Lambert's W, where u > 1: a closed form. Then
 ///
-///     dF/d(delta) = pi E* L/(u - 1)
-///     integral of F d(delta) = F f/(4 pi E*) (2u - 1)
+///    dF/d(delta) = pi E* L/(u - 1)
+///    integral of F d(delta) = F f/(4 pi E*) (2u - 1)
 ///
 /// At u = 1 (delta = 4 dR e^(s-1)) the stiffness is infinite and F(delta) turns over.
 inline NormalState logarithmic_line_contact(double depth, const NormalGeometry& geometry,
@@ -96,10 +96,10 @@ inline NormalState logarithmic_line_contact(double depth, const NormalGeometry& 
 
 }  // namespace detail
 
-/// Hertz as the paper prints it, eqs (6) to (8): F = 4/3 E* sqrt(R) delta^1.5 with
-/// R = R1 R2/(R1 + R2) [m], the radius of two balls outside each other. For a pin in a hole the
-/// sign is wrong and the joint ten times too soft at Table 2; kept to compare with the paper.
-/// Limits: see hertz().
+/// Hertz as printed in the paper, eqs (6) to (8): F = 4/3 E* sqrt(R) delta^1.5 with R = R1 R2/(R1 +
+/// R2) [m], the radius of two balls in external contact. For a pin in a hole the sign is wrong and
+/// the joint is ten times too soft at Table 2. Kept for comparison with the paper. Limits: see
+/// hertz().
 struct HertzPaper {
   static constexpr LawInfo info{
       "hertz_paper",
@@ -147,13 +147,13 @@ struct HertzInternal {
 ///
 ///     delta = f/(pi E*) (ln(4 pi E* dR/f) - 1).
 ///
-/// Each body contributes f (1 - nu^2)/(pi E) (2 ln(4 R_i/a) - 1), depths being measured from its
-/// centre (Johnson 1985, eq. 5.57); with the half width of the Hertz line contact
-/// a^2 = 4 f R/(pi E*), R = R1 R2/dR, (eq. 4.43) the sum is the formula; so used by Pereira,
-/// Ramalho and Ambrosio, Nonlinear Dyn. 63, 2011. Units: m, N, Pa. Limits: F(delta) turns over at f
-/// = 4 pi E* dR/e^2, delta = 4 dR/e^2: at and beyond that depth an error. The half-plane behind it
-/// ends earlier: at the turning point a is 1.47 R1. Trust it for a << R1, delta << dR; beyond use
-/// persson.
+/// Each body contributes f (1 - nu^2)/(pi E) (2 ln(4 R_i/a) - 1), with depths measured from its
+/// centre (Johnson 1985, eq. 5.57). With the half width of the Hertz line contact a^2 = 4 f R/(pi
+/// E*), R = R1 R2/dR (eq. 4.43), the sum is the formula. Pereira, Ramalho and Ambrosio, Nonlinear
+/// Dyn. 63, 2011, use it in this form. Units: m, N, Pa.
+/// Limits: F(delta) turns over at f = 4 pi E* dR/e^2, delta = 4 dR/e^2; from that depth on the law
+/// reports an error. The half-plane assumption fails earlier: at the turning point a is 1.47 R1.
+/// Valid for a << R1, delta << dR; for deeper contacts use persson.
 struct Johnson {
   static constexpr LawInfo info{
       "johnson",
@@ -183,9 +183,10 @@ struct Johnson {
 ///
 /// that is delta = f/(pi E*) (ln(4 pi E* dR/f) + 1): Johnson's logarithm with another reference
 /// depth, a softer contact. Units: m, N, Pa. (Texts that define sigma without 1/pi print other
-/// factors; the coefficient 1/(pi E*) of f ln f follows from elasticity and decides.)
-/// Limits: turns over at f = 4 pi E* dR, delta = 4 dR: at and beyond that depth an error. The half
-/// width is 4 R1 there, so the half-plane ends long before: a < R1 needs f < pi E* dR/4.
+/// factors. The coefficient 1/(pi E*) of f ln f follows from elasticity, so it is used here.)
+/// Limits: turns over at f = 4 pi E* dR, delta = 4 dR; from that depth on the law reports an error.
+/// The half width is 4 R1 there, so the half-plane assumption fails much earlier: a < R1 needs f <
+/// pi E* dR/4.
 struct Esdu78035 {
   static constexpr LawInfo info{
       "esdu_78035",
@@ -206,14 +207,14 @@ struct Esdu78035 {
 
 namespace detail {
 
-/// Persson's contact at t = tan(epsilon/2)^2, in units E* dR (line force) and dR (depth).
+/// Persson's contact at t = tan(epsilon/2)^2, in units of E* dR (line force) and dR (depth).
 struct PerssonPoint {
   double load_divisor;  ///< X; f = 2 pi t (1 + t)/X
   double compliance;    ///< C = pi d(delta)/df
   double offset;        ///< omega - 1; delta = C f/pi + omega - 1
 };
 
-/// X = 0: an arc that an infinite load, or no clearance, reaches; epsilon = 84.83 degrees.
+/// X = 0: the arc reached by an infinite load or without clearance; epsilon = 84.83 degrees.
 constexpr double persson_largest_t = 0.83461524547765723156;
 
 inline PerssonPoint persson_point(double t) {
@@ -230,33 +231,34 @@ inline PerssonPoint persson_point(double t) {
 
 }  // namespace detail
 
-/// Persson's conformal contact of a disc in a hole of nearly its radius, plane strain, without the
-/// half-plane: the contact may cover a large arc, half angle epsilon, t = tan(epsilon/2)^2.
+/// Persson's conformal contact of a disc in a hole of nearly its radius, in plane strain and
+/// without the half-plane assumption. The contact may cover a large arc with half angle epsilon, t
+/// = tan(epsilon/2)^2.
 ///
-/// Gap with the journal moved by dR + delta: dR - (dR + delta) cos phi + u(phi), where a pressure
-/// sum p_n cos(n phi) opens u_n = (2R/E*) n/(n^2 - 1) p_n, n >= 2, and u_0 = (R/E*) p_0 (Michell's
-/// series for disc and hole, equal materials). Zero gap on the arc, d^2/dphi^2 + 1 applied, is a
-/// Cauchy singular equation in tan(phi/2) whose bounded solution gives Persson's load (1964;
-/// Ciavarella and Decuzzi, Int. J. Solids Struct. 38, 2001, elastic similarity)
+/// Gap with the journal moved by dR + delta: dR - (dR + delta) cos phi + u(phi). A pressure sum p_n
+/// cos(n phi) opens u_n = (2R/E*) n/(n^2 - 1) p_n, n >= 2, and u_0 = (R/E*) p_0 (Michell's series
+/// for disc and hole, equal materials). Applying d^2/dphi^2 + 1 to the zero gap on the arc gives a
+/// Cauchy singular equation in tan(phi/2). Its bounded solution is Persson's load (1964; Ciavarella
+/// and Decuzzi, Int. J. Solids Struct. 38, 2001, elastic similarity)
 ///
-///     f/(E* dR) = 2 pi t (1 + t)/X,   X = 2 - ln(1 + t) - 2 t^2,   f = F/L.
+///    f/(E* dR) = 2 pi t (1 + t)/X,   X = 2 - ln(1 + t) - 2 t^2,   f = F/L.
 ///
-/// Depth: the first harmonic is a rigid translation, which a plane problem leaves undetermined
-/// (a point load sinks without end in an infinite plane). It is fixed here so that a light load
-/// sinks as Johnson's formula, delta -> f/(pi E*) (ln(4 pi E* dR/f) - 1); this is a choice.
-/// The reciprocal theorem between the contact and its increment then gives, in units of dR,
+/// Depth: the first harmonic is a rigid translation, which a plane problem leaves undetermined (a
+/// point load sinks infinitely deep in an infinite plane). By choice, a light load here sinks as in
+/// Johnson's formula, delta -> f/(pi E*) (ln(4 pi E* dR/f) - 1). The reciprocal theorem between the
+/// contact and its increment then gives, in units of dR,
 ///
-///     delta = C f/(pi E* dR) + omega - 1,   C = pi E* d(delta)/df, where
-///     N = 2 + 5t + 2t^2 - (1 + 2t) ln(1 + t)
-///     omega - 1 = (3t - 2t/(1 + t) - 2t^2 + (1 + 2t) ln(1 + t))/N
-///     C = ln(4(1 + t)/t) - 2 - (omega - 1)/2 + t (2 + 5t/2 + (1 + 2t) X/N)/(1 + t)^2
-///         + (1 + 2t)^2 ln(1 + t)/((1 + t) N).
+///    delta = C f/(pi E* dR) + omega - 1,   C = pi E* d(delta)/df, where
+///    N = 2 + 5t + 2t^2 - (1 + 2t) ln(1 + t)
+///    omega - 1 = (3t - 2t/(1 + t) - 2t^2 + (1 + 2t) ln(1 + t))/N
+///    C = ln(4(1 + t)/t) - 2 - (omega - 1)/2 + t (2 + 5t/2 + (1 + 2t) X/N)/(1 + t)^2
+///        + (1 + 2t)^2 ln(1 + t)/((1 + t) N).
 ///
-/// t(delta) is solved by Boost's toms748; no constant is fitted. Energy 1/2 integral of p u:
+/// Boost's toms748 solves for t(delta); no constant is fitted. The energy is 1/2 integral of p u:
 /// 1/2 f (delta - dR (ln(1 + t) - t + t^2)/(t (1 + t))) L. The contact width is the arc R1 epsilon.
 /// Units: m, N, Pa.
-/// Limits: delta < R1, error beyond; small strain; equal elastic constants of both parts (E* is all
-/// it sees of unequal ones); bearing much thicker than R2; the arc stays below 84.83 degrees.
+/// Limits: delta < R1, else an error; small strain; equal elastic constants of both bodies (only E*
+/// enters); bearing much thicker than R2; the arc stays below 84.83 degrees.
 struct Persson {
   static constexpr LawInfo info{
       "persson",
@@ -273,7 +275,7 @@ struct Persson {
     detail::require_depth(depth, largest_depth(geometry), info.name);
     const double clearance = geometry.clearance();
     const double scaled = std::max(depth / clearance, 1e-290);
-    // (C f/pi + omega - 1 - delta) X: smooth and of one sign change up to the largest arc
+    // (C f/pi + omega - 1 - delta) X: smooth, with one sign change up to the largest arc
     const auto residue = [scaled](double t) {
       const detail::PerssonPoint p = detail::persson_point(t);
       return 2.0 * t * (1.0 + t) * p.compliance + p.load_divisor * (p.offset - scaled);
@@ -285,7 +287,7 @@ struct Persson {
         boost::math::tools::eps_tolerance<double>(52), iterations);
     const double t = 0.5 * (bracket.first + bracket.second);
     const detail::PerssonPoint p = detail::persson_point(t);
-    // from the depth, not from t: well conditioned where X tends to zero
+    // computed from the depth, not from t: well conditioned where X tends to zero
     const double line_force = detail::pi * material.effective_young_modulus * clearance *
                               (scaled - p.offset) / p.compliance;
     const double force = line_force * geometry.length;

@@ -3,13 +3,13 @@
 
 #include "statejump/kernel/laws/law_info.hpp"
 
-/// Parameters that the laws of a joint share; each law lists those that it reads.
+/// Parameters shared by the laws of a joint; each law lists those that it reads.
 namespace statejump::kernel::laws::parameter {
 
 inline constexpr LawParameter friction_coefficient{
     "friction_coefficient",    "-", 0.0, LawParameter::infinity, false, 0.0, "mu",
     "of the pair of materials"};
-/// Below v1, which validate(FrictionParameters) checks.
+/// Must be below v1; validate(FrictionParameters) checks that.
 inline constexpr LawParameter v0{
     "v0",
     "m/s",
@@ -28,11 +28,11 @@ inline constexpr LawParameter v1{
     1e-3,
     "full friction from this sliding speed on",
     "Chen, Li, Tang, Wang, Mech. Sci. 12, 2021, eq. 10; value: choice"};
-inline constexpr LawParameter restitution{
-    "restitution", "-", 0.0, 1.0, true, 1.0, "e that the law is asked for", "choice: no loss"};
-/// As above, of a law that covers impacts without rebound, too.
+inline constexpr LawParameter restitution{"restitution", "-", 0.0,           1.0,
+                                          true,          1.0, "requested e", "choice: no loss"};
+/// Range of restitution for a law that also covers impacts without rebound.
 inline constexpr LawParameter restitution_from_zero{
-    "restitution", "-", 0.0, 1.0, false, 1.0, "e that the law is asked for", "choice: no loss"};
+    "restitution", "-", 0.0, 1.0, false, 1.0, "requested e", "choice: no loss"};
 inline constexpr LawParameter smallest_impact_speed{
     "smallest_impact_speed",
     "m/s",

@@ -17,8 +17,8 @@
 
 namespace statejump::kernel::laws {
 
-/// The catalogue. A new law is one type with an `info` and one entry here; names, listing and
-/// look-up follow from it. The last type stands for laws from shared objects, see user_law.hpp.
+/// The catalogue. To add a law, write one type with an `info` and add it here; names, listing and
+/// look-up follow. The last type holds laws from shared objects, see user_law.hpp.
 using NormalLaw =
     std::variant<HertzPaper, HertzInternal, Johnson, Esdu78035, Persson, UserNormalLaw>;
 using DissipationLaw = std::variant<NoDissipation, LankaraniNikravesh, HuntCrossley,
@@ -39,7 +39,7 @@ struct Catalogue<std::variant<Types...>> {
   static constexpr bool is_loaded = std::is_base_of_v<UserLawValue, Type>;
   static constexpr LawKind kind = std::variant_alternative_t<sizeof...(Types) - 1, Variant>::kind;
 
-  template <class Visit>  // of each type of the project, with a value of it
+  template <class Visit>  // visits a value of each law type of the project
   static void for_each(Visit&& visit) {
     const auto own = [&](const auto& law) {
       if constexpr (!is_loaded<std::decay_t<decltype(law)>>) visit(law);
@@ -100,14 +100,14 @@ struct Catalogue<std::variant<Types...>> {
 };
 
 template <class Law, class = void>
-struct SaysLoaded : std::false_type {};
+struct HasPreloaded : std::false_type {};
 template <class Law>
-struct SaysLoaded<Law, std::void_t<decltype(&Law::loaded)>> : std::true_type {};
+struct HasPreloaded<Law, std::void_t<decltype(&Law::preloaded)>> : std::true_type {};
 
 template <class Law, class = void>
-struct Prepares : std::false_type {};
+struct HasPrepare : std::false_type {};
 template <class Law>
-struct Prepares<Law, std::void_t<decltype(&Law::prepare)>> : std::true_type {};
+struct HasPrepare<Law, std::void_t<decltype(&Law::prepare)>> : std::true_type {};
 
 template <class Law>
 const LawInfo& info_of(const Law& law) {
@@ -120,8 +120,9 @@ const LawInfo& info_of(const Law& law) {
 
 }  // namespace detail
 
-/// Law of that name.
-/// @throws std::invalid_argument that lists the known names, or says why a loaded one is unusable
+/// Law with that name.
+/// @throws std::invalid_argument that lists the known names, or explains why a loaded law is
+///        unusable
 inline NormalLaw normal_law(const std::string& name) {
   return detail::Catalogue<NormalLaw>::find("normal_law", name);
 }
@@ -138,21 +139,20 @@ inline TangentialVelocityLaw tangential_velocity_law(const std::string& name) {
   return detail::Catalogue<TangentialVelocityLaw>::find("tangential_velocity_law", name);
 }
 
-/// What the laws of one kind say of themselves, e.g. law_infos<NormalLaw>(); those that can be
-/// used.
+/// Descriptions of the usable laws of one kind, e.g. law_infos<NormalLaw>().
 template <class Law>
 std::vector<LawInfo> law_infos() {
   return detail::Catalogue<Law>::infos();
 }
 
-/// Names of one kind, in the order of the catalogue, e.g. law_names<FrictionLaw>(); also of loaded
-/// laws that cannot be used, for looking these up says why.
+/// Names of one kind, in the order of the catalogue, e.g. law_names<FrictionLaw>(). Unusable loaded
+/// laws are included, because their look-up explains the problem.
 template <class Law>
 std::vector<std::string> law_names() {
   return detail::Catalogue<Law>::names();
 }
 
-/// Why the loaded law of that name cannot be used; empty: it can, or there is none.
+/// Reason why the loaded law with that name is unusable; empty if it is usable or not loaded.
 template <class Law>
 std::string law_problem(const std::string& name) {
   return detail::Catalogue<Law>::problem(name);
@@ -167,9 +167,9 @@ inline constexpr bool is_variant<std::variant<Types...>> = true;
 
 }  // namespace detail
 
-/// Calls act with the law that a variant holds, or with a law of a known type itself.
+/// Calls act with the law held by a variant, or with a law of a known type directly.
 template <class Law, class Act>
-decltype(auto) with(const Law& law, Act&& act) {
+decltype(auto) visit_law(const Law& law, Act&& act) {
   if constexpr (detail::is_variant<Law>) {
     return std::visit(act, law);
   } else {
@@ -177,7 +177,7 @@ decltype(auto) with(const Law& law, Act&& act) {
   }
 }
 
-/// What a law says of itself.
+/// Description of a law.
 template <class... Types>
 const LawInfo& law_info(const std::variant<Types...>& law) {
   return std::visit([](const auto& l) -> const LawInfo& { return detail::info_of(l); }, law);
@@ -186,16 +186,16 @@ const LawInfo& law_info(const std::variant<Types...>& law) {
 /// Whether a law of any kind has a trait.
 template <class Law>
 bool has(const Law& law, Trait trait) {
-  return with(law, [&](const auto& l) { return detail::info_of(l).has(trait); });
+  return visit_law(law, [&](const auto& l) { return detail::info_of(l).has(trait); });
 }
 
-/// Names of the laws of one kind with, or without, a trait, in the order of the catalogue and ready
-/// for a sentence: "'hertz_paper' or 'hertz_internal'".
+/// Names of the laws of one kind with, or without, a trait. They are in the order of the catalogue
+/// and formatted for a sentence: "'hertz_paper' or 'hertz_internal'".
 template <class Law>
-std::string names_with(Trait trait, bool with = true) {
+std::string names_with(Trait trait, bool present = true) {
   std::vector<const char*> names;
   for (const LawInfo& info : law_infos<Law>()) {
-    if (info.has(trait) == with) names.push_back(info.name);
+    if (info.has(trait) == present) names.push_back(info.name);
   }
   std::string sentence;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -205,7 +205,7 @@ std::string names_with(Trait trait, bool with = true) {
   return sentence;
 }
 
-/// Range of e of a dissipation law: its own, of one that does not read it the usual one.
+/// Range of e of a dissipation law; the default range if the law does not read e.
 inline const LawParameter& restitution_of(const DissipationLaw& law) {
   for (const LawParameter* each : law_info(law).parameters) {
     if (each && std::string(each->name) == parameter::restitution.name) return *each;
@@ -213,15 +213,15 @@ inline const LawParameter& restitution_of(const DissipationLaw& law) {
   return parameter::restitution;
 }
 
-/// Whether two laws of a joint go together: one of a point contact needs such a normal law.
-inline bool go_together(const NormalLaw& normal, const FrictionLaw& friction) {
+/// Whether two laws of a joint are compatible: a friction law may need a point contact.
+inline bool are_compatible(const NormalLaw& normal, const FrictionLaw& friction) {
   return !has(friction, Trait::needs_point_contact) || has(normal, Trait::point_contact);
 }
 
-/// Largest slope of friction against velocity [N s/m]; see friction.hpp.
+/// Largest slope of friction over velocity [N s/m]; see friction.hpp.
 template <class Law>
 double largest_slope(const Law& law, const FrictionParameters& parameters, double normal_force) {
-  return with(law, [&](const auto& l) { return l.largest_slope(parameters, normal_force); });
+  return visit_law(law, [&](const auto& l) { return l.largest_slope(parameters, normal_force); });
 }
 
 /// Normal contact by any law. @param depth delta [m], <= 0 gives zeros
@@ -229,10 +229,10 @@ double largest_slope(const Law& law, const FrictionParameters& parameters, doubl
 template <class Law>
 NormalState evaluate(const Law& law, double depth, const NormalGeometry& geometry,
                      const NormalMaterial& material) {
-  return with(law, [&](const auto& l) { return l(depth, geometry, material); });
+  return visit_law(law, [&](const auto& l) { return l(depth, geometry, material); });
 }
 
-/// First depth [m] that a law refuses; +infinity if none.
+/// Smallest depth [m] that a law rejects; +infinity if none.
 inline double largest_depth(const NormalLaw& law, const NormalGeometry& geometry) {
   return std::visit([&](const auto& l) { return l.largest_depth(geometry); }, law);
 }
@@ -240,28 +240,28 @@ inline double largest_depth(const NormalLaw& law, const NormalGeometry& geometry
 /// chi/K [s/m] of any dissipation law, for damped_force().
 template <class Law>
 double damping_ratio(const Law& law, const ImpactParameters& impact) {
-  return with(law, [&](const auto& l) { return l(impact); });
+  return visit_law(law, [&](const auto& l) { return l(impact); });
 }
 
-/// Lets a law solve once for what depends on e alone, where its answers are asked for in every
-/// step.
+/// Computes once what depends on e alone, for laws that are evaluated in every step.
 inline void prepare(DissipationLaw& law, double restitution) {
   std::visit(
       [&](auto& l) {
-        if constexpr (detail::Prepares<std::decay_t<decltype(l)>>::value) l.prepare(restitution);
+        if constexpr (detail::HasPrepare<std::decay_t<decltype(l)>>::value) l.prepare(restitution);
       },
       law);
 }
 
-/// History of a contact that carries a load from the start: as the law itself says it, else of a
-/// spring. @param force_on_1 [N], within the limit; @param under of `under` the velocity is not
-/// read
-inline ContactHistory loaded_history(const FrictionLaw& law, const FrictionParameters& parameters,
-                                     const Vector3& force_on_1, const FrictionKinematics& under) {
+/// History of a contact that is loaded at the start: from the law if it defines one, else that of a
+/// spring. @param force_on_1 [N], within the limit; @param under the velocity is not read
+inline ContactHistory preloaded_history(const FrictionLaw& law,
+                                        const FrictionParameters& parameters,
+                                        const Vector3& force_on_1,
+                                        const FrictionKinematics& under) {
   return std::visit(
       [&](const auto& l) -> ContactHistory {
-        if constexpr (detail::SaysLoaded<std::decay_t<decltype(l)>>::value) {
-          return l.loaded(parameters, force_on_1, under);
+        if constexpr (detail::HasPreloaded<std::decay_t<decltype(l)>>::value) {
+          return l.preloaded(parameters, force_on_1, under);
         } else {
           ContactHistory history;
           history.tangential_force = force_on_1;
@@ -276,7 +276,7 @@ inline ContactHistory loaded_history(const FrictionLaw& law, const FrictionParam
 template <class Law>
 FrictionResponse evaluate(const Law& law, const FrictionParameters& parameters,
                           const FrictionKinematics& kinematics, ContactHistory& history) {
-  return with(law, [&](const auto& l) { return l(parameters, kinematics, history); });
+  return visit_law(law, [&](const auto& l) { return l(parameters, kinematics, history); });
 }
 
 }  // namespace statejump::kernel::laws

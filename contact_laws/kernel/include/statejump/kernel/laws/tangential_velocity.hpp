@@ -8,16 +8,16 @@
 
 namespace statejump::kernel::laws {
 
-/// A tangential velocity law is a pair: the relative velocity v of 1 (journal) against 2 (bearing)
-/// [m/s] that friction sees, and the forces and moments on the two centres that a contact force F
-/// causes. They are transposes of each other: for all motions
+/// A tangential velocity law is a pair. The first is the relative velocity v of 1 (journal) to 2
+/// (bearing) [m/s] that enters friction. The second are the forces and moments on the two centres
+/// caused by a contact force F. They are transposes of each other: for all motions
 ///
-///     F . v = force_1 . v_C + torque_1 . omega_1 + force_2 . v_D + torque_2 . omega_2,
+///    F . v = force_1 . v_C + torque_1 . omega_1 + force_2 . v_D + torque_2 . omega_2,
 ///
-/// so a friction force against v can only take power from the bodies. Never mix the two laws.
+/// so a friction force opposite to v can only take power from the bodies. Never mix the two laws.
 
-/// Velocity of the material at the one contact point, v_C + omega_1 x arm_1 - v_D - omega_2 x
-/// arm_2, and moments arm x F: what two rough surfaces do. See revolute_contact(),
+/// Velocity of the material at the contact point, v_C + omega_1 x arm_1 - v_D - omega_2 x arm_2,
+/// and moments arm x F. This is the behaviour of two rough surfaces. See revolute_contact(),
 /// contact_wrench(). Forces and moments balance.
 struct MaterialVelocity {
   static constexpr LawInfo info{"material",
@@ -36,19 +36,19 @@ struct MaterialVelocity {
 };
 
 /// The paper's eqs (14) to (16) as printed: time derivatives of the geometric points C1 = r_C + R1
-/// n and D1 = r_D + R2 n. With d = r_C - r_D across the bearing's axis and dn/dt = (d' - (d'.n)
-/// n)/|d| the difference is, c = R2 - R1,
+/// n and D1 = r_D + R2 n. With d = r_C - r_D perpendicular to the bearing's axis, dn/dt = (d' -
+/// (d'.n) n)/|d| and c = R2 - R1, the difference is
 ///
-///     v = d' - c dn/dt = (d'.n) n + (delta/|d|) d'_t.
+///    v = d' - c dn/dt = (d'.n) n + (delta/|d|) d'_t.
 ///
-/// The spins are absent: a journal that turns in place slides without friction; and the tangential
-/// part is smaller than that of the centres by delta/|d|, a few hundredths in a joint with play.
-/// The transpose, by virtual power: force_1 = F_n n + (delta/|d|) F_t on C, the opposite on D, and
-/// no moment on either body. (Putting F_t and R x F_t on the bodies with this velocity instead
-/// would produce power from nothing.)
-/// Limits: the two forces are |d| apart and leave a moment delta n x F_t unbalanced, the same as
-/// the two points of eq. (14), which are delta apart; v is not zero when the whole joint turns as
-/// one body. Axial motion is not seen. Concentric parts have no tangential part.
+/// The spins are absent: a journal that rotates in place slides without friction. The tangential
+/// part is that of the centres times delta/|d|, a few hundredths in a joint with play.
+/// The transpose, by virtual power, is force_1 = F_n n + (delta/|d|) F_t on C, the opposite on D,
+/// and no moment on either body. (F_t and R x F_t on the bodies, combined with this velocity, would
+/// create power.)
+/// Limits: the two forces are |d| apart and leave a moment delta n x F_t unbalanced, as do the two
+/// points of eq. (14). v is not zero when the whole joint rotates as one body. Axial motion is
+/// ignored. Concentric bodies have no tangential part.
 struct PaperVelocity {
   static constexpr LawInfo info{
       "paper",
@@ -69,10 +69,10 @@ struct PaperVelocity {
  private:
   /// n n^T + (delta/|d|) (1 - n n^T), symmetric: its own transpose.
   static Vector3 across(const JointContact& contact, const Vector3& v) {
-    const double share =
+    const double fraction =
         contact.eccentricity > 0.0 ? contact.penetration_depth / contact.eccentricity : 0.0;
     const Vector3 along = v.dot(contact.normal) * contact.normal;
-    return along + share * (v - along);
+    return along + fraction * (v - along);
   }
 };
 

@@ -16,42 +16,43 @@
 #include "statejump/kernel/laws/normal.hpp"
 #include "statejump/kernel/laws/tangential_velocity.hpp"
 
-/// Laws that are compiled apart from the project and found by name at run time.
+/// Laws that are compiled separately and found by name at run time.
 ///
-/// A law is one type, as in the catalogue: `info`, and the call operator (for a tangential velocity
-/// velocity() and wrench()) of its kind. The shared object holds a table of functions that is made
-/// from the type; the program holds values that point to such a table.
+/// A law is one type, as in the catalogue: `info`, and the call operator of its kind. A tangential
+/// velocity law has velocity() and wrench() instead. The shared object contains a table of
+/// functions made from the type; the program stores values that point to such a table.
 namespace statejump::kernel::laws {
 
 enum class LawKind : std::uint32_t { normal, dissipation, friction, tangential_velocity };
 
-/// nullptr, or what went wrong; the text lives until the next call in the same thread.
-using Complaint = const char*;
+/// nullptr or an error text, valid until the next call in the same thread.
+using ErrorText = const char*;
 
-/// What a shared object hands over. Functions of other kinds are null.
+/// Interface of a shared object. Functions of other kinds are null.
 struct UserLawTable {
-  // These four never move, so that a program can say what is wrong with an object of another time.
+  // The first four fields never move, so that a program can report what is wrong with an object of
+  // another version.
   std::uint32_t version;  ///< user_law_version of the object
   LawKind kind;
   const char* name;
-  const char* kernel;  ///< hash of the kernel headers that it was compiled against
+  const char* kernel;  ///< hash of the kernel headers used to compile it
 
-  std::uint32_t sizes;  ///< exchanged_sizes() as its compiler had them
+  std::uint32_t sizes;  ///< exchanged_sizes() of its compiler
   const LawInfo* info;
-  Complaint (*largest_depth)(const NormalGeometry&, double&);
-  Complaint (*normal)(double, const NormalGeometry&, const NormalMaterial&, NormalState&);
-  Complaint (*dissipation)(const ImpactParameters&, double&);
-  Complaint (*friction)(const FrictionParameters&, const FrictionKinematics&, ContactHistory&,
+  ErrorText (*largest_depth)(const NormalGeometry&, double&);
+  ErrorText (*normal)(double, const NormalGeometry&, const NormalMaterial&, NormalState&);
+  ErrorText (*dissipation)(const ImpactParameters&, double&);
+  ErrorText (*friction)(const FrictionParameters&, const FrictionKinematics&, ContactHistory&,
                         FrictionResponse&);
-  Complaint (*largest_slope)(const FrictionParameters&, double, double&);
-  Complaint (*velocity)(const JointContact&, const BodyMotion&, const BodyMotion&, const Vector3&,
+  ErrorText (*largest_slope)(const FrictionParameters&, double, double&);
+  ErrorText (*velocity)(const JointContact&, const BodyMotion&, const BodyMotion&, const Vector3&,
                         Vector3&);
-  Complaint (*wrench)(const JointContact&, const Vector3&, const Vector3&, Wrench&);
+  ErrorText (*wrench)(const JointContact&, const Vector3&, const Vector3&, Wrench&);
 };
 
 inline constexpr std::uint32_t user_law_version = 1;
 
-/// Sizes of what goes through the table, as one number.
+/// Sizes of the types in the table, as one number.
 constexpr std::uint32_t exchanged_sizes() {
   std::uint32_t all = 0;
   for (const std::size_t size :
@@ -92,9 +93,9 @@ constexpr LawKind kind_of() {
                        : LawKind::tangential_velocity;
 }
 
-/// Runs a function of the law; no exception leaves the object.
+/// Calls a function of the law; no exception leaves the object.
 template <class Function>
-Complaint guarded(Function&& function) {
+ErrorText guarded(Function&& function) {
   thread_local std::string text;
   try {
     function();
@@ -109,7 +110,7 @@ Complaint guarded(Function&& function) {
 
 }  // namespace detail
 
-/// The table of a law's type.
+/// The table for a law type.
 /// @param kernel hash of the kernel headers
 template <class Law>
 const UserLawTable* user_law_table(const char* kernel) {
@@ -122,33 +123,33 @@ const UserLawTable* user_law_table(const char* kernel) {
   table.sizes = exchanged_sizes();
   table.info = &Law::info;
   if constexpr (kind == LawKind::normal) {
-    table.largest_depth = [](const NormalGeometry& geometry, double& answer) {
-      return detail::guarded([&] { answer = Law::largest_depth(geometry); });
+    table.largest_depth = [](const NormalGeometry& geometry, double& result) {
+      return detail::guarded([&] { result = Law::largest_depth(geometry); });
     };
     table.normal = [](double depth, const NormalGeometry& geometry, const NormalMaterial& material,
-                      NormalState& answer) {
-      return detail::guarded([&] { answer = Law{}(depth, geometry, material); });
+                      NormalState& result) {
+      return detail::guarded([&] { result = Law{}(depth, geometry, material); });
     };
   } else if constexpr (kind == LawKind::dissipation) {
-    table.dissipation = [](const ImpactParameters& impact, double& answer) {
-      return detail::guarded([&] { answer = Law{}(impact); });
+    table.dissipation = [](const ImpactParameters& impact, double& result) {
+      return detail::guarded([&] { result = Law{}(impact); });
     };
   } else if constexpr (kind == LawKind::friction) {
     table.friction = [](const FrictionParameters& parameters, const FrictionKinematics& kinematics,
-                        ContactHistory& history, FrictionResponse& answer) {
-      return detail::guarded([&] { answer = Law{}(parameters, kinematics, history); });
+                        ContactHistory& history, FrictionResponse& result) {
+      return detail::guarded([&] { result = Law{}(parameters, kinematics, history); });
     };
-    table.largest_slope = [](const FrictionParameters& parameters, double force, double& answer) {
-      return detail::guarded([&] { answer = Law::largest_slope(parameters, force); });
+    table.largest_slope = [](const FrictionParameters& parameters, double force, double& result) {
+      return detail::guarded([&] { result = Law::largest_slope(parameters, force); });
     };
   } else {
     table.velocity = [](const JointContact& contact, const BodyMotion& journal,
-                        const BodyMotion& bearing, const Vector3& axis, Vector3& answer) {
-      return detail::guarded([&] { answer = Law{}.velocity(contact, journal, bearing, axis); });
+                        const BodyMotion& bearing, const Vector3& axis, Vector3& result) {
+      return detail::guarded([&] { result = Law{}.velocity(contact, journal, bearing, axis); });
     };
     table.wrench = [](const JointContact& contact, const Vector3& force, const Vector3& axis,
-                      Wrench& answer) {
-      return detail::guarded([&] { answer = Law{}.wrench(contact, force, axis); });
+                      Wrench& result) {
+      return detail::guarded([&] { result = Law{}.wrench(contact, force, axis); });
     };
   }
   return &table;
@@ -156,23 +157,23 @@ const UserLawTable* user_law_table(const char* kernel) {
 
 // ---- in the program
 
-/// A law that was loaded, or that could not be but is known by name.
+/// A loaded law, or a law that could not be loaded but is known by name.
 struct LoadedLaw {
   LawKind kind{};
   std::string name;
-  std::string origin;                   ///< where it came from, for messages
-  std::string problem;                  ///< why it cannot be used; empty: it can
-  LawInfo info{};                       ///< its parameters are those of the program
-  const UserLawTable* table = nullptr;  ///< null with a problem
+  std::string origin;                   ///< where it was found, for messages
+  std::string problem;                  ///< why it is unusable; empty if usable
+  LawInfo info{};                       ///< its parameters are copies of the program
+  const UserLawTable* table = nullptr;  ///< null if it has a problem
 };
 
-/// All of them; filled by the loader before laws are looked up, entries stay where they are.
+/// All loaded laws. The loader fills them before laws are looked up; entries keep their address.
 inline std::deque<LoadedLaw>& loaded_laws() {
   static std::deque<LoadedLaw> laws;
   return laws;
 }
 
-/// What the values below have in common.
+/// Common part of the user law values.
 class UserLawValue {
  public:
   UserLawValue() = default;
@@ -182,24 +183,24 @@ class UserLawValue {
  protected:
   const UserLawTable& table() const { return *law_->table; }
   /// @throws std::domain_error that names the law
-  void require_no(Complaint complaint) const {
-    if (complaint) fail(complaint);
+  void throw_if(ErrorText error) const {
+    if (error) fail(error);
   }
-  /// Refuses an answer that is no number, or negative where that has no meaning.
-  void require_answer(bool good, const char* what, double value) const {
+  /// Rejects a result that is not finite, or negative where that has no meaning.
+  void require_result(bool good, const char* what, double value) const {
     if (good && std::isfinite(value)) return;
     char text[96];
-    std::snprintf(text, sizeof text, "answered %s = %.9g", what, value);
+    std::snprintf(text, sizeof text, "returned %s = %.9g", what, value);
     fail(text);
   }
   void require_finite(const Vector3& vector, const char* what) const {
-    for (int i = 0; i < 3; ++i) require_answer(true, what, vector[i]);
+    for (int i = 0; i < 3; ++i) require_result(true, what, vector[i]);
   }
 
  private:
-  [[noreturn, gnu::cold, gnu::noinline]] void fail(const char* complaint) const {
+  [[noreturn, gnu::cold, gnu::noinline]] void fail(const char* error) const {
     std::string text = law_->name;
-    throw std::domain_error(text.append(" (").append(law_->origin).append("): ").append(complaint));
+    throw std::domain_error(text.append(" (").append(law_->origin).append("): ").append(error));
   }
   const LoadedLaw* law_ = nullptr;
 };
@@ -210,20 +211,20 @@ class UserNormalLaw : public UserLawValue {
   static constexpr LawKind kind = LawKind::normal;
   using UserLawValue::UserLawValue;
   double largest_depth(const NormalGeometry& geometry) const {
-    double answer = 0.0;
-    require_no(table().largest_depth(geometry, answer));
-    return answer;
+    double result = 0.0;
+    throw_if(table().largest_depth(geometry, result));
+    return result;
   }
   NormalState operator()(double depth, const NormalGeometry& geometry,
                          const NormalMaterial& material) const {
     detail::require_depth(depth, largest_depth(geometry), info().name);
-    NormalState answer{};
-    require_no(table().normal(depth, geometry, material, answer));
-    require_answer(answer.force >= 0.0, "force", answer.force);
-    require_answer(answer.stiffness >= 0.0, "stiffness", answer.stiffness);
-    require_answer(answer.contact_width >= 0.0, "contact_width", answer.contact_width);
-    require_answer(answer.elastic_energy >= 0.0, "elastic_energy", answer.elastic_energy);
-    return answer;
+    NormalState result{};
+    throw_if(table().normal(depth, geometry, material, result));
+    require_result(result.force >= 0.0, "force", result.force);
+    require_result(result.stiffness >= 0.0, "stiffness", result.stiffness);
+    require_result(result.contact_width >= 0.0, "contact_width", result.contact_width);
+    require_result(result.elastic_energy >= 0.0, "elastic_energy", result.elastic_energy);
+    return result;
   }
 };
 
@@ -233,10 +234,10 @@ class UserDissipationLaw : public UserLawValue {
   static constexpr LawKind kind = LawKind::dissipation;
   using UserLawValue::UserLawValue;
   double operator()(const ImpactParameters& impact) const {
-    double answer = 0.0;
-    require_no(table().dissipation(impact, answer));
-    require_answer(answer >= 0.0, "chi/K", answer);
-    return answer;
+    double result = 0.0;
+    throw_if(table().dissipation(impact, result));
+    require_result(result >= 0.0, "chi/K", result);
+    return result;
   }
 };
 
@@ -246,22 +247,22 @@ class UserFrictionLaw : public UserLawValue {
   static constexpr LawKind kind = LawKind::friction;
   using UserLawValue::UserLawValue;
   double largest_slope(const FrictionParameters& parameters, double normal_force) const {
-    double answer = 0.0;
-    require_no(table().largest_slope(parameters, normal_force, answer));
-    require_answer(answer >= 0.0, "largest_slope", answer);
-    return answer;
+    double result = 0.0;
+    throw_if(table().largest_slope(parameters, normal_force, result));
+    require_result(result >= 0.0, "largest_slope", result);
+    return result;
   }
   FrictionResponse operator()(const FrictionParameters& parameters,
                               const FrictionKinematics& kinematics, ContactHistory& history) const {
-    FrictionResponse answer{Vector3::Zero(), 0.0, 0.0};
-    require_no(table().friction(parameters, kinematics, history, answer));
-    require_finite(answer.force_on_1, "force_on_1");
-    require_answer(true, "elastic_energy", answer.elastic_energy);
-    require_answer(true, "dissipation", answer.dissipation);
+    FrictionResponse result{Vector3::Zero(), 0.0, 0.0};
+    throw_if(table().friction(parameters, kinematics, history, result));
+    require_finite(result.force_on_1, "force_on_1");
+    require_result(true, "elastic_energy", result.elastic_energy);
+    require_result(true, "dissipation", result.dissipation);
     require_finite(history.tangential_force, "history.tangential_force");
-    require_answer(history.tangential_stiffness >= 0.0, "history.tangential_stiffness",
+    require_result(history.tangential_stiffness >= 0.0, "history.tangential_stiffness",
                    history.tangential_stiffness);
-    return answer;
+    return result;
   }
 };
 
@@ -272,19 +273,19 @@ class UserVelocityLaw : public UserLawValue {
   using UserLawValue::UserLawValue;
   Vector3 velocity(const JointContact& contact, const BodyMotion& journal,
                    const BodyMotion& bearing, const Vector3& axis) const {
-    Vector3 answer = Vector3::Zero();
-    require_no(table().velocity(contact, journal, bearing, axis, answer));
-    require_finite(answer, "velocity");
-    return answer;
+    Vector3 result = Vector3::Zero();
+    throw_if(table().velocity(contact, journal, bearing, axis, result));
+    require_finite(result, "velocity");
+    return result;
   }
   Wrench wrench(const JointContact& contact, const Vector3& force_on_1, const Vector3& axis) const {
-    Wrench answer{Vector3::Zero(), Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
-    require_no(table().wrench(contact, force_on_1, axis, answer));
-    require_finite(answer.force_1, "wrench.force_1");
-    require_finite(answer.torque_1, "wrench.torque_1");
-    require_finite(answer.force_2, "wrench.force_2");
-    require_finite(answer.torque_2, "wrench.torque_2");
-    return answer;
+    Wrench result{Vector3::Zero(), Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
+    throw_if(table().wrench(contact, force_on_1, axis, result));
+    require_finite(result.force_1, "wrench.force_1");
+    require_finite(result.torque_1, "wrench.torque_1");
+    require_finite(result.force_2, "wrench.force_2");
+    require_finite(result.torque_2, "wrench.torque_2");
+    return result;
   }
 };
 

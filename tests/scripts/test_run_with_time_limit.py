@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/within_budget.sh: when a check runs, when it is skipped and what is said then, when it fails."""
+"""scripts/run_with_time_limit.sh: when a check runs, when it is skipped and what is said then, when it fails."""
 from __future__ import annotations
 
 import os
@@ -14,7 +14,7 @@ FORTY_MINUTES, QUARTER = 2400, 900
 
 def run(*arguments: object, **named: str) -> subprocess.CompletedProcess[str]:
     """Run the script with the name of a check in front."""
-    return subprocess.run([SCRIPTS / "within_budget.sh", "the check", *map(str, arguments)], capture_output=True,
+    return subprocess.run([SCRIPTS / "run_with_time_limit.sh", "the check", *map(str, arguments)], capture_output=True,
                           text=True, check=False, env={**os.environ, **named})
 
 

@@ -16,14 +16,14 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// Steps that can be made one by one, which no batch takes part in, and after which all is a
 /// number.
-long steps_alone(Scene scene, const Scene::Make& make, long most) {
+long steps_alone(Scene scene, const Scene::CreatePhysics& make, long most) {
   long made = 0;
-  while (made < most && scene.run(1, make) == 1 && scene.is_sound()) ++made;
+  while (made < most && scene.run(1, make) == 1 && scene.has_finite_state()) ++made;
   return made;
 }
 
 /// @return steps that a run makes in one go, with the instructions of either sort of processors
-long steps_of_a_run(const Scene& scene, const Scene::Make& make, long most) {
+long steps_of_a_run(const Scene& scene, const Scene::CreatePhysics& make, long most) {
   Scene narrow = scene, wide = scene;
   narrow.uses_avx2 = false;
   const long made = narrow.run(most, make);
@@ -38,13 +38,13 @@ TEST(Questions, BatchesAreNeverMoreLenientThanOneByOne) {
   for (int i = 0; i < 100'000; ++i) {
     const ContactPhysics physics = scenes::physics(std::pow(10, exponent(random)));
     const double step = std::pow(10, 0.5 * exponent(random));
-    const double largest = plain_stiffness(physics, step);
+    const double largest = stable_stiffness(physics, step);
     // Next to the limit, where rounding decides.
     const double limit = 4 * physics.effectiveMass / (step * step);
     const double stiffness = limit * (1 + off(random) * std::numeric_limits<double>::epsilon());
     if (stiffness < largest) {
       ++plain;
-      EXPECT_TRUE(is_plain_stiffness(stiffness, physics, step));
+      EXPECT_TRUE(is_stable_stiffness(stiffness, physics, step));
     }
     EXPECT_LT(0.999 * limit, largest);
     EXPECT_GT(1.001 * limit, largest);
@@ -60,7 +60,7 @@ TEST(Questions, ChangesBelowTheBoundOfARunLeaveEveryLength) {
   link.stressFreeLength = 0.5;
   for (int i = 0; i < 100'000; ++i) {
     const double expansion = std::pow(10, exponent(random));
-    const double bound = plain_change(expansion);
+    const double bound = safe_temperature_change(expansion);
     const double change = (1 + off(random) * std::numeric_limits<double>::epsilon()) / expansion;
     if (change < bound) {
       ++plain;
@@ -70,10 +70,11 @@ TEST(Questions, ChangesBelowTheBoundOfARunLeaveEveryLength) {
     }
     EXPECT_LT(0.999 / expansion, bound);
     EXPECT_GT(1.001 / expansion, bound);
-    EXPECT_EQ(plain_change(-expansion), bound);
+    EXPECT_EQ(safe_temperature_change(-expansion), bound);
   }
   EXPECT_GT(plain, 10'000);
-  for (const double wrong : {none, HUGE_VAL, -HUGE_VAL}) EXPECT_EQ(plain_change(wrong), 0);
+  for (const double wrong : {none, HUGE_VAL, -HUGE_VAL})
+    EXPECT_EQ(safe_temperature_change(wrong), 0);
 }
 
 TEST(Questions, NoStiffnessIsPlainForNumbersThatAreNone) {
@@ -81,11 +82,11 @@ TEST(Questions, NoStiffnessIsPlainForNumbersThatAreNone) {
     for (const double wrong : {none, -1.0, HUGE_VAL}) {
       ContactPhysics physics = scenes::physics(scenes::mass);
       physics.*quantity.value = wrong;
-      EXPECT_TRUE(std::isnan(plain_stiffness(physics, 1e-6))) << quantity.name;
+      EXPECT_TRUE(std::isnan(stable_stiffness(physics, 1e-6))) << quantity.name;
     }
   }
   for (const double step : {0.0, -1e-6, none}) {
-    EXPECT_TRUE(std::isnan(plain_stiffness(scenes::physics(scenes::mass), step))) << step;
+    EXPECT_TRUE(std::isnan(stable_stiffness(scenes::physics(scenes::mass), step))) << step;
   }
 }
 
@@ -94,7 +95,7 @@ TEST(Questions, BatchesEndBeforeTheStepThatIsTooLongForAContact) {
   Scene scene = scenes::crowd(6, 0.4, scenes::pressed() - 2e-7);
   scene.newton.damping = 0;
   scene.prepare();
-  const Scene::Make make = scenes::maker(7.2e-6);
+  const Scene::CreatePhysics make = scenes::maker(7.2e-6);
   const long alone = steps_alone(scene, make, 1000);
   EXPECT_GT(alone, 3);
   EXPECT_LT(alone, 1000);
@@ -110,7 +111,7 @@ TEST(Questions, NoStepIsMadeWithAYoungModulusThatIsNone) {
     scene.prepare();
     Scene batched = scene;
     const long made = batched.run(10, scenes::maker());
-    EXPECT_TRUE(made == 0 || !batched.is_sound());
+    EXPECT_TRUE(made == 0 || !batched.has_finite_state());
     EXPECT_EQ(steps_alone(scene, scenes::maker(), 10), 0);
   }
 }
@@ -128,9 +129,9 @@ Scene shrinking(bool moves) {
   Scene scene = scenes::held_crowd(5);
   scene.programs.front().temperature_change_max = 1e6;
   for (Heater::Target& target : scene.heaters.front().targets) target.expansion = 0;
-  auto& places = std::get<Links>(scene.stages.front()).places;
-  for (LinkPlace& each : places) each.link.thermalExpansion = 0;
-  LinkPlace more = places[2];
+  auto& places = std::get<Links>(scene.stages.front()).links;
+  for (LinkEntry& each : places) each.link.thermalExpansion = 0;
+  LinkEntry more = places[2];
   more.link.thermalExpansion = -shrinks;
   more.link.youngModulus = 1e3;
   more.link.dampingRatio = 0.9;
@@ -160,12 +161,12 @@ TEST(Questions, AForceOfALinkThatIsNoneIsSeenWhereverItActs) {
   for (const bool moves : {true, false}) {
     SCOPED_TRACE(moves ? "its tip moves" : "both ends rest");
     Scene scene = shrinking(moves);
-    std::get<Links>(scene.stages.front()).places.back().link.dampingRatio = 0;
-    std::get<Links>(scene.stages.front()).places.back().link.crossSectionArea = none;
+    std::get<Links>(scene.stages.front()).links.back().link.dampingRatio = 0;
+    std::get<Links>(scene.stages.front()).links.back().link.crossSectionArea = none;
     scene.prepare();
     EXPECT_EQ(steps_alone(scene, scenes::maker(), 100), 0);
     const long made = scene.run(100, scenes::maker());
-    EXPECT_TRUE(made == 0 || !scene.is_sound());
+    EXPECT_TRUE(made == 0 || !scene.has_finite_state());
   }
 }
 

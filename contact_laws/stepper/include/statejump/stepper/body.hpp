@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Motion of one body in one step: the arithmetic of YADE's NewtonIntegrator and of its container of
-// forces, operation by operation, so that both give the same bits.
+// Motion of one body in one step: the arithmetic of YADE's NewtonIntegrator and ForceContainer,
+// operation by operation, so that both give the same bits.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -18,9 +18,9 @@ using Quaternion = Eigen::Quaterniond;
 /// Bits of Body::blocked: three translations, then three rotations.
 constexpr unsigned all_translations = 7;
 constexpr unsigned all_rotations = 56;
-constexpr unsigned everything = all_translations | all_rotations;
+constexpr unsigned all_dofs = all_translations | all_rotations;
 
-/// What the integrator is told; the attributes of NewtonIntegrator.
+/// Parameters of the integrator; the attributes of NewtonIntegrator.
 struct Newton {
   double damping = 0;                 ///< [-]
   Vector3 gravity = Vector3::Zero();  ///< [m/s2]
@@ -33,25 +33,25 @@ struct Body {
   Vector3 inertia = Vector3::Zero();  ///< [kg m2]
   double mass = 0;                    ///< [kg]
   double inverse_mass = 0;            ///< [1/kg], 0 for a body that cannot move
-  unsigned blocked = everything;
+  unsigned blocked = all_dofs;
   bool damped = true;
-  // Added up since the last sum, as YADE's threads do, and the sums.
+  // Forces added since the last sum, as by YADE's threads, and the sums.
   Vector3 added_force = Vector3::Zero(), added_torque = Vector3::Zero();
   Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
   Vector3 permanent_force = Vector3::Zero(), permanent_torque = Vector3::Zero();
-  // The collider looks again when the body has come so far from there [m].
+  // The collider runs again when the body has moved this far from here [m].
   Vector3 bound_position = Vector3::Zero();
   double bound_reach = 0;
   bool bounded = false;
-  bool turns = false;  ///< its orientation changes, or may
-  bool moves = false;  ///< anything of it changes, or may
-  // A link that turns its tip in the plane asks for no more of how the tip lay than on which half
-  // of all quaternions: what the integrator would turn before is left out.
-  bool turn_may_wait = false;  ///< nothing but such a link and round joints asks how it lies
-  bool turn_waits = false;     ///< of the last step
+  bool rotates = false;  ///< its orientation changes, or may
+  bool moves = false;    ///< any of its state changes, or may
+  // A link that rotates its tip in the plane needs only the half space of the tip's old quaternion.
+  // So the integrator may skip the rotation before it.
+  bool rotation_deferrable = false;  ///< only such a link and round joints read the orientation
+  bool rotation_deferred = false;    ///< of the last step
 };
 
-/// Sums up what was added. @param first whether it is the first sum of the step
+/// Sums the added forces. @param first whether it is the first sum of the step
 inline void sum_forces(Body& body, bool first) {
   if (first) {
     body.force = body.added_force + body.permanent_force;
@@ -77,7 +77,7 @@ inline void damp(double damping, double time_step, const Vector3& velocity, Vect
   }
 }
 
-/// Whether turning without spin, which normalizes, leaves the orientation as it is.
+/// Whether a rotation without spin, which normalizes, leaves the orientation unchanged.
 inline bool is_normalized(const Quaternion& orientation) {
   Quaternion normalized = orientation;
   normalized.normalize();
@@ -86,19 +86,19 @@ inline bool is_normalized(const Quaternion& orientation) {
 
 }  // namespace detail
 
-/// Whether nothing of a body changes as long as nothing else turns it.
-inline bool rests(const Body& body) {
-  return body.blocked == everything && body.motion.velocity.isZero(0) &&
+/// Whether the body does not change unless another object rotates it.
+inline bool is_at_rest(const Body& body) {
+  return body.blocked == all_dofs && body.motion.velocity.isZero(0) &&
          body.motion.angular_velocity.isZero(0) && detail::is_normalized(body.orientation);
 }
 
-inline bool can_turn(const Body& body) {
+inline bool can_rotate(const Body& body) {
   return (body.blocked & all_rotations) != all_rotations ||
          !body.motion.angular_velocity.isZero(0) || !detail::is_normalized(body.orientation);
 }
 
-/// Whether the collider would look again at a body that is where it is.
-inline bool left_its_bound(const Body& body) {
+/// Whether the collider would run again for a body at its current position.
+inline bool left_bound(const Body& body) {
   if (!body.bounded) return false;
   const Vector3 moved = body.motion.position - body.bound_position;
   const double most =
@@ -106,8 +106,8 @@ inline bool left_its_bound(const Body& body) {
   return most != 0 && !(most < body.bound_reach);
 }
 
-/// Turns a body by its spin, as the last part of a step. Not a part of who calls it, where its
-/// loads would be made before it is known whether the turn can wait. @param time_step [s]
+/// Rotates a body by its spin, as the last part of a step. Not inlined, because the caller would
+/// load its data before it knows whether the rotation can be deferred. @param time_step [s]
 [[gnu::noinline]] inline void turn(Body& body, double time_step) {
   const Vector3& spin = body.motion.angular_velocity;
   const double speed_squared = spin.squaredNorm();
@@ -119,20 +119,20 @@ inline bool left_its_bound(const Body& body) {
   body.orientation.normalize();
 }
 
-/// Whether the turn of this step can wait for a link that may make it needless: it is about z, as
-/// all turns of the body were, so that its axis stays where it is; and short, so that it stays on
-/// its half of all quaternions.
-inline bool can_wait(const Body& body, double time_step) {
+/// Whether a link may replace the rotation of this step. The rotation must be about z, like all
+/// earlier ones, so that the axis stays fixed. It must be short, so that its quaternion stays in
+/// its half space.
+inline bool can_defer_rotation(const Body& body, double time_step) {
   const Quaternion& lies = body.orientation;
   const Vector3& spin = body.motion.angular_velocity;
-  return body.turn_may_wait && lies.x() == 0 && lies.y() == 0 && spin.x() == 0 && spin.y() == 0 &&
-         std::abs(spin.z()) * time_step < 0.1;
+  return body.rotation_deferrable && lies.x() == 0 && lies.y() == 0 && spin.x() == 0 &&
+         spin.y() == 0 && std::abs(spin.z()) * time_step < 0.1;
 }
 
-/// One leapfrog step with the forces as they are summed up. @param time_step [s]
-/// @param last whether somebody may look at the body before its next step
+/// One leapfrog step with the current force sums. @param time_step [s]
+/// @param last whether other code may read the body before its next step
 inline void move(Body& body, const Newton& newton, double time_step, bool last = true) {
-  if (body.blocked != everything) {
+  if (body.blocked != all_dofs) {
     Vector3 acceleration = Vector3::Zero();
     if (body.blocked == 0) {
       acceleration = body.force / body.mass;
@@ -152,7 +152,7 @@ inline void move(Body& body, const Newton& newton, double time_step, bool last =
       }
     }
     body.motion.velocity += time_step * acceleration;
-    if (body.turns) {
+    if (body.rotates) {
       Vector3 turning = Vector3::Zero();
       if (body.blocked == 0) {
         turning = body.torque.cwiseQuotient(body.inertia);
@@ -166,9 +166,9 @@ inline void move(Body& body, const Newton& newton, double time_step, bool last =
     }
   }
   body.motion.position += body.motion.velocity * time_step;
-  if (!body.turns) return;
-  body.turn_waits = !last && can_wait(body, time_step);
-  if (!body.turn_waits) turn(body, time_step);
+  if (!body.rotates) return;
+  body.rotation_deferred = !last && can_defer_rotation(body, time_step);
+  if (!body.rotation_deferred) turn(body, time_step);
 }
 
 }  // namespace statejump::stepper

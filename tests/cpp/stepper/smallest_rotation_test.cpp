@@ -20,14 +20,14 @@ TEST(Link, TheSmallestTurnTakesOneDirectionToTheOther) {
     const double small = std::pow(10.0, random.uniform(-12, 0));
     const double angle = i % 2 == 0 ? small : pi - small;
     const Vector3 to = std::cos(angle) * from + std::sin(angle) * across;
-    const Quaternion turn = smallest_turn(from, to).normalized();
+    const Quaternion turn = smallest_rotation(from, to).normalized();
     // Next to half a turn 1 + cos keeps 1e-16 of sin = pi - angle.
     EXPECT_LE((turn * from - to).norm(), 1e-15 * (4 + 1 / std::sin(angle)) + 1e-14) << angle;
     EXPECT_NEAR(turn.vec().dot(from), 0.0, 1e-15 * (4 + 1 / std::sin(angle))) << angle;
   }
   const Vector3 x = Vector3::UnitX();
-  EXPECT_LE((smallest_turn(x, -x).normalized() * x + x).norm(), 1e-15);
-  EXPECT_EQ(smallest_turn(x, x).normalized().coeffs(), Quaternion::Identity().coeffs());
+  EXPECT_LE((smallest_rotation(x, -x).normalized() * x + x).norm(), 1e-15);
+  EXPECT_EQ(smallest_rotation(x, x).normalized().coeffs(), Quaternion::Identity().coeffs());
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "statejump/kernel/laws/known_law.hpp"
+#include "statejump/kernel/laws/static_law.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace statejump::kernel::laws {
 namespace {
 
 bool is_known(const JointLaw& law) {
-  return with_usual_types(
+  return with_precompiled_law(
       law, [](const auto& one) { return !std::is_same_v<std::decay_t<decltype(one)>, JointLaw>; });
 }
 
@@ -37,7 +37,7 @@ TEST(KnownLaw, HasTheParametersOfTheLaw) {
   law.restitution = 0.4;
   law.smallest_impact_speed = 0.5;
   law.contact_length = 0.6;
-  with_usual_types(law, [&](const auto& one) {
+  with_precompiled_law(law, [&](const auto& one) {
     EXPECT_TRUE(same_bits(one.friction_parameters, law.friction_parameters));
     EXPECT_EQ(one.restitution, 0.4);
     EXPECT_EQ(one.smallest_impact_speed, 0.5);
@@ -77,7 +77,7 @@ TEST(KnownLaw, AnswersWithTheBitsOfTheLaw) {
     history.tangential_stiffness = uniform(1e6, 1e8);
     ContactHistory known_history = history;
     const JointResponse expected = joint_response(law, parameters, at, history);
-    with_usual_types(law, [&](const auto& known) {
+    with_precompiled_law(law, [&](const auto& known) {
       EXPECT_TRUE(same_bits(joint_response(known, parameters, at, known_history), expected));
     });
     EXPECT_TRUE(same_bits(known_history.tangential_force, history.tangential_force));

@@ -35,7 +35,7 @@ TEST(Link, TheTurnInThePlaneIsThatOfTheAngle) {
     const Vector3 from(std::cos(start), std::sin(start), 0);
     const Vector3 to(std::cos(start + angle), std::sin(start + angle), 0);
     const Quaternion near = about_z(angle + random.uniform(-1, 1));
-    const Quaternion turn = turn_in_plane(from, to, near);
+    const Quaternion turn = rotation_in_plane(from, to, near);
     EXPECT_NEAR(turn.norm(), 1, rounding);
     EXPECT_EQ(turn.x(), 0);
     EXPECT_EQ(turn.y(), 0);
@@ -52,7 +52,7 @@ void expect_same_bits(const std::function<void(Scene&)>& change, bool may_wait) 
   Scene single = whole;
   const auto make = scenes::maker(1 / (3 / 0.5 + 3 / 1.0));
   int waiting = 0;
-  for (const Body& body : whole.bodies) waiting += body.turn_may_wait;
+  for (const Body& body : whole.bodies) waiting += body.rotation_deferrable;
   EXPECT_EQ(waiting, may_wait ? 2 : 0);
   for (const long steps : {2L, 3L, 60L}) {
     ASSERT_EQ(whole.run(steps, make), steps);
@@ -62,7 +62,7 @@ void expect_same_bits(const std::function<void(Scene&)>& change, bool may_wait) 
 }
 
 Body& tip(Scene& scene, std::size_t place) {
-  const Link& link = std::get<Links>(scene.stages.front()).places[place].link;
+  const Link& link = std::get<Links>(scene.stages.front()).links[place].link;
   return scene.bodies[static_cast<std::size_t>(link.id2)];
 }
 
@@ -84,12 +84,12 @@ TEST(Link, ATurnThatWaitedIsMadeUpForWhereItsLinkLeavesThePlane) {
 TEST(Link, ATurnThatIsTooLongDoesNotWait) {
   expect_same_bits([](Scene& scene) { scene.time_step = 1e-5; }, true);
   Body body;
-  body.turn_may_wait = true;
+  body.rotation_deferrable = true;
   body.motion.angular_velocity = Vector3(0, 0, 99);
-  EXPECT_TRUE(can_wait(body, 1e-3));
-  EXPECT_FALSE(can_wait(body, 2e-3));
+  EXPECT_TRUE(can_defer_rotation(body, 1e-3));
+  EXPECT_FALSE(can_defer_rotation(body, 2e-3));
   body.motion.angular_velocity[0] = 1e-9;
-  EXPECT_FALSE(can_wait(body, 1e-3));
+  EXPECT_FALSE(can_defer_rotation(body, 1e-3));
 }
 
 TEST(Link, ATurnDoesNotWaitWhereAFaceTurnsWithTheTip) {

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Runs a check where it fits into the time that is left, and says so where it does not run:
 #
-#     scripts/within_budget.sh NAME LIMIT USED NEEDED COMMAND ...
+#     scripts/run_with_time_limit.sh NAME LIMIT USED NEEDED COMMAND ...
 #
 # In seconds: what everything together may take, what it has taken so far, what the command is known to take. The
 # command is skipped if it would not end in time or cannot run here, which it says with exit status 75 and a last

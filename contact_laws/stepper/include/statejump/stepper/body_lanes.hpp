@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Motion of four bodies at once that move without turning: sum_forces() and move() in their order.
+// Motion of four non-rotating bodies at once: sum_forces() and move() in their order.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <vector>
 
-#include "statejump/stepper/motion.hpp"
+#include "statejump/stepper/body.hpp"
 #include "statejump/stepper/pack.hpp"
 
 namespace statejump::stepper {
 
-/// Up to four bodies. Lanes that are not used repeat the first.
+/// Up to four bodies. Unused lanes repeat the first.
 struct BodyLanes {
   std::array<std::size_t, lanes> body;
   std::size_t count;
   Pack3 position, velocity, permanent_force, bound_position;
   Pack mass, damping, bound_reach;
   Mask moves_x, moves_y, moves_z, free, held;  // along an axis, along all, along none
-  Mask bounded;                                // the collider looks again where it leaves its bound
+  Mask bounded;                                // the collider runs again if it leaves its bound
 
-  void load(std::size_t lane, std::size_t place, const Body& from, const Newton& newton) {
-    body[lane] = place;
+  void load(std::size_t lane, std::size_t index, const Body& from, const Newton& newton) {
+    body[lane] = index;
     put(position, lane, from.motion.position);
     put(velocity, lane, from.motion.velocity);
     put(permanent_force, lane, from.permanent_force);
@@ -33,7 +33,7 @@ struct BodyLanes {
     moves_y[lane] = from.blocked & 2U ? 0 : -1;
     moves_z[lane] = from.blocked & 4U ? 0 : -1;
     free[lane] = from.blocked == 0 ? -1 : 0;
-    held[lane] = from.blocked == everything ? -1 : 0;
+    held[lane] = from.blocked == all_dofs ? -1 : 0;
     bounded[lane] = from.bounded ? -1 : 0;
   }
 };
@@ -57,7 +57,8 @@ namespace detail {
 
 }  // namespace detail
 
-/// One step. @param added forces since the last [N]; @return where a body has left its bound
+/// One step. @param added forces since the last step [N]; @return lanes whose body has left its
+/// bound
 [[gnu::always_inline]] inline Mask move_lanes(BodyLanes& at, const Pack3& added,
                                               const Newton& newton, double time_step) {
   const Pack3 force = added + at.permanent_force;

@@ -9,11 +9,10 @@
 
 namespace statejump::kernel::laws {
 
-/// A JointLaw whose four laws are known when it is compiled. A step of its contact is one piece of
-/// code, in which nothing is asked for its type or handed on in memory; the numbers are those of
-/// the JointLaw, bit for bit.
+/// A JointLaw whose four laws are known at compile time. A contact step is one inlined function
+/// without type dispatch. Its results are those of the JointLaw, bit for bit.
 template <class Normal, class Dissipation, class Friction, class TangentialVelocity>
-struct KnownJointLaw {
+struct StaticJointLaw {
   Normal normal;
   Dissipation dissipation;
   Friction friction;
@@ -30,8 +29,8 @@ struct KnownJointLaw {
            std::holds_alternative<Friction>(law.friction) &&
            std::holds_alternative<TangentialVelocity>(law.tangential_velocity);
   }
-  /// @param law that it covers()
-  explicit KnownJointLaw(const JointLaw& law)
+  /// @param law a law for which covers() holds
+  explicit StaticJointLaw(const JointLaw& law)
       : normal(std::get<Normal>(law.normal)),
         dissipation(std::get<Dissipation>(law.dissipation)),
         friction(std::get<Friction>(law.friction)),
@@ -42,29 +41,30 @@ struct KnownJointLaw {
         contact_length(law.contact_length) {}
 };
 
-/// Laws that are compiled in one piece: those that cases are computed with unless they name others.
-/// One more costs as much code as a step has.
-using UsualJointLaws =
-    std::tuple<KnownJointLaw<HertzInternal, NoDissipation, MindlinFriction, MaterialVelocity>>;
+/// Precompiled combinations: the default laws of the cases. Each entry adds the code size of one
+/// step.
+using PrecompiledJointLaws =
+    std::tuple<StaticJointLaw<HertzInternal, NoDissipation, MindlinFriction, MaterialVelocity>>;
 
 namespace detail {
 
 template <std::size_t place, class Act>
-decltype(auto) with_usual_types(const JointLaw& law, Act&& act) {
-  if constexpr (place == std::tuple_size_v<UsualJointLaws>) {
+decltype(auto) with_precompiled_law(const JointLaw& law, Act&& act) {
+  if constexpr (place == std::tuple_size_v<PrecompiledJointLaws>) {
     return act(law);
   } else {
-    using Known = std::tuple_element_t<place, UsualJointLaws>;
-    return Known::covers(law) ? act(Known(law)) : with_usual_types<place + 1>(law, act);
+    using Precompiled = std::tuple_element_t<place, PrecompiledJointLaws>;
+    return Precompiled::covers(law) ? act(Precompiled(law))
+                                    : with_precompiled_law<place + 1>(law, act);
   }
 }
 
 }  // namespace detail
 
-/// Calls act with a law as one of UsualJointLaws, where it is one, else as it is.
+/// Calls act with the law as one of PrecompiledJointLaws if it is one, else with the law itself.
 template <class Act>
-decltype(auto) with_usual_types(const JointLaw& law, Act&& act) {
-  return detail::with_usual_types<0>(law, act);
+decltype(auto) with_precompiled_law(const JointLaw& law, Act&& act) {
+  return detail::with_precompiled_law<0>(law, act);
 }
 
 }  // namespace statejump::kernel::laws

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parts of a scene in several threads: the same bits as the whole in one.
+// Subscenes in several threads: the same bits as the whole in one.
 //
 // The thread sanitizer says nothing of a race whose first access it no longer remembers. A test for
-// it makes few steps, and two races have to be noticed (docs/validation/reliability_methods.md has the trials).
-#include "statejump/stepper/parts.hpp"
+// it makes few steps, and two races have to be noticed (docs/validation/reliability_methods.md has
+// the trials).
+#include "statejump/stepper/partition.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -43,13 +44,13 @@ std::vector<double> numbers(const Scene& scene) {
     add(contact.physics.normalForce);
     add(contact.physics.shearForce);
   }
-  for (const LinkPlace& place : std::get<Links>(scene.stages[0]).places) {
+  for (const LinkEntry& place : std::get<Links>(scene.stages[0]).links) {
     found.push_back(place.link.axialForce);
   }
   return found;
 }
 
-TEST(Parts, AnyNumberOfThreadsGivesTheBitsOfTheWhole) {
+TEST(Partition, AnyNumberOfThreadsGivesTheBitsOfTheWhole) {
   constexpr long steps = 2000;
   Scene whole = falling();
   int alone = 0;
@@ -61,15 +62,15 @@ TEST(Parts, AnyNumberOfThreadsGivesTheBitsOfTheWhole) {
   for (const int threads : {1, 2, 4}) {
     omp_set_num_threads(threads);
     Scene scene = falling();
-    Parts parts(scene);
-    ASSERT_EQ(parts.size(), 4U);
+    Partition partition(scene);
+    ASSERT_EQ(partition.size(), 4U);
     std::atomic<int> made = 0;
     const auto make = [&](std::size_t) {
       made.fetch_add(1, std::memory_order_relaxed);  // orders no threads, which would hide races
       return aluminium();
     };
-    ASSERT_EQ(parts.run(steps, make), steps);
-    parts.collect(scene);
+    ASSERT_EQ(partition.run(steps, make), steps);
+    partition.collect(scene);
     EXPECT_EQ(numbers(scene), expected) << threads << " threads";
     EXPECT_EQ(made, alone);
   }
@@ -79,18 +80,18 @@ TEST(Parts, AnyNumberOfThreadsGivesTheBitsOfTheWhole) {
 constexpr long few = 20;
 
 /// Every thread's accesses are remembered. @param make as of Scene::run(); called in the first step
-void step_side_by_side(const Scene::Make& make) {
+void step_side_by_side(const Scene::CreatePhysics& make) {
   omp_set_num_threads(4);
   for (int i = 0; i < 5; ++i) {
     Scene scene = scenes::held_crowd(joints);
     scene.prepare();
-    Parts parts(scene);
-    ASSERT_EQ(parts.run(few, make), few);
-    parts.collect(scene);
+    Partition partition(scene);
+    ASSERT_EQ(partition.run(few, make), few);
+    partition.collect(scene);
   }
 }
 
-TEST(Parts, FewStepsSideBySide) {
+TEST(Partition, FewStepsSideBySide) {
   step_side_by_side([](std::size_t) { return aluminium(); });
 }
 
@@ -103,7 +104,7 @@ constexpr bool looks_for_races = false;
 #endif
 
 /// Steps with a race, in a process that the sanitizer ends with its status.
-void race(const Scene::Make& make) {
+void race(const Scene::CreatePhysics& make) {
   step_side_by_side(make);
   std::exit(0);
 }
@@ -127,17 +128,17 @@ TEST(PartsDeathTest, TheThreadSanitizerSeesARaceOfOneAccessInEachPart) {
   EXPECT_EXIT(race(writes), testing::ExitedWithCode(66), "data race");
 }
 
-TEST(Parts, ShortestWayOfAnyPartIsTold) {
+TEST(Partition, ReturnsTheFewestStepsOfAnySubscene) {
   Scene scene = falling();
   // The last journal has no materials: its part stops where it would touch.
-  Parts parts(scene);
+  Partition partition(scene);
   const auto make = [](std::size_t contact) {
     return contact + 1 == joints ? std::nullopt : aluminium();
   };
   Scene alone = falling();
   const long expected = alone.run(2000, make);
   EXPECT_LT(expected, 2000);
-  EXPECT_EQ(parts.run(2000, make), expected);
+  EXPECT_EQ(partition.run(2000, make), expected);
 }
 
 }  // namespace

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Checks of the numbers of a step: ranges of link and contact parameters, and validity of results.
+// The plugin's engines and functors and the stepper use the same checks. NaN never passes.
+//
+// Ranges are checked when a number enters: when an attribute is set, a run begins or arrays are
+// filled. Results are checked in every step by a few comparisons. Only a result that fails these is
+// examined in detail.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "statejump/kernel/joint_kinematics.hpp"
+#include "statejump/kernel/vector.hpp"
+#include "statejump/stepper/link.hpp"
+#include "statejump/stepper/prismatic.hpp"
+
+namespace statejump::stepper {
+
+enum class ValueRange : unsigned char { finite, not_negative, positive };
+
+inline bool allows(ValueRange allowed, double value) {
+  return std::isfinite(value) && (allowed == ValueRange::finite || value > 0 ||
+                                  (allowed == ValueRange::not_negative && value == 0));
+}
+
+/// Text of the range, followed by a unit in messages.
+inline const char* range_text(ValueRange allowed) {
+  return allowed == ValueRange::finite     ? "finite"
+         : allowed == ValueRange::positive ? "above 0"
+                                           : "0 or above";
+}
+
+/// A member of an object with the name that users know.
+template <class Object>
+struct Quantity {
+  const char* name;
+  double Object::*value;
+  ValueRange allowed;
+  const char* unit;
+};
+
+template <class Object, std::size_t size>
+using Quantities = std::array<Quantity<Object>, size>;
+
+/// The first quantity of an object out of range; null if there is none.
+template <class Object, std::size_t size>
+const Quantity<Object>* first_invalid(const Quantities<Object, size>& quantities,
+                                      const Object& object) {
+  for (const Quantity<Object>& each : quantities) {
+    if (!allows(each.allowed, object.*each.value)) return &each;
+  }
+  return nullptr;
+}
+
+/// Quantities of an active link.
+constexpr Quantities<Link, 6> link_quantities = {
+    {{"youngModulus", &Link::youngModulus, ValueRange::not_negative, "Pa"},
+     {"crossSectionArea", &Link::crossSectionArea, ValueRange::not_negative, "m2"},
+     {"stressFreeLength", &Link::stressFreeLength, ValueRange::positive, "m"},
+     {"thermalExpansion", &Link::thermalExpansion, ValueRange::finite, "1/K"},
+     {"dampingRatio", &Link::dampingRatio, ValueRange::not_negative, "-"},
+     {"pinDamping", &Link::pinDamping, ValueRange::not_negative, "N m s/rad"}}};
+
+/// Quantities of an active torsion spring. With a friction limit, the friction stiffness must be >
+/// 0.
+constexpr Quantities<Torsion, 8> torsion_quantities = {
+    {{"stiffness", &Torsion::stiffness, ValueRange::not_negative, "N m/rad"},
+     {"freeAngle", &Torsion::freeAngle, ValueRange::finite, "rad"},
+     {"deadband", &Torsion::deadband, ValueRange::not_negative, "rad"},
+     {"preload", &Torsion::preload, ValueRange::finite, "N m"},
+     {"frictionLimit", &Torsion::frictionLimit, ValueRange::not_negative, "N m"},
+     {"frictionStiffness", &Torsion::frictionStiffness, ValueRange::not_negative, "N m/rad"},
+     {"slipAngle", &Torsion::slipAngle, ValueRange::finite, "rad"},
+     {"frictionMoment", &Torsion::frictionMoment, ValueRange::finite, "N m"}}};
+
+inline bool has_friction_without_stiffness(const Torsion& spring) {
+  return spring.frictionLimit > 0 && !(spring.frictionStiffness > 0);
+}
+
+/// Quantities of a slider between two bodies. With a friction limit or stops, their stiffness must
+/// be > 0. Clearances are >= 0, infinite without a stop.
+constexpr Quantities<Prismatic, 9> prismatic_quantities = {
+    {{"stiffnessAcross", &Prismatic::stiffnessAcross, ValueRange::not_negative, "N/m"},
+     {"frictionLimit", &Prismatic::frictionLimit, ValueRange::not_negative, "N"},
+     {"frictionStiffness", &Prismatic::frictionStiffness, ValueRange::not_negative, "N/m"},
+     {"stopStiffness", &Prismatic::stopStiffness, ValueRange::not_negative, "N/m^1.5"},
+     {"stopSpring", &Prismatic::stopSpring, ValueRange::not_negative, "N/m"},
+     {"play", &Prismatic::play, ValueRange::not_negative, "m"},
+     {"dampingRatio", &Prismatic::dampingRatio, ValueRange::not_negative, "-"},
+     {"slipPosition", &Prismatic::slipPosition, ValueRange::finite, "m"},
+     {"frictionForce", &Prismatic::frictionForce, ValueRange::finite, "N"}}};
+
+inline bool has_friction_without_stiffness(const Prismatic& joint) {
+  return joint.frictionLimit > 0 && !(joint.frictionStiffness > 0);
+}
+
+inline bool has_stop_without_stiffness(const Prismatic& joint) {
+  return std::isfinite(std::min(joint.clearanceMinus, joint.clearancePlus)) &&
+         !(joint.stopStiffness + joint.stopSpring > 0);
+}
+
+/// Quantities of a touching contact: ContactPhysics or JointPhys.
+template <class Physics>
+constexpr Quantities<Physics, 6> contact_quantities = {
+    {{"effectiveYoungModulus", &Physics::effectiveYoungModulus, ValueRange::positive, "Pa"},
+     {"effectiveShearModulus", &Physics::effectiveShearModulus, ValueRange::positive, "Pa"},
+     {"effectiveMass", &Physics::effectiveMass, ValueRange::not_negative, "kg"},
+     {"normalDampingRatio", &Physics::normalDampingRatio, ValueRange::not_negative, "-"},
+     {"tangentialDampingRatio", &Physics::tangentialDampingRatio, ValueRange::not_negative, "-"},
+     {"tangensOfFrictionAngle", &Physics::tangensOfFrictionAngle, ValueRange::not_negative, "-"}}};
+
+inline bool is_finite(const Vector3& v) {
+  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
+inline bool is_finite(const kernel::BodyMotion& motion) {
+  return is_finite(motion.position) && is_finite(motion.velocity) &&
+         is_finite(motion.angular_velocity);
+}
+
+/// Fast check in every step: all components are finite. May be false for finite components if their
+/// sum overflows.
+inline bool is_finite_fast(const Vector3& v) {
+  const double sum = v[0] + v[1] + v[2];
+  return sum - sum == 0;
+}
+
+/// Whether a linear thermal strain leaves a positive length [-].
+inline bool is_strain(double strain) {
+  return 1 + strain > 0 && std::isfinite(strain);
+}
+
+/// Fast check in every step: far from a strain that leaves no length.
+inline bool is_small_strain(double strain) {
+  return std::abs(strain) < 1;
+}
+
+/// Leapfrog is unstable for omega dt > 2 of the stiffest contact alone, independent of other
+/// forces.
+/// @param stiffness [N/m]; @param time_step [s]
+template <class Physics>
+bool step_is_too_long(double stiffness, const Physics& physics, double time_step) {
+  return time_step * time_step * stiffness > 4 * physics.effectiveMass && physics.effectiveMass > 0;
+}
+
+/// Fast check in every step of a touching contact: it is stiff, and the step is stable. False if a
+/// modulus, depth, mass or time step is NaN, and if both bodies are fixed.
+template <class Physics>
+bool is_stable_stiffness(double stiffness, const Physics& physics, double time_step) {
+  const double rate = time_step * stiffness;
+  return rate > 0 && time_step * rate <= 4 * physics.effectiveMass;
+}
+
+/// Upper bound, once per run, of normal stiffnesses >= 0 for which is_stable_stiffness() holds
+/// [N/m], with a margin above rounding. NaN for invalid numbers; no stiffness is below NaN.
+template <class Physics>
+double stable_stiffness(const Physics& physics, double time_step) {
+  if (!(time_step > 0) || first_invalid(contact_quantities<Physics>, physics)) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  constexpr double less = 1 - 8 * std::numeric_limits<double>::epsilon();
+  return less * 4 * physics.effectiveMass / time_step / time_step;
+}
+
+/// Upper bound, once per run, of |temperature change| for which an expansion leaves every length
+/// positive [K], with a margin above rounding; 0 for a NaN coefficient. @param expansion [1/K]
+inline double safe_temperature_change(double expansion) {
+  constexpr double less = 1 - 8 * std::numeric_limits<double>::epsilon();
+  return std::isfinite(expansion) ? less / std::abs(expansion) : 0;
+}
+
+/// Fast check in every step: below a bound of the run. False if either is NaN.
+inline bool is_below(double value, double bound) {
+  return value < bound;
+}
+
+/// Outcome for a response that fails the fast check.
+enum class ResponseCheck : unsigned char { valid, step_is_too_long, not_finite };
+
+/// @param stiffness of the normal law [N/m]; @param force on body 1 [N]
+template <class Physics>
+ResponseCheck check_response(double stiffness, const Vector3& force, const Physics& physics,
+                             double time_step) {
+  const bool is_number = stiffness >= 0 && std::isfinite(stiffness) && is_finite(force);
+  if (!is_number || !(time_step > 0) || first_invalid(contact_quantities<Physics>, physics)) {
+    return ResponseCheck::not_finite;
+  }
+  return step_is_too_long(stiffness, physics, time_step) ? ResponseCheck::step_is_too_long
+                                                         : ResponseCheck::valid;
+}
+
+/// Fast check in every step of a link: its length is positive and its force is finite.
+inline bool is_finite_fast(const LinkStep& step, const Vector3& force) {
+  return step.stress_free_length > 0 && is_finite_fast(force);
+}
+
+}  // namespace statejump::stepper
