@@ -45,7 +45,7 @@ def parts(name: str) -> re.Match[str]:
     if found is None:
         raise NotAllowed("outputs", name, LIKE)
     if found["how"] not in HOW:
-        raise NotAllowed("outputs", name, f"HOW must be one of {', '.join(HOW)}")
+        raise NotAllowed("outputs", name, code="output_how_unknown", hows=", ".join(HOW))
     return found
 
 
@@ -97,8 +97,7 @@ def _returned(run: Run, name: str) -> Run:
     """Return the run at the times at which the temperature is back where it began."""
     times = run.definition.returns_s()
     if len(times) < 2:
-        raise NotAllowed("outputs", name, f"the temperature comes back where it began {len(times)} times, 2 are needed",
-                         remedy="set thermal.cycles")
+        raise NotAllowed("outputs", name, code="output_without_jump", times=len(times))
     return run.at(times)
 
 
@@ -113,12 +112,12 @@ def _value(name: str, run: Run, columns: dict[str, Column]) -> float:
     if column.items:
         names = list(run.names[column.items])
         if asked["item"] is None:
-            raise NotAllowed("outputs", name, f"{asked['column']} is one of each of the {column.items}: which one?")
+            raise NotAllowed("outputs", name, code="output_item_not_chosen", column=asked["column"], items=column.items)
         if asked["item"] not in names:
             raise NotAllowed("outputs", name, _near(column.items, asked["item"], names))
         values = values[:, names.index(asked["item"])]
     elif asked["item"] is not None:
-        raise NotAllowed("outputs", name, f"{asked['column']} has no items")
+        raise NotAllowed("outputs", name, code="output_without_items", column=asked["column"])
     if asked["axis"] is not None:
         if values.ndim == 1 or asked["axis"] not in AXES:
             raise NotAllowed("outputs", name, f"{asked['column']} is no vector" if values.ndim == 1 else

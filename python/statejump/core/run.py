@@ -48,7 +48,7 @@ class Parts(dict[str, Any]):
         self.place, self.file = place, str(file)
 
     def __missing__(self, name: str) -> Any:
-        raise MissingPart(f"{self.place}/{name} is missing", file=self.file)
+        raise MissingPart(code="part_missing", file=self.file, group=self.place, name=name)
 
     def like(self, parts: Mapping[str, Any]) -> Parts:
         """Return other parts of the same place."""
@@ -265,7 +265,7 @@ class Run:
         except (TypeError, ValueError):
             asked = np.array([np.nan])
         if asked.ndim != 1 or not np.isfinite(asked).all():
-            raise NotAllowed("times_s", ABSENT, "must be a time or a list of times [s]")
+            raise NotAllowed("times_s", ABSENT, code="no_times")
         if np.array_equal(self.time_s, asked):
             return self
         return self._interpolated(asked) if self.sampler is None else self.sampler(asked)

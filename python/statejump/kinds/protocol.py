@@ -251,5 +251,5 @@ def needed(kind: Kind[Any], protocol: type[Capability], case: Definition) -> Cap
     if supports(kind, protocol):
         return cast(Capability, kind)
     others = " and ".join(repr(other) for other in _OTHERS(protocol))
-    raise NotAllowed("case.kind", kind.name, f"'statejump {_COMMANDS[protocol]}' is for {others or 'no kind of case'}",
-                     file=case.origin.file)
+    raise NotAllowed("case.kind", kind.name, code="command_not_for_kind", file=case.origin.file,
+                     command=_COMMANDS[protocol], kinds=others or "no kind of case")

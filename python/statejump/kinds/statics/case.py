@@ -87,7 +87,7 @@ def read_forces(name: str, value: Any) -> list[Force]:
     """
     given = [value] if isinstance(value, Mapping) else value
     if not isinstance(given, list) or not given or not all(isinstance(table, Mapping) for table in given):
-        raise NotAllowed(name, value, f"must be one or more sections [[{name}]] with force_N = [x, y, z]")
+        raise NotAllowed(name, value, code="no_forces", name=name)
     known = fields_of(Force)
     found = []
     for number, table in enumerate(given, start=1):
@@ -177,29 +177,25 @@ class StaticsCase(Case):
         for key, types in KEYS_OF_TYPES.items():
             value = getattr(joint, key)
             if value is None and joint.type in types:
-                raise MissingKey(f"joint.{key}", f"joint.type = {joint.type!r} needs it")
+                raise MissingKey(f"joint.{key}", code="needed_by_type", type=joint.type)
             if value is not None and joint.type not in types:
-                raise NotAllowed(f"joint.{key}", value,
-                                 "only with joint.type = " + " or ".join(repr(name) for name in types))
+                raise NotAllowed(f"joint.{key}", value, code="only_with_type",
+                                 types=" or ".join((repr(name) for name in types)))
         if joint.lobe_amplitude_m is not None and joint.clearance_m is not None:
             if not joint.lobe_amplitude_m < joint.clearance_m:
-                raise NotAllowed("joint.lobe_amplitude_m", joint.lobe_amplitude_m,
-                                 f"must be at least 0 and below joint.clearance_m = {joint.clearance_m!r} [m]")
+                raise NotAllowed("joint.lobe_amplitude_m", joint.lobe_amplitude_m, code="lobe_amplitude",
+                                 clearance_m=joint.clearance_m)
         if self.picture.friction_coefficients and not self.is_planar:
-            raise NotAllowed("picture.friction_coefficients", cause="only for joints in one or two dimensions")
+            raise NotAllowed("picture.friction_coefficients", code="only_below_three_dimensions")
 
     def _check_forces(self) -> None:
         loads = self.load_cases
         if len(loads) > MOST_FORCES:
-            raise StatejumpError(f"force stands for {len(loads)} forces", key="force",
-                                 cause=f"must be at most {MOST_FORCES}")
+            raise StatejumpError(code="too_many_forces", key="force", forces=len(loads), most=MOST_FORCES)
         for load in loads:
             x, y, z = load.force_N
             if hypot(x, y, z) == 0:
-                raise NotAllowed(f"force {load.name!r}", [0, 0, 0], "without a force every position is at rest")
+                raise NotAllowed(f"force {load.name!r}", [0, 0, 0], code="no_force")
             if self.joint.type in ("journal", "lobed") and z != 0:
-                raise NotAllowed(
-                    f"force {load.name!r}", list(load.force_N),
-                    f"joint.type = {self.joint.type!r} is planar, the third number must be 0; 'cylinder' takes axial "
-                    "forces",
-                )
+                raise NotAllowed(f"force {load.name!r}", list(load.force_N), code="force_out_of_plane",
+                                 type=self.joint.type)
