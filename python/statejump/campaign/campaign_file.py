@@ -164,13 +164,13 @@ def vary_tables(path: Path) -> list[tuple[str, Mapping[str, Any]]]:
 
 def _check_sections(data: Mapping[str, Any], known: Sequence[str] = ("campaign", "vary")) -> None:
     forms = {"campaign": "[campaign]", "vary": "[[vary]]"}
-    hints = {name: f"did you mean {forms[name]}?" for name in known}
     for name in data:
-        if name in hints:
+        if name in known:
             continue
-        match = difflib.get_close_matches(name, hints, n=1, cutoff=0.5)
-        raise UnknownKey(name, section=f"section [{name}]", remedy=hints[match[0]] if match else None,
-                         cause=None if match else "known are " + " and ".join(forms[one] for one in known))
+        match = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+        raise UnknownKey(name, section=f"section [{name}]", **(
+            {"code": "misspelt_key", "meant": forms[match[0]]} if match else
+            {"code": "no_such_key", "known": " and ".join(forms[one] for one in known)}))
 
 
 def check_campaign(case: Case, model: str, named: str, before: str = "") -> None:

@@ -108,8 +108,8 @@ def _patiently(client: Client, ask: Callable[[], Given]) -> Given:
             if alone_since is not None and now - alone_since >= patience:
                 raise StatejumpError(code="scheduler_lost_workers", patience=patience, advice=KEPT) from None
         except (CancelledError, OSError) as problem:
-            lost = f"the connection to the dask scheduler was lost ({type(problem).__name__})"
-            raise StatejumpError(f"{lost}; {KEPT}") from None
+            raise StatejumpError(code="scheduler_connection_lost", problem=type(problem).__name__,
+                                 advice=KEPT) from None
 
 
 def _some_of(client: Client, running: set[Future]) -> set[Future]:

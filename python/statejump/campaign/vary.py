@@ -93,7 +93,7 @@ def varied(table: Mapping[str, Any], case: Case, command: str) -> Varied:
             raise NotAllowed(name, code="key_of_other_campaign", command=command, other=other)
         raise UnknownKey(name, **suggestion(name, known))
     if "key" not in table:
-        raise MissingKey("key", LIKE)
+        raise MissingKey("key", LIKE, code="key_missing")
     main = _checked_path(table["key"], "key", case)
     also = table.get("also", [])
     if not isinstance(also, (list, tuple)):
@@ -177,11 +177,10 @@ def _number(table: Mapping[str, Any], name: str, *, above: float | None = None) 
     if name not in table:
         return None
     value = table[name]
-    needs = "must be a finite number" + ("" if above is None else f" above {above:g}")
+    if above is not None and not (is_finite_number(value) and value > above):
+        raise NotAllowed(name, value, code="not_finite_above", least=above)
     if not is_finite_number(value):
-        raise NotAllowed(name, value, needs)
-    if above is not None and not value > above:
-        raise NotAllowed(name, value, needs)
+        raise NotAllowed(name, value, code="not_finite")
     return float(value)
 
 
@@ -205,13 +204,12 @@ def _distribution(table: Mapping[str, Any], keys: tuple[str, ...], case: Case) -
     if low is not None and high is not None and not low < high:
         raise NotAllowed("high", high, code="not_above_low", low=low)
     if kind_name == "uniform" and relative is None:
-        needs = "a uniform distribution has low and high, or relative"
         for name in ("mean", "standard_deviation"):
             if name in table:
-                raise NotAllowed(name, cause=needs)
+                raise NotAllowed(name, code="uniform_limits")
         for name, value in limits.items():
             if value is None:
-                raise MissingKey(name, needs)
+                raise MissingKey(name, code="uniform_limits")
         assert low is not None and high is not None
         return Distribution(keys, kind_name, low=low, high=high)
     mean = table.get("mean", _own_value(case, keys[0]))
@@ -282,7 +280,7 @@ def _values(table: Mapping[str, Any], keys: tuple[str, ...], case: Case) -> Valu
     for value in wanted:
         for rule in rules:
             if value is None:
-                raise NotAllowed(name, value, rule.needs())
+                raise NotAllowed(name, value, rule.needs(), code="out_of_range", allowed=rule.allowed)
             rule.check(name, value)
         checked.append(value if is_whole else float(value))
     if len(set(checked)) != len(checked):

@@ -137,8 +137,8 @@ def _repeatability(samples: Path, column: str, share: float, length_m: float) ->
     columns = read_columns(samples)
     lengths = [name for name in columns if unit(name) == "m" and np.issubdtype(columns[name].dtype, np.number)]
     if column not in lengths:
-        raise NotAllowed("--column", column, f"must be one of {', '.join(lengths)}" if lengths
-                         else "no column of it is a length [m]", file=samples)
+        raise NotAllowed("--column", column, file=samples, **(
+            {"code": "not_one_of", "known": ", ".join(lengths)} if lengths else {"code": "no_length"}))
     found = repeatability(columns[column], length_m, share)
     size = np.abs(columns[column])
     worst = int(np.nanargmax(size))

@@ -71,8 +71,8 @@ def _column(name: str, known: Sequence[str], bases: Mapping[str, str]) -> Column
     key = bases.get(_plain(name))
     if key is None:
         near = get_close_matches(name, known, 1)
-        raise UnknownKey(name, section=f"column {name!r}", cause=None if near else f"known are {', '.join(known)}",
-                         remedy=f"did you mean {near[0]}?" if near else None)
+        raise UnknownKey(name, section=f"column {name!r}", **(
+            {"code": "misspelt_key", "meant": near[0]} if near else {"code": "no_such_key", "known": ", ".join(known)}))
     wanted = split_unit(key)[1]
     if key == "time_s":
         return Column(name, key, iso=True)

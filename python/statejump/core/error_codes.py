@@ -42,9 +42,12 @@ CODES: dict[str, Code] = {
     "empty_text": Code(cause="must be a text in quotes that is not empty"),
     "key_moved": Code(remedy="it is {now} now"),
     "key_twice": Code(cause="the case has {new_key} as well", remedy="leave {old_key} out"),
+    "misspelt_key": Code(remedy="did you mean {meant}?"),
+    "misspelt_name": Code(cause="must be {known}", remedy="did you mean {meant!r}?"),
     "no_folder_name": Code(cause="must consist of letters, digits, '_' and '-'"),
     "no_item_fits": Code(cause="no {table} has a name that fits {pattern!r}; their names are {known}"),
     "no_such_case_file": Code(what="no such {of} file"),
+    "no_such_key": Code(cause="known are {known}"),
     "no_table": Code(cause="must be one or more sections [[{table}]]"),
     "not_a_section": Code(cause="must be a section [{wanted}]"),
     "not_boolean": Code(cause="must be true or false"),
@@ -57,7 +60,7 @@ CODES: dict[str, Code] = {
     "several_values": Code(what="{path} has several values"),
     "toml_not_utf8": Code(what="not TOML", cause="the file is not UTF-8 text"),
     "toml_too_deep": Code(what="not TOML", cause="tables or lists stand too deeply in each other"),
-    "unknown_name": Code(text="the value is none of the known names"),
+    "unknown_name": Code(cause="must be {known}"),
     "wrong_number_of_numbers": Code(cause="must be a list of {length} numbers [{unit}]"),
     "wrong_type": Code(cause="must be {type}, {range}"),
     # Cases, tables and files
@@ -148,6 +151,7 @@ CODES: dict[str, Code] = {
     "members_missing": Code(what="must have the data set members", cause="their names, texts along one axis"),
     "members_not_in_text": Code(beside="in the text of a case file", remedy="save() writes a file beside it"),
     "members_not_utf8": Code(what="members has texts that are not UTF-8"),
+    "misspelt_column": Code(what="has no column {column}_K or {column}_degC", remedy="did you mean {meant!r}?"),
     "name_with_blank": Code(cause="names in a list of a table must have no blanks"),
     "names_missing": Code(
         what="line {line} names no columns",
@@ -156,11 +160,11 @@ CODES: dict[str, Code] = {
     ),
     "needs_state_jump": Code(cause="{output} needs a state jump, and {why}"),
     "no_column": Code(what="line 1: there is no column"),
-    "no_column_of_member": Code(what="has no column {column}_K or {column}_degC"),
     "no_iso_time": Code(what="line {line}, column {column!r}", remedy="write {accepted}"),
     "no_result_format": Code(what="not a result file", cause="it does not begin with {begin!r}"),
     "no_row": Code(what="has no row below its header"),
     "no_samples": Code(what="holds no samples"),
+    "no_such_column": Code(what="has no column {column}_K or {column}_degC", cause="its columns are {known}"),
     "no_such_result_file": Code(what="no such result file"),
     "no_such_table_file": Code(what="no such file of tables"),
     "no_such_temperature_file": Code(what="no such file of temperatures"),
@@ -319,6 +323,7 @@ CODES: dict[str, Code] = {
             "what is there, another campaign.name keeps it"
         ),
     ),
+    "key_missing": Code(text="a [[vary]] names no key"),
     "key_not_in_kind": Code(beside="in a case of kind {kind!r}"),
     "key_of_other_campaign": Code(
         beside="in a campaign of 'statejump {command}'",
@@ -338,11 +343,19 @@ CODES: dict[str, Code] = {
     "no_yade_batch_of_kind": Code(cause="no such campaign runs {kind!r}"),
     "not_a_number_key": Code(cause="it is not a number"),
     "not_above_low": Code(cause="must be above low = {low!r}"),
+    "not_finite_above": Code(cause="must be a finite number above {least:g}"),
     "nothing_between_limits": Code(cause="practically nothing of the normal distribution is left between the limits"),
     "nothing_varies": Code(cause="at least one table says what varies"),
     "only_montecarlo_draws": Code(beside="in a sweep", cause="only 'statejump montecarlo' draws samples"),
+    "output_axis": Code(cause="the axis must be one of {known}"),
+    "output_form": Code(cause="must be HOW:COLUMN[ITEM].AXIS, as 'jump:displacement_m[P].x'"),
     "output_how_unknown": Code(cause="HOW must be one of {hows}"),
     "output_item_not_chosen": Code(cause="{column} is one of each of the {items}: which one?"),
+    "output_misspelt": Code(cause="did you mean {meant}?"),
+    "output_no_vector": Code(cause="{column} is no vector"),
+    "output_of_no_items": Code(cause="there are no {items}"),
+    "output_of_no_surface": Code(text="the run has no surface of which the output is"),
+    "output_of_nothing": Code(cause="there is no such {what_it_is}; there are {known}"),
     "output_without_items": Code(cause="{column} has no items"),
     "output_without_jump": Code(
         cause="the temperature comes back where it began {times} times, 2 are needed",
@@ -351,6 +364,7 @@ CODES: dict[str, Code] = {
     "path_no_text": Code(cause="must be a text such as 'joint.friction_coefficient'"),
     "range_missing": Code(cause="either values, or start, stop and count are needed"),
     "scheduler_address": Code(text="the option names no address of a running scheduler"),
+    "scheduler_connection_lost": Code(what="the connection to the dask scheduler was lost ({problem}); {advice}"),
     "scheduler_lost_workers": Code(what="the dask scheduler has had no workers for {patience:g} s; {advice}"),
     "scheduler_not_encrypted": Code(what="is not encrypted", cause="Dask's configuration has require-encryption"),
     "scheduler_not_reached": Code(what="cannot be reached within {connect_s} s"),
@@ -361,6 +375,7 @@ CODES: dict[str, Code] = {
     ),
     "scheduler_without_workers": Code(what="has no workers after {workers_s} s"),
     "there_twice": Code(cause="it is there twice"),
+    "uniform_limits": Code(cause="a uniform distribution has low and high, or relative"),
     "value_there_twice": Code(cause="a value is there twice"),
     "varies_already": Code(cause="it varies already"),
     "whole_number_varies": Code(cause="it is a whole number, only 'statejump sweep' varies it"),
@@ -374,6 +389,7 @@ CODES: dict[str, Code] = {
     "joint_form": Code(cause="must be KEY=VALUE,KEY=VALUE, every key once"),
     "no_ensemble": Code(cause="case {name_of_case} has one exact path, no ensemble is run"),
     "no_folder_to_write": Code(what="cannot be written", cause="there is no folder {folder}"),
+    "no_length": Code(cause="no column of it is a length [m]"),
     "no_result_file": Code(
         what="no result file",
         cause="no *{suffix} in this folder",
@@ -441,6 +457,9 @@ CODES: dict[str, Code] = {
         beside="with joint.friction_law = {law!r}",
         cause="friction with memory is not smooth, use 'rk4'",
     ),
+    "angle_beyond_friction": Code(
+        cause="must be between {least_rad:.9g} and {largest_rad:.9g} [rad], atan of joint.friction_coefficient",
+    ),
     "angle_of_frictionless": Code(
         beside="with start.friction = 'frictionless'",
         cause="must be 0 [rad], where the contact needs no friction",
@@ -465,6 +484,7 @@ CODES: dict[str, Code] = {
         ),
     ),
     "equilibrium_decides": Code(beside="with start.mode = 'loaded'", cause="equilibrium decides"),
+    "friction_holds_no_load": Code(cause="must be 0 [rad]: this friction holds no static load"),
     "law_not_with_friction": Code(beside="with joint.friction_law = {law!r}", cause="must be one of {known}"),
     "links_cannot_meet": Code(
         cause=(
@@ -488,8 +508,13 @@ CODES: dict[str, Code] = {
         cause="torsion_spring.{spring_key} is 0, and only a biased torsion spring loads the joint",
     ),
     # Rest positions
+    "force_components": Code(cause="must be a list of three numbers [N], none beyond {largest_N:g}"),
     "force_out_of_plane": Code(
         cause="joint.type = {type!r} is planar, the third number must be 0; 'cylinder' takes axial forces",
+    ),
+    "force_rate": Code(cause="must be a list of three numbers [N/K] together with temperature_change_K"),
+    "force_temperatures": Code(
+        cause="must be a list of numbers between {least_K:g} and {largest_K:g} [K] together with force_rate_N_per_K",
     ),
     "lobe_amplitude": Code(cause="must be at least 0 and below joint.clearance_m = {clearance_m!r} [m]"),
     "mesh_not_read": Code(what="{path} cannot be read"),
@@ -574,6 +599,10 @@ CODES: dict[str, Code] = {
     "fe_slider_shape": Code(cause="sliders of 'statejump fe' follow 'triangle' and 'table'"),
     "fe_soft_sliders": Code(cause="the deck's sliders have rigid stops and no play"),
     "fe_start_friction": Code(cause="the deck's sliders stick where they are drawn"),
+    "free_across_axis": Code(
+        cause="node {node!r} is free across the axis, {type} on ground needs supports there (fixed or guide_normal)",
+    ),
+    "held_along_axis": Code(cause="the supports of node {node!r} hold it along the axis"),
     "iwan_spacing": Code(
         cause=(
             "with elements = {elements} the last interval is 1e{power:.0f} times the first one, it must be below "
@@ -594,6 +623,7 @@ CODES: dict[str, Code] = {
     "mass_of_body_missing": Code(cause="{of} is of a body of that mass"),
     "mass_of_moving_link_missing": Code(cause="what moves has one of them"),
     "masses_not_lumped": Code(cause="must be 'lumped' {scheme}, as in the DEM"),
+    "misspelt_reference": Code(cause="there is no {what_it_is} {name!r}", remedy="did you mean {meant!r}?"),
     "name_taken": Code(cause="another {part} has it"),
     "names_of_other_case": Code(what="damaged", cause="/names/{items} has other names than the case"),
     "no_column_of_item": Code(cause="it has no column of {part}"),
@@ -606,7 +636,7 @@ CODES: dict[str, Code] = {
     "no_radius_left": Code(cause="the {part} has no radius left at a temperature change of {at_K:g} K"),
     "no_ranking": Code(what="no joints are ranked"),
     "no_such_node_of": Code(cause="the truss has the nodes {known}"),
-    "no_such_reference": Code(cause="there is no {what_it_is} {name!r}"),
+    "no_such_reference": Code(cause="there is no {what_it_is} {name!r}", remedy="known are {known}"),
     "no_support": Code(what="no node has a support (fixed or guide_normal)", cause="the truss moves as a whole"),
     "node_off_clearance": Code(
         cause=(
@@ -645,6 +675,10 @@ CODES: dict[str, Code] = {
         ),
     ),
     "program_with_own_cycles": Code(cause="program {program!r} of the case has cycles of its own"),
+    "reference_without_section": Code(
+        cause="there is no {what_it_is} {name!r}",
+        remedy="the file has no section [[{what_it_is}]]",
+    ),
     "reflector_axis": Code(cause="must be {dimension} numbers, not zero in every direction"),
     "reflector_missing": Code(what="section [reflector] is missing", remedy="it names the nodes of the surface"),
     "regularised_cannot": Code(
@@ -712,6 +746,7 @@ CODES: dict[str, Code] = {
     "bodies_pull": Code(cause="must be at least 0 [N]: the bodies do not pull on each other"),
     "column_partner_missing": Code(cause="{partner} goes with it"),
     "compiler_not_run": Code(what="no C++ compiler", cause="$CXX = {compiler!r} cannot be run"),
+    "engine_argument": Code(text="an argument of the law is out of range"),
     "first_row_not_zero": Code(cause="must be 0 [N] in the first row, where the contact is made"),
     "history_column_missing": Code(cause="the history needs {needs_}"),
     "history_columns_exclude": Code(beside="beside {other}", cause="the history needs {needs_}, one of them"),
@@ -722,6 +757,7 @@ CODES: dict[str, Code] = {
         cause="its force depends on the rate of penetration_depth_m, which has to be given",
     ),
     "law_needs_time": Code(cause="law {law!r} depends on velocity"),
+    "law_unusable": Code(text="a law cannot be used"),
     "no_compiler": Code(
         what="no C++ compiler",
         cause="none of {compilers} is installed",
@@ -736,10 +772,14 @@ CODES: dict[str, Code] = {
     "rows_do_not_grow": Code(cause="must grow from row to row [s]"),
     "too_many_law_steps": Code(cause="{rows} rows of that many steps are more than {most} in all"),
     # Contact problems
+    "fclib_data_missing": Code(what="{data_set} is missing"),
     "fclib_dimension": Code(what="{group}/spacedim = {dimension}", cause="must be 2 or 3"),
+    "fclib_group_missing": Code(what="{group} is missing"),
     "fclib_index": Code(what="{group}/{data_set} holds {index}", cause="must be between 0 and {largest}"),
     "fclib_matrix_shape": Code(what="{group} is {rows} x {columns}", cause="must be {wanted_rows} x {wanted_columns}"),
     "fclib_missing": Code(what="/{group} is missing"),
+    "fclib_no_data_set": Code(what="{data_set} is not a data set"),
+    "fclib_no_group": Code(what="{group} is not a group"),
     "fclib_no_number": Code(what="{group}/{data_set} has {entries} entries", cause="must be one number"),
     "fclib_no_numbers": Code(what="{data_set} is damaged", cause="must be a list of {whole_}numbers"),
     "fclib_not_finite": Code(what="{data_set} is damaged", cause="it has numbers that are not finite"),
@@ -778,6 +818,8 @@ CODES: dict[str, Code] = {
     "not_one_of": Code(cause="must be one of {known}"),
     "not_positive": Code(cause="must be a number above 0"),
     "partner_missing": Code(cause="it goes with {partner}"),
+    "target_of_displacement": Code(cause="it takes a loop of force over displacement"),
+    "target_of_rotation": Code(cause="it takes a loop of moment over rotation"),
     "too_few_rows": Code(what="{rows} rows are too few", cause="a loop needs {fewest}"),
     # Bores
     "bore_bad_faces": Code(text="the mesh of a bore has faces that are missing or degenerate"),

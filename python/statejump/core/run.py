@@ -75,7 +75,7 @@ class MissingName(UnknownKey, KeyError):
     def __init__(self, what: str, name: Any, known: Sequence[str]) -> None:
         ends = [path for path in known if path.rpartition("/")[2] == name]
         super().__init__(f"{what} {name!r}", **(
-            {"remedy": f"did you mean {' or '.join(ends)}?"} if ends else suggestion(name, known)))
+            {"code": "misspelt_key", "meant": " or ".join(ends)} if ends else suggestion(name, known)))
 
 
 @dataclass(frozen=True)

@@ -164,9 +164,9 @@ def _table(given: Mapping[str, Any], folder: Path, section: str, name: Any) -> d
         column = read.names[0]
     if column not in read.names:
         near = difflib.get_close_matches(str(column), read.names, n=1, cutoff=0.5)
-        raise Unreadable(code="no_column_of_member", file=path,
-                         cause=None if near else f"its columns are {listed(read.names)}",
-                         remedy=f"did you mean {near[0]!r}?" if near else None, column=quoted(column))
+        if near:
+            raise Unreadable(code="misspelt_column", file=path, column=quoted(column), meant=near[0])
+        raise Unreadable(code="no_such_column", file=path, column=quoted(column), known=listed(read.names))
     time_s, changes = _changes(read.column(column), given, section)
     return {**_without(given), "table_time_s": time_s.tolist(), "table_temperature_change_K": changes[:, 0].tolist()}
 

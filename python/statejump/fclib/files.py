@@ -107,7 +107,8 @@ def _group(parent: h5py.Group, name: str) -> h5py.Group:
 
     found = parent.get(name)
     if not isinstance(found, h5py.Group):
-        raise Unreadable(f"{parent.name.rstrip('/')}/{name} is " + ("missing" if found is None else "not a group"))
+        raise Unreadable(code="fclib_group_missing" if found is None else "fclib_no_group",
+                         group=f"{parent.name.rstrip('/')}/{name}")
     return found
 
 
@@ -117,7 +118,7 @@ def _numbers(parent: h5py.Group, name: str, whole: bool) -> NDArray[Any]:
     place = f"{parent.name}/{name}"
     found = parent.get(name)
     if not isinstance(found, h5py.Dataset):
-        raise Unreadable(f"{place} is " + ("missing" if found is None else "not a data set"))
+        raise Unreadable(code="fclib_data_missing" if found is None else "fclib_no_data_set", data_set=place)
     if found.shape is None or len(found.shape) > 1 or found.dtype.kind not in ("iu" if whole else "iuf"):
         raise Unreadable(code="fclib_no_numbers", data_set=place, whole_="whole " if whole else "")
     values: NDArray[Any] = np.atleast_1d(found[()]).astype(np.int64 if whole else float)

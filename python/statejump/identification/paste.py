@@ -44,8 +44,7 @@ def check(target: str, angular: bool) -> None:
     if target not in TARGETS:
         raise NotAllowed("target", target, code="not_one_of", allowed=tuple(TARGETS), known=", ".join(TARGETS))
     if TARGETS[target][2] not in (None, angular):
-        raise NotAllowed("target", target, "it takes a loop of moment over rotation" if not angular else
-                         "it takes a loop of force over displacement")
+        raise NotAllowed("target", target, code="target_of_rotation" if not angular else "target_of_displacement")
 
 
 def deviation(interval: Interval, confidence: float) -> float | None:

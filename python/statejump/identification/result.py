@@ -256,7 +256,7 @@ def identified(
         if given is not None and not 0 < given < float("inf"):
             raise NotAllowed(key, given, code="not_positive")
     if not (isinstance(confidence, (int, float)) and confidence in CONFIDENCE):
-        raise NotAllowed("confidence", confidence, allowed=CONFIDENCE)
+        raise NotAllowed("confidence", confidence, code="out_of_range", allowed=CONFIDENCE)
     names = list(MODELS) if model == AUTO else [model] if isinstance(model, str) else list(model)
     for name in names:
         if name not in MODELS:

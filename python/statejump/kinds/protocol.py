@@ -230,7 +230,7 @@ class Kind(Generic[CaseType]):
         """Return the case of a parsed document. :raises StatejumpError: one failure, without the file's name"""
         for section in self.Case.NOT_IN_FILE:
             if section in data:
-                raise NotAllowed(f"section [{section}]", cause=self.Case.NOT_IN_FILE[section])
+                raise NotAllowed(f"section [{section}]", code="not_from_file", cause=self.Case.NOT_IN_FILE[section])
         made = structure(self.Case, data)
         thermal.check(made.thermal, returns=made.ending is not None)
         made.check_cycles()

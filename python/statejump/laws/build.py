@@ -63,7 +63,7 @@ def build(header: Path, folder: Path | None = None) -> Path:
             made = compile_law(compiler, header.resolve(), kernel, Path(scratch))
             found = _engine.inspect_user_law(str(made))
             if found["problem"]:
-                raise StatejumpError(found["problem"].replace(str(made), str(header)), file=header)
+                raise StatejumpError(found["problem"].replace(str(made), str(header)), code="law_unusable", file=header)
             target = folder / f"{found['kind']}_{found['name']}.so"
             write_bytes(target, made.read_bytes())
     except OSError as error:

@@ -109,7 +109,7 @@ def drive(
         )
     except _engine.EngineFailure as failure:
         key = next(name for name in arguments if name.startswith(failure.key or ""))
-        raise NotAllowed(key, arguments[key], failure.cause) from None
+        raise NotAllowed(key, arguments[key], failure.cause, code="engine_argument") from None
     problem = answer.pop("problem")
     if problem:
         reached = row[len(answer["slide_x_m"])]
@@ -133,7 +133,7 @@ def _driven(name: str) -> tuple[str, Law]:
             names.append(law.name)
     for kind in DRIVEN:
         if problem := _engine.law_problem(kind, name):
-            raise NotAllowed("law", name, problem)
+            raise NotAllowed("law", name, problem, code="law_unusable")
     raise NotAllowed("law", name, code="not_one_of", allowed=tuple(names), known=", ".join(dict.fromkeys(names)))
 
 
@@ -150,8 +150,9 @@ def _check(columns: Mapping[str, np.ndarray], kind: str, law: Law) -> None:
     for name in columns:
         if name not in COLUMNS:
             near = get_close_matches(name, COLUMNS, 1)
-            raise UnknownKey(name, section=f"column {name}", cause=f"did you mean {near[0]}?" if near else
-                             f"known are {', '.join(COLUMNS)}")
+            raise UnknownKey(name, section=f"column {name}", **(
+                {"code": "misspelt_key", "meant": near[0]} if near else
+                {"code": "no_such_key", "known": ", ".join(COLUMNS)}))
     _one_of(columns, NORMAL, "penetration_depth_m or normal_force_N")
     _one_of(columns, ALONG, "slide_m, slide_x_m with slide_y_m, or tangential_force_N")
     if ("slide_x_m" in columns) != ("slide_y_m" in columns):

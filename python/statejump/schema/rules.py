@@ -133,7 +133,8 @@ def _texts(rule: Rule, key: str, value: Any) -> None:
             try:
                 check_name(key, item, rule.names)
             except NotAllowed as refused:
-                raise NotAllowed(key, value, refused.cause, code="unknown_name", allowed=rule.names) from None
+                raise NotAllowed(key, value, code="unknown_name", allowed=rule.names,
+                                 known=refused.details["known"]) from None
 
 
 class Attached:
@@ -158,11 +159,11 @@ def check_name(key: str, value: Any, names: Sequence[str], **more: Any) -> str:
     """Return the value if it is one of the names, else raise NotAllowed that suggests the nearest."""
     if value in names:
         return str(value)
-    cause = "must be " + " or ".join(repr(name) for name in names)
+    more |= {"allowed": tuple(names), "known": " or ".join(repr(name) for name in names)}
     near = difflib.get_close_matches(value, names, n=1, cutoff=0.5) if isinstance(value, str) else []
-    remedy = f"did you mean {near[0]!r}?" if near else None
-    given = ABSENT if value is None else value
-    raise NotAllowed(key, given, cause, code="unknown_name", allowed=tuple(names), remedy=remedy, **more)
+    if near:
+        raise NotAllowed(key, value, code="misspelt_name", meant=near[0], **more)
+    raise NotAllowed(key, ABSENT if value is None else value, code="unknown_name", **more)
 
 
 def folder_name(text: str) -> str:
@@ -171,8 +172,8 @@ def folder_name(text: str) -> str:
 
 
 def suggestion(word: str, known: Sequence[str], before: str = "", after: str = "") -> dict[str, str]:
-    """Return the fields of an UnknownKey: the nearest known word as remedy, else all of them as cause."""
+    """Return code and details of an UnknownKey: the nearest known word, else all of them."""
     match = difflib.get_close_matches(str(word), known, n=1, cutoff=0.5)  # a dict may have keys that are no texts
     if match:
-        return {"remedy": f"did you mean {before}{match[0]}{after}?"}
-    return {"cause": "known are " + ", ".join(known)}
+        return {"code": "misspelt_key", "meant": f"{before}{match[0]}{after}"}
+    return {"code": "no_such_key", "known": ", ".join(known)}

@@ -35,13 +35,12 @@ KEYS_OF_TYPES = {
     "mesh_unit_m": ("mesh",),
 }
 # What a key of a [[force]] must be.
-NEEDS = {
-    "name": "must be a text in quotes",
-    "force_N": f"must be a list of three numbers [N], none beyond {LARGEST_FORCE_N:g}",
-    "force_rate_N_per_K": "must be a list of three numbers [N/K] together with temperature_change_K",
-    "temperature_change_K":
-        f"must be a list of numbers between {-LARGEST_TEMPERATURE_CHANGE_K:g} and {LARGEST_TEMPERATURE_CHANGE_K:g} [K] "
-        "together with force_rate_N_per_K",
+NEEDS: dict[str, dict[str, Any]] = {
+    "name": {"code": "no_text"},
+    "force_N": {"code": "force_components", "largest_N": LARGEST_FORCE_N},
+    "force_rate_N_per_K": {"code": "force_rate"},
+    "temperature_change_K": {"code": "force_temperatures", "least_K": -LARGEST_TEMPERATURE_CHANGE_K,
+                             "largest_K": LARGEST_TEMPERATURE_CHANGE_K},
 }
 
 
@@ -60,13 +59,13 @@ class Force(Section):
 
     def __attrs_post_init__(self) -> None:
         if self.name == "":
-            raise NotAllowed("name", self.name, NEEDS["name"])
+            raise NotAllowed("name", self.name, **NEEDS["name"])
         rate, changes = self.force_rate_N_per_K, self.temperature_change_K
         if rate is None and changes is None:
             return
         for key, value in (("force_rate_N_per_K", rate), ("temperature_change_K", changes)):
             if not value:
-                raise NotAllowed(key, value, NEEDS[key])
+                raise NotAllowed(key, value, **NEEDS[key])
 
     def at_temperatures(self, name: str) -> list[LoadCase]:
         """Return the force, or the force at every temperature."""
@@ -96,12 +95,12 @@ def read_forces(name: str, value: Any) -> list[Force]:
             if key not in known:
                 raise UnknownKey(key, item=item, **suggestion(key, list(known)))
         if "force_N" not in table:
-            raise MissingKey("force_N", NEEDS["force_N"], item=item, allowed=rule_of(known["force_N"]).allowed)
+            raise MissingKey("force_N", item=item, allowed=rule_of(known["force_N"]).allowed, **NEEDS["force_N"])
         try:
             found.append(Force(**table))
         except NotAllowed as refused:
             key = refused.key or ""
-            raise NotAllowed(key, table.get(key), NEEDS[key], item=item, allowed=refused.allowed) from None
+            raise NotAllowed(key, table.get(key), item=item, allowed=refused.allowed, **NEEDS[key]) from None
     return found
 
 

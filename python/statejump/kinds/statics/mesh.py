@@ -74,8 +74,7 @@ def read_mesh(case: StaticsCase) -> _engine.RestMesh:
     except ImportError as failure:
         raise MeshUnusable(code="no_vtk", cause=str(failure), **about) from None
     if path.suffix.lower() not in mesh_files.READERS:
-        wanted = f"must end with {', '.join(mesh_files.READERS)}"
-        raise NotAllowed(about.pop("key"), about.pop("value"), wanted, **about)
+        raise NotAllowed(**about, code="suffix_unknown", suffixes=", ".join(mesh_files.READERS))
     surface = mesh_files.triangles_of(path)
     if surface.GetNumberOfPolys() == 0:
         raise MeshUnusable(code="mesh_without_triangles", path=path, **about)

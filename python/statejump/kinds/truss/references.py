@@ -30,12 +30,12 @@ def known_name(key: str, value: Any, name: str, known: Mapping[str, Any], what: 
     if name in known:
         return
     nearest = difflib.get_close_matches(name, list(known), n=1, cutoff=0.5)
+    where |= {"nodes": (name,) if what == "node" else (), "what_it_is": what, "name": name}
     if nearest:
-        remedy = f"did you mean {nearest[0]!r}?"
-    else:
-        remedy = f"known are {listed(list(known))}" if known else f"the file has no section [[{what}]]"
-    raise NotAllowed(key, value, code="no_such_reference", remedy=remedy, nodes=(name,) if what == "node" else (),
-                     what_it_is=what, name=name, **where)
+        raise NotAllowed(key, value, code="misspelt_reference", meant=nearest[0], **where)
+    if known:
+        raise NotAllowed(key, value, code="no_such_reference", known=listed(list(known)), **where)
+    raise NotAllowed(key, value, code="reference_without_section", **where)
 
 
 def known_nodes(names: list[str], least: int, nodes: Mapping[str, Any], where: Mapping[str, Any]) -> None:

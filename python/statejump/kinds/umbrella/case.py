@@ -275,7 +275,7 @@ class UmbrellaCase(Case):
             name = getattr(self.joint, key)
             problem = _engine.law_problem(kind, name)
             if problem:  # a law of one's own that is known and cannot be used
-                raise NotAllowed(f"joint.{key}", name, problem)
+                raise NotAllowed(f"joint.{key}", name, problem, code="law_unusable")
         dissipation = laws.law("dissipation", self.joint.dissipation_law)
         may_be_zero = any(p.name == "restitution" and p.allows(0) for p in dissipation.parameters)
         if self.joint.restitution == 0 and not may_be_zero:
@@ -330,11 +330,10 @@ class UmbrellaCase(Case):
         holds = laws.law("friction", joint.friction_law).holds_static_load
         largest = atan(joint.friction_coefficient) if holds else 0.0
         if abs(start.contact_angle_rad) > largest:
-            raise NotAllowed(
-                "start.contact_angle_rad", start.contact_angle_rad,
-                f"must be between {-largest:.9g} and {largest:.9g} [rad], atan of joint.friction_coefficient"
-                if largest else "must be 0 [rad]: this friction holds no static load",
-            )
+            if not largest:
+                raise NotAllowed("start.contact_angle_rad", start.contact_angle_rad, code="friction_holds_no_load")
+            raise NotAllowed("start.contact_angle_rad", start.contact_angle_rad, code="angle_beyond_friction",
+                             least_rad=-largest, largest_rad=largest)
 
     def _check_run(self) -> None:
         if self.reduced_settings.method == "adaptive" and laws.law("friction", self.joint.friction_law).has_memory:

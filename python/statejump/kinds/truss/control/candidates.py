@@ -121,7 +121,7 @@ def _scaled(case: TrussCase, path: str) -> Candidate:
     if not wanted:
         known_names = suggestion(item, names, f"{section}.", f".{key}")
         raise UnknownKey("--free", value=path,
-                         **(known_names if names else {"cause": f"the case has no [[{section}]]"}))
+                         **(known_names if names else {"code": "no_such_table", "table": section}))
     values = known[section, key]
     which = _has_value(values) & (np.array([name in wanted for name in names], dtype=bool))
     if not which.any():
