@@ -46,10 +46,10 @@ def compare(first: Run, second: Run) -> Comparison:
     """
     if first.definition != second.definition:
         names = f"{first.definition.name}, {second.definition.name}"
-        raise StatejumpError("not comparable", cause=f"the runs are of other cases: {names}")
+        raise StatejumpError(code="runs_of_other_cases", cases=names)
     for run in (first, second):
         if not run.complete:
-            raise StatejumpError("not comparable", cause="a run was interrupted and is not complete")
+            raise StatejumpError(code="run_not_complete")
     case = first.definition
     if first.model != second.model:
         by_model = {run.model: run for run in (first, second)}

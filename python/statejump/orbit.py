@@ -111,10 +111,10 @@ def temperatures(
         Rule(NUMBER, allowed=Range(0, 1e4, "K", above=True)).check("within_K", within_K)
     names = [member.name for member in members]
     if not 0 < len(names) <= MOST_MEMBERS or len(set(names)) < len(names):
-        raise NotAllowed("members", cause=f"must be 1 to {MOST_MEMBERS} members, each with a name of its own")
+        raise NotAllowed("members", code="wrong_number_of_members", most=MOST_MEMBERS)
     ends = [0.0, *(time for pair in shadow_s for time in pair), period_s]
     if not all(len(pair) == 2 and pair[0] < pair[1] for pair in shadow_s) or sorted(ends) != ends:
-        raise NotAllowed("shadow_s", list(shadow_s), f"must be pairs of times that rise, from 0 to {period_s:g} [s]")
+        raise NotAllowed("shadow_s", list(shadow_s), code="shadow_times", period_s=period_s)
     times = np.unique([*np.linspace(0, period_s, samples_per_orbit + 1).tolist(), *ends])
     orbit = _Orbit(members, times, shadow_s, sink_K, solar_constant_W_per_m2)
     start = orbit.mean_K()
@@ -127,8 +127,7 @@ def temperatures(
         left = np.divide(second, first, out=np.zeros_like(first), where=first != 0)
         start = found[-1] + np.where(np.abs(left) < 1, second / (1 - np.minimum(left, 1 - 1e-9)), second)
     else:
-        raise StatejumpError(f"no orbit repeats itself within {MOST_ORBITS}",
-                             cause="members are heavy against the length of the orbit")
+        raise StatejumpError(code="orbit_not_periodic", orbits=MOST_ORBITS)
     found[-1] = found[0]
     if within_K is not None:
         kept = _needed(times, found, within_K, np.searchsorted(times, ends))
@@ -223,7 +222,7 @@ def read_members(path: str | Path) -> list[Member]:
     """
     path = Path(path)
     if not is_file(path):
-        raise Unreadable("no such file of members", file=path)
+        raise Unreadable(code="no_such_members_file", file=path)
     with open_table(path) as table:
         try:
             columns = matched(table.header, COLUMNS)
@@ -231,12 +230,11 @@ def read_members(path: str | Path) -> list[Member]:
             raise refused.located(file=path) from None
         missing = [key for key in COLUMNS if key not in {column.key for column in columns}]
         if missing:
-            raise Unreadable(f"line 1: column {missing[0]} is missing", cause="needed are " + ", ".join(COLUMNS),
-                             file=path)
+            raise Unreadable(code="member_column_missing", file=path, column=missing[0], needed=", ".join(COLUMNS))
         found: list[Member] = []
         for lines, rows in table.blocks():
             if len(found) + len(rows) > MOST_MEMBERS:
-                raise Unreadable(f"has more than {MOST_MEMBERS} members", file=path)
+                raise Unreadable(code="too_many_members", file=path, most=MOST_MEMBERS)
             cells = {column.key: part if column.key == "name" else numbers_of(table, column, part, lines).tolist()
                      for column, part in zip(columns, zip(*rows))}
             found += [_member(path, line, dict(zip(cells, row))) for line, row in zip(lines, zip(*cells.values()))]
@@ -246,7 +244,7 @@ def read_members(path: str | Path) -> list[Member]:
 def _member(path: Path, line: int, row: dict[str, Any]) -> Member:
     name = str(row["name"]).strip()
     if not name or not name.isprintable():
-        raise Unreadable(f"line {line}: name", cause="must be a text that is not empty", file=path)
+        raise Unreadable(code="member_name", file=path, line=line)
     try:
         return Member(name, **{key: row[key] for key in SECTION})
     except NotAllowed as refused:

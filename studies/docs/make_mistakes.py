@@ -120,16 +120,19 @@ joint, time, temperature and, if known, a remedy; its samples are dropped.
 | 143 | ended by SIGTERM, without incomplete files and without a message |
 
 With `--json` before the command (`statejump --json compare CASE`), a failure is one line of JSON on standard error.
-Standard output does not change. In Python the fields are `StatejumpError.fields()`. Fields without a value are absent:
+Standard output does not change. In Python the fields are `StatejumpError.fields()`, and a program compares
+`StatejumpError.code` with the [codes](#codes). Fields without a value are absent:
 
 | field | content |
 |---|---|
 | `kind` | `usage`, `bad_input`, `output` (a file cannot be written), `failed_run`, `tolerance_missed`, \
 `not_solved`, `interrupted`, `internal` (a fault of the program) |
+| `code` | what went wrong; codes do not change, sentences may |
 | `message`, `cause`, `remedy`, `exit_status` | the sentence and its parts |
 | `file`, `case`, `item` (of a list of tables), `key` | position of the mistake |
 | `value`, `allowed` | the value (as text if JSON has no such number); range with unit, or names |
 | `time_s`, `temperature_change_K`, `joint`, `nodes` | state of the run |
+| `details` | further values: the names in braces in the [codes](#codes) |
 """
 
 
@@ -187,6 +190,7 @@ def table() -> str:
                 lines += _rows(group, mistakes)
             lines += _rows("Runs in YADE", RUNS)
             lines += _as_json()
+            lines += _codes()
         finally:
             os.chdir(here)
     return "\n".join(lines)
@@ -219,6 +223,21 @@ def _as_json() -> list[str]:
         f"program:\n\n```\nstatejump --json dem umbrella_damped.toml\n{message}\n```\n"
     )
     return shown
+
+
+def _codes() -> list[str]:
+    """Every code with the sentence that its errors share."""
+    from statejump.core.error_codes import CODES
+
+    lines = ["## Codes\n\nNames in braces are `details`. The sign … stands for what each error says itself: which key "
+             "has which value, or which file is meant.\n\n| code | sentence |\n|---|---|"]
+    for code, declared in sorted(CODES.items()):
+        what = " ".join(part for part in (declared.what or "…", declared.beside) if part)
+        sentence = ": ".join(part for part in (what, declared.cause) if part)
+        if declared.remedy:
+            sentence += ("; " if declared.cause else ": ") + declared.remedy
+        lines.append(f"| `{code}` | {_cell(sentence if declared.text == '' else f'({declared.text})')} |")
+    return [*lines, ""]
 
 
 if __name__ == "__main__":

@@ -32,6 +32,7 @@ class Outcome:
     status: int
     output: str
     errors: str
+    failure: Any = None  # of a command that ran in this process: the error that ended it
 
 
 def results_in(folder: Path) -> list[str]:
@@ -90,13 +91,16 @@ def statejump(
         if environment or any(word in SPREADING for word in words):
             return statejump_process(*words, **environment)
         output, errors = io.StringIO(), io.StringIO()
+        ended: list[BaseException] = []
+        report = main._told
         with monkeypatch.context() as there, redirect_stdout(output), redirect_stderr(errors):
             there.chdir(tmp_path)
+            there.setattr(main, "_told", lambda error, as_json: (ended.append(error), report(error, as_json))[1])
             try:
                 status = main.run(words)
             except SystemExit as end:
                 status = int(end.code or 0)
-        return Outcome(status, output.getvalue(), errors.getvalue())
+        return Outcome(status, output.getvalue(), errors.getvalue(), ended[0] if ended else None)
 
     return run
 

@@ -12,54 +12,56 @@ import numpy as np
 import pytest
 
 from conftest import COMMAND, results_in
+from failures import failure
 from statejump import _paths, kinds, read
 from statejump.core.samples import names_line, rows_of
+from statejump.core.errors import Range
 
 E_LINE, NU = "young_modulus_Pa = 70e9\nstress", "friction_coefficient = 0.3"
 
-# what is replaced in the file, and the sentence after "error: bad.toml: "
+# what is replaced in the file, and what is wrong
 MISTAKES = {
     "unknown key": ((NU, "frictoin_coefficient = 0.3"),
-                    "joint.frictoin_coefficient is unknown: did you mean joint.friction_coefficient?"),
-    "unknown section": (("[dem]", "[demm]"), "section [demm] is unknown: did you mean [dem]?"),
+                    failure("misspelt_key", key="joint.frictoin_coefficient", meant="joint.friction_coefficient")),
+    "unknown section": (("[dem]", "[demm]"), failure("misspelt_key", section="section [demm]", meant="[dem]")),
     "missing key": ((NU + "\n", ""),
-                    "joint.friction_coefficient is missing: must be between 0 and 10 [-]"),
+                    failure("missing_key", key="joint.friction_coefficient", allowed=Range(0, 10, "-"))),
     "wrong type": ((NU, 'friction_coefficient = "0.3"'),
-                   "joint.friction_coefficient = '0.3' is not allowed: must be a number, between 0 and 10 [-]"),
+                   failure("wrong_type", key="joint.friction_coefficient", value="0.3", type="a number", allowed=Range(0, 10, "-"))),
     "boolean": ((NU, "friction_coefficient = true"),
-                "joint.friction_coefficient = true is not allowed: must be a number, between 0 and 10 [-]"),
+                failure("wrong_type", key="joint.friction_coefficient", value=True, type="a number", allowed=Range(0, 10, "-"))),
     "wrong sign": ((NU, "friction_coefficient = -0.3"),
-                   "joint.friction_coefficient = -0.3 is not allowed: must be between 0 and 10 [-]"),
+                   failure("out_of_range", key="joint.friction_coefficient", value=-0.3, allowed=Range(0, 10, "-"))),
     "NaN": ((NU, "friction_coefficient = nan"),
-            "joint.friction_coefficient = nan is not allowed: must be finite, between 0 and 10 [-]"),
+            failure("number_not_finite", key="joint.friction_coefficient", value=float("nan"), allowed=Range(0, 10, "-"))),
     "infinite": (("clearance_plus_m = 1e-3", "clearance_plus_m = inf"),
-                 "joint.clearance_plus_m = inf is not allowed: must be finite, above 0 and at most 100 [m]"),
+                 failure("number_not_finite", key="joint.clearance_plus_m", value=float("inf"), allowed=Range(0, 100, "m", above=True))),
     "zero modulus": ((E_LINE, "young_modulus_Pa = 0\nstress"),
-                     "link.young_modulus_Pa = 0 is not allowed: must be above 0 and at most 1e+13 [Pa]"),
+                     failure("out_of_range", key="link.young_modulus_Pa", value=0, allowed=Range(0, 10000000000000.0, "Pa", above=True))),
     "no clearance": (("clearance_plus_m = 1e-3", "clearance_plus_m = 0"),
-                     "joint.clearance_plus_m = 0 is not allowed: must be above 0 and at most 100 [m]"),
+                     failure("out_of_range", key="joint.clearance_plus_m", value=0, allowed=Range(0, 100, "m", above=True))),
     "fraction of a cycle": (("cycles = 1", "cycles = 1.5"),
-                            "thermal.cycles = 1.5 is not allowed: must be a whole number, between 1 and 100000 [-]"),
+                            failure("wrong_type", key="thermal.cycles", value=1.5, type="a whole number", allowed=Range(1, 100000, "-"))),
     "unknown program": (('"half_sine"', '"square"'),
-                        "thermal.shape = 'square' is not allowed: must be 'triangle' or 'half_sine' or 'sine' or 'table'"),
+                        failure("unknown_name", key="thermal.shape", value="square", allowed=("triangle", "half_sine", "sine", "table"))),
     "step above the stable one": (("time_step_fraction = 0.1", "time_step_s = 1e-3 #"),
-                                  "dem.time_step_s = 0.001 is not allowed: must be above 0 and at most the stable time step"),
+                                  failure("above_stable_time_step", key="dem.time_step_s", value=0.001)),
     "expansion closes the clearance": (("[thermal]", "pad_thermal_expansion_per_K = 5e-4\n[thermal]"),
-                                       "joint.clearance_minus_m = 0.001 is not allowed: the expansion of pad and slot closes it"),
+                                       failure("clearance_closes", key="joint.clearance_minus_m", value=0.001)),
     "table without values": (('"half_sine"', '"table"'),
-                             "thermal.temperature_change_max_K is not allowed with thermal.shape = 'table'"),
-    "not TOML": (("[joint]", "[joint"), "not TOML, line "),
+                             failure("beside_table_shape", key="thermal.temperature_change_max_K", in_section="thermal.")),
+    "not TOML": (("[joint]", "[joint"), failure("not_toml_at_line")),
 }
 
 
 @pytest.mark.parametrize("mistake", MISTAKES)
 @pytest.mark.parametrize("command", ["reduced", "dem", "compare"])
 def test_mistake_in_the_case_file(statejump, edited, tmp_path: Path, mistake: str, command: str) -> None:
-    replacement, sentence = MISTAKES[mistake]
+    replacement, wrong = MISTAKES[mistake]
     path = edited(replacement)
     outcome = statejump(command, path.name)
     assert outcome.status == 2
-    assert outcome.errors.startswith(f"error: bad.toml: {sentence}"), outcome.errors
+    assert outcome.failure == wrong.at(file="bad.toml")
     assert outcome.errors.count("\n") == 1
     assert "Traceback" not in outcome.errors + outcome.output
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["bad.toml"]
@@ -67,7 +69,7 @@ def test_mistake_in_the_case_file(statejump, edited, tmp_path: Path, mistake: st
 
 def test_missing_file(statejump) -> None:
     outcome = statejump("compare", "nowhere.toml")
-    assert (outcome.status, outcome.errors) == (2, "error: nowhere.toml: no such case file\n")
+    assert (outcome.status, outcome.failure) == (2, failure("no_such_case_file", file="nowhere.toml", of="case"))
 
 
 def test_cases_that_come_with_the_program_are_found_from_everywhere(statejump, tmp_path: Path) -> None:
@@ -75,16 +77,16 @@ def test_cases_that_come_with_the_program_are_found_from_everywhere(statejump, t
     # A file of one's own comes first.
     (tmp_path / "cases").mkdir()
     (tmp_path / "cases" / "table1.toml").write_text("wrong")
-    assert statejump("reduced", "cases/table1.toml").errors.startswith("error: cases/table1.toml: not TOML")
-    assert statejump("reduced", "cases/table2.toml").errors == "error: cases/table2.toml: no such case file\n"
+    assert statejump("reduced", "cases/table1.toml").failure == failure("not_toml_at_line", file="cases/table1.toml")
+    assert statejump("reduced", "cases/table2.toml").failure == failure("no_such_case_file", file="cases/table2.toml", of="case")
 
 
 def test_unwritable_results(statejump, cases: Path, tmp_path: Path) -> None:
     (tmp_path / "results").write_text("a file where a folder should be")
     outcome = statejump("compare", cases / "table1.toml")
     assert outcome.status == 2
-    assert outcome.errors.startswith("error: results folder results/table1: cannot be written: ")
-    assert outcome.errors.rstrip().endswith("choose another with --results")
+    assert outcome.failure == failure("not_written", place="results folder results/table1",
+                                      remedy="choose another with --results")
 
 
 def test_unknown_option_and_command(statejump) -> None:
@@ -94,30 +96,26 @@ def test_unknown_option_and_command(statejump) -> None:
 
 
 def test_yade_missing(yade, statejump, cases: Path) -> None:
-    outcome = statejump("dem", cases / "table1.toml", STATEJUMP_YADE="no-such-yade")
-    assert outcome.status == 2
-    assert outcome.errors == (
-        "error: YADE is missing: no command 'no-such-yade' found; install Debian's package 'yade' or "
-        "set STATEJUMP_YADE to the command\n"
-    )
+    outcome = statejump("--json", "dem", cases / "table1.toml", STATEJUMP_YADE="no-such-yade")
+    assert (outcome.status, outcome.errors) == (2, failure("no_yade", command="no-such-yade"))
 
 
 HALF = "echo 'STATEJUMP {\"progress\": 0.5}'\n"  # what the script in YADE says half-way
 FAILURES = {
-    "killed": (f"{HALF}kill -9 $$\n", "the DEM run was killed by signal 9; nothing was written"),
-    "failed": ("echo 'STATEJUMP {\"failure\": {\"cause\": \"the contact is lost\"}}'\nexit 2\n", "the DEM run failed: the contact is lost"),
+    "killed": (f"{HALF}kill -9 $$\n", failure("dem_killed", signal=9)),
+    "failed": ("echo 'STATEJUMP {\"failure\": {\"cause\": \"the contact is lost\"}}'\nexit 2\n", failure("dem_failed", cause="the contact is lost")),
     "crashed": ("echo something broke\nexit 3\n",
-                "YADE ended with status 3 before the run was finished: something broke"),
-    "ended early": (f"{HALF}exit 0\n", "YADE ended with status 0 before the run was finished"),
+                failure("yade_ended", status=3, cause="something broke")),
+    "ended early": (f"{HALF}exit 0\n", failure("yade_ended", status=0)),
 }
 
 
-@pytest.mark.parametrize("failure", FAILURES)
-def test_failed_run(statejump, cases: Path, fake_yade, tmp_path: Path, failure: str) -> None:
-    body, sentence = FAILURES[failure]
-    outcome = statejump("compare", cases / "table1.toml", STATEJUMP_YADE=fake_yade(body))
+@pytest.mark.parametrize("name", FAILURES)
+def test_failed_run(statejump, cases: Path, fake_yade, tmp_path: Path, name: str) -> None:
+    body, wrong = FAILURES[name]
+    outcome = statejump("--json", "compare", cases / "table1.toml", STATEJUMP_YADE=fake_yade(body))
     assert outcome.status == 2
-    assert outcome.errors == f"error: case table1: {sentence}\n"
+    assert outcome.errors == wrong.at(case="table1")
     assert not (tmp_path / "results").exists()
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -55,9 +55,7 @@ def section(mesh: _engine.BoreMesh, z_m: float) -> Section:
     radii = mesh.section_radii_m(z_m, ANGLES)
     if not np.all(np.isfinite(radii)):
         missing = float(np.degrees(angles_rad()[int(np.argmin(np.isfinite(radii)))]))
-        raise StatejumpError(
-            f"the bore's section at {z_m:.6g} m from its middle has no wall at {missing:.1f} degrees"
-        )
+        raise StatejumpError(code="bore_without_wall", z_m=z_m, angle_deg=missing)
     angle = angles_rad()
     points = radii[:, None] * np.column_stack((np.cos(angle), np.sin(angle)))
     centre = np.zeros(2)
@@ -74,10 +72,7 @@ def section(mesh: _engine.BoreMesh, z_m: float) -> Section:
     away = points - centre
     around = np.unwrap(np.arctan2(away[:, 1], away[:, 0]))
     if not (np.all(np.diff(around) > 0) and around[-1] < around[0] + 2 * np.pi):
-        raise StatejumpError(
-            f"the bore's section at {z_m:.6g} m from its middle is no ring about the centre of its circle of least "
-            "squares"
-        )
+        raise StatejumpError(code="bore_no_ring", z_m=z_m)
     distance = np.linalg.norm(away, axis=1)
     even = _resample(around, distance, angle)
     mean = float(np.mean(even))
@@ -194,8 +189,8 @@ class NoBore(StatejumpError):
     :param fault: the kind of failure
     """
 
-    def __init__(self, what: str, *, fault: str = "", file: object = None) -> None:
-        super().__init__(what, file=file, remedy=CURES[fault][1] if fault in CURES else None)
+    def __init__(self, what: str = "", *, fault: str = "", **more: Any) -> None:
+        super().__init__(what, remedy=CURES[fault][1] if fault in CURES else None, **more)
         self.fault = fault
 
     def __str__(self) -> str:
@@ -217,13 +212,13 @@ def load(file: Path, unit_m: float = 1.0, flip: bool = False) -> _engine.BoreMes
         if failure.file:
             assert failure.cause is not None  # of a file the engine says both
             what = failure.cause
-        raise NoBore(what, fault=failure.kind, file=failure.file or None) from None
+        raise NoBore(what, code=f"bore_{failure.kind}", fault=failure.kind, file=failure.file or None) from None
 
 
 def check_journal(key: str, radius_m: float | None) -> None:
     """Raise NotAllowed for a radius of a journal that is none; None: there is no journal."""
     if radius_m is not None and not 0 < radius_m < float("inf"):
-        raise NotAllowed(key, radius_m, "must be a number above 0 [m]")
+        raise NotAllowed(key, radius_m, code="not_positive_with_unit")
 
 
 def measure(mesh: _engine.BoreMesh, name: str, journal_radius_m: float | None = None) -> Bore:
@@ -236,13 +231,11 @@ def measure(mesh: _engine.BoreMesh, name: str, journal_radius_m: float | None = 
     if journal_radius_m is not None:
         ratio = mesh.mean_radius_m / journal_radius_m
         if not 0.1 < ratio < 10:
-            raise NoBore(
-                f"the bore's mean radius {mesh.mean_radius_m:.6g} m is {ratio:.3g} times the journal's "
-                f"{journal_radius_m:.6g} m: are the coordinates in millimetres?", fault="too_large", file=name,
-            )
+            raise NoBore(code="bore_in_millimetres", fault="too_large", file=name, mean_radius_m=mesh.mean_radius_m,
+                         ratio=ratio, journal_radius_m=journal_radius_m)
         if ratio <= 1:
-            raise NotAllowed("journal_radius_m", journal_radius_m, file=name,
-                             cause=f"the journal does not go into the bore of mean radius {mesh.mean_radius_m:.6g} m")
+            raise NotAllowed("journal_radius_m", journal_radius_m, code="journal_too_large", file=name,
+                             mean_radius_m=mesh.mean_radius_m)
     half = (0.5 - MARGIN) * mesh.length_m
     sections = tuple(section(mesh, float(z)) for z in np.linspace(-half, half, SECTIONS))
     return Bore(name, mesh, sections, journal_radius_m)

@@ -90,7 +90,7 @@ def _campaign(path: Path, text_read: str, data: Mapping[str, Any], command: str)
     header_given = data.get("campaign")
     for key in ("samples", "seed"):
         if command == SWEEP and isinstance(header_given, Mapping) and key in header_given:
-            raise NotAllowed(f"campaign.{key}", beside="in a sweep", cause="only 'statejump montecarlo' draws samples")
+            raise NotAllowed(f"campaign.{key}", code="only_montecarlo_draws")
     _check_sections(data)
     # The header is judged before what varies: that depends on the case.
     found: Any = structure(FILES[command], {"vary": [{}], **data})
@@ -101,7 +101,7 @@ def _campaign(path: Path, text_read: str, data: Mapping[str, Any], command: str)
     if not isinstance(tables_given, list) or not tables_given or not all(
         isinstance(table, Mapping) for table in tables_given
     ):
-        raise MissingKey("vary", "at least one table says what varies", section="[[vary]]")
+        raise MissingKey("vary", code="nothing_varies", section="[[vary]]")
     try:
         asked = checked(header.outputs, case)
     except NotAllowed as refused:
@@ -135,7 +135,7 @@ def plan_for(
     named = list(vary)
     found = vary_of(named, case, command)
     if not found:
-        raise MissingKey("what varies", "at least one key is needed")
+        raise MissingKey("what varies", code="no_key_varies")
     name = f"{case.name}_{command}"
     header = {"name": name, "title": case.title, "case": str(case.origin.file or case.name), "model": model,
               "outputs": list(asked), "samples": samples, "seed": seed}
@@ -156,7 +156,7 @@ def vary_tables(path: Path) -> list[tuple[str, Mapping[str, Any]]]:
         _check_sections(data, ("vary",))
         tables_given = data.get("vary")
         if not isinstance(tables_given, list) or not all(isinstance(table, Mapping) for table in tables_given):
-            raise MissingKey("vary", "at least one table says what varies", section="[[vary]]")
+            raise MissingKey("vary", code="nothing_varies", section="[[vary]]")
     except StatejumpError as failure:
         raise failure.located(file=path) from None
     return [(f"{path.name}: vary[{number}]", table) for number, table in enumerate(tables_given, start=1)]
@@ -164,13 +164,13 @@ def vary_tables(path: Path) -> list[tuple[str, Mapping[str, Any]]]:
 
 def _check_sections(data: Mapping[str, Any], known: Sequence[str] = ("campaign", "vary")) -> None:
     forms = {"campaign": "[campaign]", "vary": "[[vary]]"}
-    hints = {name: f"did you mean {forms[name]}?" for name in known}
     for name in data:
-        if name in hints:
+        if name in known:
             continue
-        match = difflib.get_close_matches(name, hints, n=1, cutoff=0.5)
-        raise UnknownKey(name, section=f"section [{name}]", remedy=hints[match[0]] if match else None,
-                         cause=None if match else "known are " + " and ".join(forms[one] for one in known))
+        match = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+        raise UnknownKey(name, section=f"section [{name}]", **(
+            {"code": "misspelt_key", "meant": forms[match[0]]} if match else
+            {"code": "no_such_key", "known": " and ".join(forms[one] for one in known)}))
 
 
 def check_campaign(case: Case, model: str, named: str, before: str = "") -> None:
@@ -181,17 +181,17 @@ def check_campaign(case: Case, model: str, named: str, before: str = "") -> None
     """
     behaviour = of(case)
     if not supports(behaviour, Outcomes):
-        raise NotAllowed(f"{before}case", named, f"no campaign runs {case.kind!r}")
+        raise NotAllowed(f"{before}case", named, code="no_campaign_of_kind", kind=case.kind)
     rule_of(fields_of(SweepHeader)["model"]).check(f"{before}model", model)
     if model not in behaviour.campaign_models():
         others = " or ".join(f"model = {name!r}" for name in behaviour.campaign_models())
-        raise NotAllowed(f"{before}model", model, f"a campaign of {case.kind!r} has {others}")
+        raise NotAllowed(f"{before}model", model, code="model_not_of_kind", kind=case.kind, models=others)
 
 
 def check_workers(key: str, workers: int | None) -> None:
     """Raise NotAllowed for a number of workers that is none."""
     if workers is not None and workers < 1:
-        raise NotAllowed(key, workers, "must be at least 1")
+        raise NotAllowed(key, workers, code="below_one")
 
 
 def vary_of(given: Iterable[tuple[str, Mapping[str, Any]]], case: Case, command: str) -> tuple[Varied, ...]:
@@ -215,5 +215,5 @@ def points_of(vary: tuple[Varied, ...]) -> int:
     """Return the number of points of a grid. :raises NotAllowed: there are too many"""
     points = number_of_points([axis for axis in vary if isinstance(axis, Values)])
     if points > MOST_SAMPLES:
-        raise NotAllowed("[[vary]]", cause=f"the grid has {points} points, must be at most {MOST_SAMPLES}")
+        raise NotAllowed("[[vary]]", code="grid_too_large", points=points, most_samples=MOST_SAMPLES)
     return points

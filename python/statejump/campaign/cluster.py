@@ -45,8 +45,8 @@ WORKERS_S = 10  # how long a scheduler without workers is waited for
 class SchedulerUnusable(StatejumpError):
     """A scheduler cannot be used: ``--scheduler = ADDRESS WHAT[: CAUSE]``."""
 
-    def __init__(self, what: str, address: str, **more: Any) -> None:
-        super().__init__(what, key=OPTION, value=address, **more)
+    def __init__(self, address: str, **more: Any) -> None:
+        super().__init__(key=OPTION, value=address, **more)
 
     def phrase(self) -> str:
         return f"{self.key} = {shown(self.value)} {self.what}"
@@ -152,30 +152,28 @@ def _no_main_file() -> Iterator[None]:
 def _existing(address: str) -> Iterator[Client]:
     found = re.fullmatch(r"(?:(?:tcp|tls)://)?(\[[0-9a-fA-F:]+\]|[^\s:/\[\]]+):(\d{1,5})", address)
     if found is None or int(found[2]) > 65535:
-        raise NotAllowed(OPTION, address, ADDRESS)
+        raise NotAllowed(OPTION, address, ADDRESS, code="scheduler_address")
     _check_security(address)
     try:
         # Whether anybody listens, before Dask begins to try again and again.
         socket.create_connection((found[1].strip("[]"), int(found[2])), timeout=CONNECT_S).close()
         client = Client(address, timeout=CONNECT_S, set_as_default=False)
     except (OSError, ValueError, asyncio.TimeoutError):
-        raise SchedulerUnusable(f"cannot be reached within {CONNECT_S} s", address, cause=ADDRESS) from None
+        raise SchedulerUnusable(address, code="scheduler_not_reached", cause=ADDRESS, connect_s=CONNECT_S) from None
     try:
         try:
             client.wait_for_workers(1, timeout=WORKERS_S)
         except asyncio.TimeoutError:
-            raise SchedulerUnusable(f"has no workers after {WORKERS_S} s", address) from None
+            raise SchedulerUnusable(address, code="scheduler_without_workers", workers_s=WORKERS_S) from None
         try:
             versions = client.run(_version)
         except Exception as problem:  # the package is missing there, or is another one
-            raise SchedulerUnusable(
-                f"has workers that cannot import statejump {__version__}, start them with PYTHONPATH set", address,
-                cause=f"{type(problem).__name__}: {problem}",
-            ) from None
+            raise SchedulerUnusable(address, code="scheduler_without_statejump",
+                                    cause=f"{type(problem).__name__}: {problem}", here=__version__) from None
         for worker, version in versions.items():
             if version != __version__:
-                raise SchedulerUnusable(f"has a worker {worker} with statejump {version}, here it is {__version__}",
-                                        address)
+                raise SchedulerUnusable(address, code="scheduler_of_other_version", worker=worker, version=version,
+                                        here=__version__)
         yield client
     finally:
         client.close(timeout=CONNECT_S)
@@ -189,7 +187,7 @@ def _check_security(address: str) -> None:
     security = Security()
     if not address.startswith("tls://"):
         if security.require_encryption:
-            raise SchedulerUnusable("is not encrypted", address, cause="Dask's configuration has require-encryption")
+            raise SchedulerUnusable(address, code="scheduler_not_encrypted")
         return
     cause = "Dask's configuration has no distributed.comm.tls"
     try:
@@ -197,7 +195,7 @@ def _check_security(address: str) -> None:
             return
     except OSError as problem:  # of ssl as well
         cause = str(problem)
-    raise SchedulerUnusable("needs certificates", address, cause=cause, remedy="docs/security.md shows how")
+    raise SchedulerUnusable(address, code="scheduler_without_certificates", cause=cause)
 
 
 def _version() -> str:

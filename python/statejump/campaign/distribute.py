@@ -106,10 +106,10 @@ def _patiently(client: Client, ask: Callable[[], Given]) -> Given:
             alone_since = None if client.scheduler_info()["workers"] else alone_since or now
             patience = RESTART_S if restarts_workers(client) else NO_WORKERS_S
             if alone_since is not None and now - alone_since >= patience:
-                raise StatejumpError(f"the dask scheduler has had no workers for {patience:g} s; {KEPT}") from None
+                raise StatejumpError(code="scheduler_lost_workers", patience=patience, advice=KEPT) from None
         except (CancelledError, OSError) as problem:
-            lost = f"the connection to the dask scheduler was lost ({type(problem).__name__})"
-            raise StatejumpError(f"{lost}; {KEPT}") from None
+            raise StatejumpError(code="scheduler_connection_lost", problem=type(problem).__name__,
+                                 advice=KEPT) from None
 
 
 def _some_of(client: Client, running: set[Future]) -> set[Future]:

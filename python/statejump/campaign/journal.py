@@ -55,7 +55,7 @@ class Journal(Kept):
         try:
             self._stream: IO[bytes] = open(self.path, "a+b")
         except OSError as failure:
-            raise NotWritten("cannot be written", file=self.path, cause=failure.strerror) from None
+            raise NotWritten(code="cannot_be_written", file=self.path, cause=failure.strerror) from None
         try:
             self._open(restart)
         except BaseException:
@@ -70,10 +70,7 @@ class Journal(Kept):
             self._append(self._header)
             return
         if entries[0] != self._header:
-            raise StatejumpError(
-                "belongs to another campaign (the campaign, its case or statejump has changed since); --restart "
-                "drops what is there, another campaign.name keeps it", file=self.path,
-            )
+            raise StatejumpError(code="journal_of_other_campaign", file=self.path)
         for place, entry in enumerate(entries[1:], start=2):
             try:
                 super().add(_batch(entry, self._columns))
@@ -97,8 +94,7 @@ class Journal(Kept):
         return entries
 
     def _damaged(self, line: int) -> Unreadable:
-        return Unreadable(f"line {line} is damaged", cause="its checksum is that of other contents",
-                          remedy="--restart drops what is there", file=self.path)
+        return Unreadable(code="journal_damaged", file=self.path, line=line)
 
     def _append(self, entry: Any) -> None:
         try:
@@ -106,7 +102,7 @@ class Journal(Kept):
             self._stream.flush()
             os.fsync(self._stream.fileno())
         except OSError as failure:
-            raise NotWritten("cannot be written", file=self.path, cause=failure.strerror) from None
+            raise NotWritten(code="cannot_be_written", file=self.path, cause=failure.strerror) from None
 
     def add(self, batch: Batch) -> None:
         """Keep finished samples; on return they are on disk."""

@@ -43,9 +43,9 @@ LIKE = "must be HOW:COLUMN[ITEM].AXIS, as 'jump:displacement_m[P].x'"
 def parts(name: str) -> re.Match[str]:
     found = FORM.fullmatch(name) if isinstance(name, str) else None
     if found is None:
-        raise NotAllowed("outputs", name, LIKE)
+        raise NotAllowed("outputs", name, code="output_form")
     if found["how"] not in HOW:
-        raise NotAllowed("outputs", name, f"HOW must be one of {', '.join(HOW)}")
+        raise NotAllowed("outputs", name, code="output_how_unknown", hows=", ".join(HOW))
     return found
 
 
@@ -97,8 +97,7 @@ def _returned(run: Run, name: str) -> Run:
     """Return the run at the times at which the temperature is back where it began."""
     times = run.definition.returns_s()
     if len(times) < 2:
-        raise NotAllowed("outputs", name, f"the temperature comes back where it began {len(times)} times, 2 are needed",
-                         remedy="set thermal.cycles")
+        raise NotAllowed("outputs", name, code="output_without_jump", times=len(times))
     return run.at(times)
 
 
@@ -106,23 +105,25 @@ def _value(name: str, run: Run, columns: dict[str, Column]) -> float:
     asked = parts(name)
     if asked["column"] not in columns:
         where = next((f"{group}." for group in GROUPS[2:] if asked["column"] in getattr(run, group)), "")
-        raise NotAllowed("outputs", name, f"did you mean {where}{asked['column']}?" if where else
-                         _near("column", asked["column"], list(columns)))
+        raise NotAllowed("outputs", name, **(
+            {"code": "output_misspelt", "meant": f"{where}{asked['column']}"} if where else
+            _near("column", asked["column"], list(columns))))
     column = columns[asked["column"]]
     values = np.asarray(column.values, dtype=float)
     if column.items:
         names = list(run.names[column.items])
         if asked["item"] is None:
-            raise NotAllowed("outputs", name, f"{asked['column']} is one of each of the {column.items}: which one?")
+            raise NotAllowed("outputs", name, code="output_item_not_chosen", column=asked["column"], items=column.items)
         if asked["item"] not in names:
-            raise NotAllowed("outputs", name, _near(column.items, asked["item"], names))
+            raise NotAllowed("outputs", name, **_near(column.items, asked["item"], names))
         values = values[:, names.index(asked["item"])]
     elif asked["item"] is not None:
-        raise NotAllowed("outputs", name, f"{asked['column']} has no items")
+        raise NotAllowed("outputs", name, code="output_without_items", column=asked["column"])
     if asked["axis"] is not None:
-        if values.ndim == 1 or asked["axis"] not in AXES:
-            raise NotAllowed("outputs", name, f"{asked['column']} is no vector" if values.ndim == 1 else
-                             f"the axis must be one of {', '.join(AXES)}")
+        if values.ndim == 1:
+            raise NotAllowed("outputs", name, code="output_no_vector", column=asked["column"])
+        if asked["axis"] not in AXES:
+            raise NotAllowed("outputs", name, code="output_axis", known=", ".join(AXES))
         values = values[:, AXES.index(asked["axis"])]
     elif values.ndim > 1 and asked["how"] in ALL:
         values = np.linalg.norm(values, axis=1)
@@ -140,12 +141,15 @@ def _surface(run: Run, name: str) -> dict[str, Column]:
     try:
         return {key: Column(values) for key, values in _HISTORY(run).items()}
     except StatejumpError as refused:
-        raise NotAllowed("outputs", name, refused.phrase(), remedy=refused.remedy) from None
+        raise NotAllowed("outputs", name, refused.phrase(), code="output_of_no_surface",
+                         remedy=refused.remedy) from None
 
 
-def _near(what: str, given: str, known: Sequence[str]) -> str:
+def _near(what: str, given: str, known: Sequence[str]) -> dict[str, str]:
     near = get_close_matches(given, known, n=1)
     if near:
-        return f"did you mean {near[0]}?"
+        return {"code": "output_misspelt", "meant": near[0]}
     listed = ", ".join(known[:12]) + (", ..." if len(known) > 12 else "")
-    return f"there is no such {what.removesuffix('s')}; there are {listed}" if known else f"there are no {what}"
+    if known:
+        return {"code": "output_of_nothing", "what_it_is": what.removesuffix("s"), "known": listed}
+    return {"code": "output_of_no_items", "items": what}

@@ -166,10 +166,8 @@ def run_in(
             done.note = kept.note
         except KeyboardInterrupt:
             finished = sum(index < plan.samples for index in kept.finished)
-            raise Interrupted(
-                f"interrupted; {finished:,} of {plan.samples:,} samples are kept in {kept.path}, the same command goes "
-                "on with the others"
-            ) from None
+            raise Interrupted(code="campaign_interrupted", finished=finished, samples=plan.samples,
+                              path=kept.path) from None
         return Campaign(plan, make_table(plan, kept.batches), done)
 
 

@@ -90,15 +90,14 @@ def varied(table: Mapping[str, Any], case: Case, command: str) -> Varied:
         if name in known:
             continue
         if name in fields_of(TABLES[other]):
-            raise NotAllowed(name, beside=f"in a campaign of 'statejump {command}'",
-                             cause=f"it is for 'statejump {other}'")
+            raise NotAllowed(name, code="key_of_other_campaign", command=command, other=other)
         raise UnknownKey(name, **suggestion(name, known))
     if "key" not in table:
-        raise MissingKey("key", LIKE)
+        raise MissingKey("key", LIKE, code="key_missing")
     main = _checked_path(table["key"], "key", case)
     also = table.get("also", [])
     if not isinstance(also, (list, tuple)):
-        raise NotAllowed("also", also, "must be a list of keys that get the same value")
+        raise NotAllowed("also", also, code="also_no_list")
     keys = (main, *(_checked_path(path, "also", case) for path in also))
     if command == SWEEP:
         return _values(table, keys, case)
@@ -107,7 +106,7 @@ def varied(table: Mapping[str, Any], case: Case, command: str) -> Varied:
         return _distribution(table, keys, case)
     for path in keys[1:]:
         if split_path(path)[:2] != (section, item):
-            raise NotAllowed("also", path, f"items of {main!r} share their values with their own keys")
+            raise NotAllowed("also", path, code="items_share_values", main=main)
     return Independent(keys, tuple(
         _distribution(table, tuple(f"{section}.{name}.{split_path(path)[2]}" for path in keys), case)
         for name in meant(item, _items(case, main))
@@ -119,7 +118,7 @@ def check_apart(found: list[Varied], case: Case) -> None:
     taken = [key for parameter in found[:-1] for key in parameter.keys]
     for key in found[-1].keys:
         if any(_overlap(key, other, case) for other in taken) or found[-1].keys.count(key) > 1:
-            raise NotAllowed("key", key, "it varies already")
+            raise NotAllowed("key", key, code="varies_already")
 
 
 def _overlap(one: str, other: str, case: Case) -> bool:
@@ -150,21 +149,22 @@ def _own_value(case: Case, path: str) -> float | None:
 
 def _checked_path(path: Any, name: str, case: Case) -> str:
     if not isinstance(path, str):
-        raise NotAllowed(name, path, "must be a text such as 'joint.friction_coefficient'")
+        raise NotAllowed(name, path, code="path_no_text")
     known = numbers_of(type(case))
     section, item, _ = split_path(path)
     if pattern_of(path) in known:
         names = _items(case, path) if item else []
         if item and not names:
-            raise NotAllowed(name, path, f"the case has no [[{section}]]")
+            raise NotAllowed(name, path, code="no_such_table", table=section)
         if not item or meant(item, names):
             return path
-        raise UnknownKey(name, value=path, cause=f"the case has no {section} {item!r}", remedy=_meant(item, names))
+        raise UnknownKey(name, code="item_not_in_case", value=path, remedy=_meant(item, names), table=section,
+                         name=item)
     if pattern_of(path) in keys_of(type(case)):
-        raise NotAllowed(name, path, "it is not a number")
+        raise NotAllowed(name, path, code="not_a_number_key")
     remedy = _meant(path, list(known))
-    raise UnknownKey(name, value=path, beside=f"in a case of kind {case.kind!r}", cause=None if remedy else LIKE,
-                     remedy=remedy)
+    raise UnknownKey(name, code="key_not_in_kind", value=path, cause=None if remedy else LIKE, remedy=remedy,
+                     kind=case.kind)
 
 
 def _meant(word: str, known: list[str]) -> str | None:
@@ -177,11 +177,10 @@ def _number(table: Mapping[str, Any], name: str, *, above: float | None = None) 
     if name not in table:
         return None
     value = table[name]
-    needs = "must be a finite number" + ("" if above is None else f" above {above:g}")
+    if above is not None and not (is_finite_number(value) and value > above):
+        raise NotAllowed(name, value, code="not_finite_above", least=above)
     if not is_finite_number(value):
-        raise NotAllowed(name, value, needs)
-    if above is not None and not value > above:
-        raise NotAllowed(name, value, needs)
+        raise NotAllowed(name, value, code="not_finite")
     return float(value)
 
 
@@ -189,10 +188,11 @@ def _distribution(table: Mapping[str, Any], keys: tuple[str, ...], case: Case) -
     rules = {path: rule_of(attribute_of(type(case), path)) for path in keys}
     for path, rule in rules.items():
         if rule.form == WHOLE:
-            raise NotAllowed("key", path, "it is a whole number, only 'statejump sweep' varies it")
+            raise NotAllowed("key", path, code="whole_number_varies")
     kind_name = table.get("distribution")
     if kind_name is None:
-        raise MissingKey("distribution", "must be " + " or ".join(repr(name) for name in DISTRIBUTIONS))
+        raise MissingKey("distribution", code="must_be_named",
+                         names=" or ".join((repr(name) for name in DISTRIBUTIONS)))
     check_name("distribution", kind_name, DISTRIBUTIONS)
     low, high = _number(table, "low"), _number(table, "high")
     deviation, relative = (_number(table, name, above=0) for name in ("standard_deviation", "relative"))
@@ -200,49 +200,48 @@ def _distribution(table: Mapping[str, Any], keys: tuple[str, ...], case: Case) -
     bounded = kind_name in ("uniform", "truncated_normal")
     for name, value in limits.items():
         if value is not None and not bounded:
-            raise NotAllowed(name, cause=f"a {kind_name} distribution has no limits")
+            raise NotAllowed(name, code="distribution_without_limits", distribution=kind_name)
     if low is not None and high is not None and not low < high:
-        raise NotAllowed("high", high, f"must be above low = {low!r}")
+        raise NotAllowed("high", high, code="not_above_low", low=low)
     if kind_name == "uniform" and relative is None:
-        needs = "a uniform distribution has low and high, or relative"
         for name in ("mean", "standard_deviation"):
             if name in table:
-                raise NotAllowed(name, cause=needs)
+                raise NotAllowed(name, code="uniform_limits")
         for name, value in limits.items():
             if value is None:
-                raise MissingKey(name, needs)
+                raise MissingKey(name, code="uniform_limits")
         assert low is not None and high is not None
         return Distribution(keys, kind_name, low=low, high=high)
     mean = table.get("mean", _own_value(case, keys[0]))
     if mean is None:
-        raise MissingKey("mean", f"the case gives no {keys[0]}")
+        raise MissingKey("mean", code="mean_not_in_case", mean_of=keys[0])
     rules[keys[0]].check("mean", mean)
     mean = float(mean)
     if relative is not None:
         if mean == 0:
-            raise NotAllowed("relative", relative, "the mean is 0")
+            raise NotAllowed("relative", relative, code="mean_is_zero")
         if deviation is not None:
-            raise NotAllowed("relative", beside="beside standard_deviation")
+            raise NotAllowed("relative", code="beside_standard_deviation")
         deviation = relative * abs(mean)
         if not 0 < deviation < math.inf:
-            raise NotAllowed("relative", relative, f"times the mean it is {deviation:g}, no number above 0")
+            raise NotAllowed("relative", relative, code="deviation_not_positive", deviation=deviation)
     if deviation is None:
-        raise MissingKey("standard_deviation", "either it or relative is needed, above 0")
+        raise MissingKey("standard_deviation", code="deviation_missing")
     if kind_name == "uniform":
         if low is not None or high is not None:
-            raise NotAllowed("relative", beside="beside low and high")
+            raise NotAllowed("relative", code="beside_low_and_high")
         return Distribution(keys, kind_name, low=mean - deviation, high=mean + deviation)
     if kind_name == "lognormal" and not mean > 0:
-        raise NotAllowed("mean", mean, "must be above 0 for a lognormal distribution")
+        raise NotAllowed("mean", mean, code="lognormal_mean")
     if kind_name != "truncated_normal":
         return Distribution(keys, kind_name, mean, deviation)
     if low is None and high is None:
-        raise MissingKey("low", "a truncated_normal distribution has low or high or both")
+        raise MissingKey("low", code="limits_missing")
     found = Distribution(keys, kind_name, mean, deviation, -math.inf if low is None else low,
                          math.inf if high is None else high)
     below, up_to, _ = found.probabilities()
     if not up_to - below > 1e-12:
-        raise NotAllowed("mean", mean, "practically nothing of the normal distribution is left between the limits")
+        raise NotAllowed("mean", mean, code="nothing_between_limits")
     return found
 
 
@@ -250,13 +249,13 @@ def _spaced(table: Mapping[str, Any], spacing: str, is_whole: bool) -> list[Any]
     """Return the values of a table with start, stop and count."""
     for name in ("start", "stop", "count"):
         if name not in table:
-            raise MissingKey(name, "either values, or start, stop and count are needed")
+            raise MissingKey(name, code="range_missing")
     start, stop, count = _number(table, "start"), _number(table, "stop"), table["count"]
     assert start is not None and stop is not None
     if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= MOST_SAMPLES:
-        raise NotAllowed("count", count, f"must be a whole number, between 2 and {MOST_SAMPLES}")
+        raise NotAllowed("count", count, code="count_out_of_range", most_samples=MOST_SAMPLES)
     if spacing == "log" and not (start > 0 and stop > 0):
-        raise NotAllowed("start", start, "must, as stop, be above 0 for a log spacing")
+        raise NotAllowed("start", start, code="log_start")
     spaced = np.geomspace(start, stop, count) if spacing == "log" else np.linspace(start, stop, count)
     wanted = [float(value) for value in spaced]
     return [int(value) if value.is_integer() else value for value in wanted] if is_whole else wanted
@@ -267,23 +266,23 @@ def _values(table: Mapping[str, Any], keys: tuple[str, ...], case: Case) -> Valu
     is_whole = rules[0].form == WHOLE
     spacing = table.get("spacing", "linear")
     if not isinstance(spacing, str) or spacing not in SPACINGS:
-        raise NotAllowed("spacing", spacing, "must be " + " or ".join(repr(name) for name in SPACINGS))
+        raise NotAllowed("spacing", spacing, code="must_be_named", names=" or ".join((repr(name) for name in SPACINGS)))
     if "values" in table:
         for name in ("start", "stop", "count"):
             if name in table:
-                raise NotAllowed(name, beside="beside values")
+                raise NotAllowed(name, code="beside_values")
         name, wanted = "values", table["values"]
         if not isinstance(wanted, (list, tuple)) or not wanted:
-            raise NotAllowed(name, wanted, "must be a list of numbers")
+            raise NotAllowed(name, wanted, code="no_list_of_numbers")
     else:
         name, wanted = "start", _spaced(table, spacing, is_whole)
     checked = []
     for value in wanted:
         for rule in rules:
             if value is None:
-                raise NotAllowed(name, value, rule.needs())
+                raise NotAllowed(name, value, rule.needs(), code="out_of_range", allowed=rule.allowed)
             rule.check(name, value)
         checked.append(value if is_whole else float(value))
     if len(set(checked)) != len(checked):
-        raise NotAllowed(name, cause="a value is there twice")
+        raise NotAllowed(name, code="value_there_twice")
     return Values(keys, tuple(checked), spacing)

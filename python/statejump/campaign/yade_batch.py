@@ -29,7 +29,7 @@ def write_table(campaign: Plan, path: Path) -> None:
     The script takes the values from their columns; the campaign file tells case and outcomes.
     """
     if campaign.file is None or "dem" not in of(campaign.case).campaign_models():
-        raise NotAllowed("--yade-batch", cause=f"no such campaign runs {campaign.case.kind!r}", file=campaign.file)
+        raise NotAllowed("--yade-batch", code="no_yade_batch_of_kind", file=campaign.file, kind=campaign.case.kind)
     columns = [column_of(parameter.keys[0]) for parameter in campaign.vary]
     # Tables have neither blanks nor '#' in a value.
     file = quote(str(campaign.file.resolve()))

@@ -39,10 +39,10 @@ def _plan(file: Path, name: str, of_case: dict[str, Any]) -> Plan:
     _, data = read_toml(file, "campaign")
     if name != MONTECARLO or "case" not in data or "campaign" in data:
         for option in given:
-            raise NotAllowed(option, beside="with a campaign file", cause="it says that itself", file=file)
+            raise NotAllowed(option, code="beside_campaign_file", file=file)
         return load_campaign(file, name)
     if not of_case["--vary"]:
-        raise MissingKey("--vary", "a case needs a file that says what varies", file=file)
+        raise MissingKey("--vary", code="vary_file_missing", file=file)
     tables = [table for path in of_case["--vary"] for table in vary_tables(path)]
     samples, seed = (default if of_case[option] is None else of_case[option]
                      for option, default in (("--samples", 1000), ("--seed", 1)))
@@ -73,7 +73,7 @@ def _command(name: str, text: str) -> click.Command:
         console = make_console(quiet)
         check_workers("--workers", workers)
         if workers is not None and scheduler is not None:
-            raise NotAllowed("--workers", beside="with --scheduler", cause="that cluster has its own")
+            raise NotAllowed("--workers", code="beside_scheduler")
         plan = _plan(file, name, {"--vary": tables, "--samples": samples, "--seed": seed, "--output": outputs})
         if table is not None:
             write_table(plan, table)
@@ -87,7 +87,7 @@ def _command(name: str, text: str) -> click.Command:
         console.print(f"results: {', '.join(str(path) for path in written)}")
         console.print(f"wall time: {since_start_s():.1f} s, start and figures included")
         if campaign.failed == plan.samples:
-            raise FailedRun("every sample failed, the first one", file=file,
+            raise FailedRun(code="every_sample_failed", file=file,
                             cause=campaign.summary()["failures"][0]["first_sentence"])
 
     return command if name == SWEEP else cast(click.Command, _of_case(command))

@@ -141,7 +141,7 @@ def run(arguments: Sequence[str]) -> int:
         try:
             os.getcwd()
         except FileNotFoundError:
-            raise StatejumpError("the folder where the command was started does not exist any more") from None
+            raise StatejumpError(code="working_folder_gone") from None
         # Figures go to files: a backend of windows that the environment names is none of ours, nor of YADE's.
         os.environ["MPLBACKEND"] = "agg"
         cli.main(list(arguments), standalone_mode=False)

@@ -128,7 +128,7 @@ def _kept(command: str, model: str, case: Case, before: dict[str, Run], folder: 
     if not isinstance(stopped.run, Run):
         return stopped
     written = folder.publish([save(command, case, {**before, model: stopped.run}, folder.staged)])
-    return Interrupted(f"interrupted; the {len(stopped.run)} samples so far are in {written[0]}")
+    return Interrupted(code="samples_interrupted", samples=len(stopped.run), kept=written[0])
 
 
 @click.command("dem")

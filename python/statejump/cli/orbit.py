@@ -17,7 +17,7 @@ def _interval(text: str) -> tuple[float, float]:
     try:
         return float(begin), float(end)
     except ValueError:
-        raise NotAllowed("--shadow", text, "must be BEGIN:END in seconds, as 1800:3900") from None
+        raise NotAllowed("--shadow", text, code="shadow_form") from None
 
 
 @click.command("orbit")

@@ -157,7 +157,7 @@ def export_command(
     result = read(file)
     target = folder if folder is not None else file.with_suffix("")
     if target == file:
-        raise StatejumpError("has no suffix to leave out", file=file, remedy="choose a folder with --to")
+        raise StatejumpError(code="no_suffix", file=file)
     with Results(target.parent, wait).folder(target.name) as there:
         written: list[Path] = []
         if form in ("csv", "all"):
@@ -187,10 +187,7 @@ def compare_files(files: Sequence[Path], console: Console) -> None:
     :raises StatejumpError: not two result files of the same case
     """
     if len(files) != 2:
-        raise StatejumpError(
-            f"{len(files)} file(s) given", cause="'statejump compare' takes a case file or two result files",
-            remedy="what is in one shows 'statejump info'",
-        )
+        raise StatejumpError(code="wrong_number_of_files", files=len(files))
     first, second = (read(file) for file in files)
     found = difference(first, second)
     for place, file in zip((FIRST, SECOND), files):

@@ -88,5 +88,5 @@ def finish() -> NotWritten | None:
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
     if isinstance(sys.stdout, Stream) and sys.stdout.lost is not None and sys.stdout.lost.errno != errno.EPIPE:
-        failure = NotWritten("standard output cannot be written", cause=sys.stdout.lost.strerror)
+        failure = NotWritten(code="standard_output_not_written", cause=sys.stdout.lost.strerror)
     return failure

@@ -29,6 +29,6 @@ def new_files(output: Path, tables: bool, force: bool) -> tuple[str, ...]:
     beside = sections_in_files() if tables else ()
     for path in (output, *(table_path(output, section) for section in beside)):
         if os.path.exists(path) and not force:
-            raise StatejumpError(cause="exists already", file=path, remedy="--force overwrites it")
+            raise StatejumpError(code="exists_already", file=path)
     check_target(output)
     return beside

@@ -69,7 +69,7 @@ def surface_command(
     """
     console = make_console(quiet)
     if (samples is None) != (column is None):
-        raise MissingKey("--column" if column is None else "--samples", "--samples and --column go together")
+        raise MissingKey("--column" if column is None else "--samples", code="samples_and_column")
     notes: list[str] = []
     history: dict[str, np.ndarray] = {}
     case: Case | None = None
@@ -81,7 +81,7 @@ def surface_command(
         else:
             for option, given in (("--axis", axis), ("--focal-length", focal_length)):
                 if given is not None:
-                    raise NotAllowed(option, beside="beside a case", cause="its section [reflector] says it")
+                    raise NotAllowed(option, code="beside_a_case")
             case = loaded(file, ReducedModel)
             name, notes = case.name, list(case.thermal_notes)
             design, states, history = _of_case(case, measure, console)
@@ -137,8 +137,8 @@ def _repeatability(samples: Path, column: str, share: float, length_m: float) ->
     columns = read_columns(samples)
     lengths = [name for name in columns if unit(name) == "m" and np.issubdtype(columns[name].dtype, np.number)]
     if column not in lengths:
-        raise NotAllowed("--column", column, f"must be one of {', '.join(lengths)}" if lengths
-                         else "no column of it is a length [m]", file=samples)
+        raise NotAllowed("--column", column, file=samples, **(
+            {"code": "not_one_of", "known": ", ".join(lengths)} if lengths else {"code": "no_length"}))
     found = repeatability(columns[column], length_m, share)
     size = np.abs(columns[column])
     worst = int(np.nanargmax(size))

@@ -141,13 +141,13 @@ class Study:
 def check_wanted(jump_below: float | None, unit: str) -> None:
     """Raise NotAllowed for a wanted jump that is none."""
     if jump_below is not None and not (isfinite(jump_below) and jump_below > 0):
-        raise NotAllowed("--jump-below", jump_below, f"must be a finite number above 0 [{unit}]")
+        raise NotAllowed("--jump-below", jump_below, code="not_finite_positive", unit=unit)
 
 
 def refuse_runs(runs: int | None, case: Case) -> None:
     """Raise NotAllowed for a size of an ensemble where none is run."""
     if runs is not None:
-        raise NotAllowed("--runs", runs, f"case {case.name} has one exact path, no ensemble is run")
+        raise NotAllowed("--runs", runs, code="no_ensemble", name_of_case=case.name)
 
 
 def refuse_places(places: Places, case: Case) -> None:
@@ -156,8 +156,7 @@ def refuse_places(places: Places, case: Case) -> None:
              ("--add-spring", [" ".join(ends) for ends in places.add_spring]), ("--free", places.scale))
     for option, values in asked:
         for value in values:
-            raise NotAllowed(option, value,
-                             f"a case of kind {case.kind!r} has one jump, and all that governs it is studied")
+            raise NotAllowed(option, value, code="one_jump_only", kind=case.kind)
 
 
 def highest(case: Case, path: str) -> float:

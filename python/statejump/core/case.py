@@ -133,8 +133,8 @@ class Case(Section):
     def check_cycles(self) -> None:
         """Raise NotAllowed for cycles that do not end where they begin."""
         if not self.has_jump and self.thermal.cycles > 1:
-            raise NotAllowed("thermal.cycles", self.thermal.cycles, f"what is repeated must end where it begins, and "
-                             f"{self.thermal_notes[0]}")
+            raise NotAllowed("thermal.cycles", self.thermal.cycles, code="cycles_do_not_close",
+                             why=self.thermal_notes[0])
 
     @property
     def thermal_notes(self) -> tuple[str, ...]:
@@ -149,8 +149,8 @@ class Case(Section):
     def need_jump(self, what: str) -> None:
         """Raise StatejumpError if a function needs a state jump and the program does not return."""
         if self.ending is not None and not self.ending.returns:
-            raise StatejumpError(cause=f"{what} needs a state jump, and {self.ending.where}", case=self.name,
-                                 remedy=self.ending.remedy)
+            raise StatejumpError(code="needs_state_jump", case=self.name, remedy=self.ending.remedy, output=what,
+                                 why=self.ending.where)
 
     @property
     def origin(self) -> Origin:
@@ -327,8 +327,7 @@ def no_length_left(key: str, thermal_expansion_per_K: float, case: Case) -> None
     """Raise NotAllowed for a link that the program shrinks to nothing."""
     for change in case.temperature_range_K:
         if 1 + thermal_expansion_per_K * change <= 0:
-            raise NotAllowed(key, thermal_expansion_per_K,
-                             f"the link has no length left at a temperature change of {change:g} K")
+            raise NotAllowed(key, thermal_expansion_per_K, code="link_without_length", at_K=change)
 
 
 def check_radii(bearing_radius_m: float, journal_radius_m: float) -> bool:

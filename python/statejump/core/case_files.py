@@ -30,8 +30,7 @@ def text_of(case: Case) -> str:
     """
     made = document_of(case)
     if made.get("thermal", {}).get("members") is not None:
-        raise NotAllowed("thermal.members", beside="in the text of a case file",
-                         remedy="save() writes a file beside it")
+        raise NotAllowed("thermal.members", code="members_not_in_text")
     return to_toml(made)
 
 

@@ -57,8 +57,8 @@ def matched(header: Sequence[str], known: Sequence[str], words: Mapping[str, Seq
     for name in header:
         column = Column(name, name) if name in known else _column(name, known, bases)
         if column.key in found:
-            raise StatejumpError(f"column {name!r} is not allowed beside {found[column.key].name!r}",
-                                 cause=f"both are {column.key}")
+            raise StatejumpError(code="columns_of_one_key", column=name, other=found[column.key].name,
+                                 key_of_both=column.key)
         found[column.key] = column
     return list(found.values())
 
@@ -71,13 +71,13 @@ def _column(name: str, known: Sequence[str], bases: Mapping[str, str]) -> Column
     key = bases.get(_plain(name))
     if key is None:
         near = get_close_matches(name, known, 1)
-        raise UnknownKey(name, section=f"column {name!r}", cause=None if near else f"known are {', '.join(known)}",
-                         remedy=f"did you mean {near[0]}?" if near else None)
+        raise UnknownKey(name, section=f"column {name!r}", **(
+            {"code": "misspelt_key", "meant": near[0]} if near else {"code": "no_such_key", "known": ", ".join(known)}))
     wanted = split_unit(key)[1]
     if key == "time_s":
         return Column(name, key, iso=True)
     if wanted != "-":
-        raise StatejumpError(f"column {name!r}", cause="it names no unit", remedy=accepted(name, key, wanted))
+        raise StatejumpError(code="column_without_unit", remedy=accepted(name, key, wanted), column=name)
     return Column(name, key)
 
 
@@ -102,12 +102,12 @@ def _converted(name: str, base: str, unit: str, key: str) -> Conversion:
     if unit in NO_UNIT:
         if wanted in ("-", "rad") and unit != "" or wanted == "-":
             return SAME
-        raise StatejumpError(f"column {name!r}", cause="it names no unit", remedy=accepted(base, key, wanted))
+        raise StatejumpError(code="column_without_unit", remedy=accepted(base, key, wanted), column=name)
     found = conversion(unit, wanted, change="change" in key)
     if found is None:
         quantity = f"of {QUANTITIES[wanted]}" if wanted in QUANTITIES else f"like {wanted}"
-        raise StatejumpError(f"column {name!r}", cause=f"{unit!r} is not a unit {quantity}",
-                             remedy=accepted(base, key, wanted))
+        raise StatejumpError(code="column_of_other_unit", remedy=accepted(base, key, wanted), column=name, unit=unit,
+                             quantity=quantity)
     return found
 
 

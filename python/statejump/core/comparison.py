@@ -167,8 +167,7 @@ class Comparison:
         :raises NotAllowed: its name does not end with ``.h5``, or these are two runs of one model
         """
         if FIRST in self.models:
-            raise NotAllowed("path", str(path), "a result file holds one run of a model; save both runs",
-                             beside="for two runs of one model")
+            raise NotAllowed("path", str(path), code="one_run_of_a_model")
         written: Path = _SAVED(Path(path), "compare", self.case, self.models, self)
         return written
 

@@ -22,7 +22,7 @@ class EngineFailed(FailedRun):
         self, failure: _engine.EngineFailure, what: str = "", *, remedy: str | None = None, **more: Any
     ) -> None:
         super().__init__(
-            what, joint=failure.joint, nodes=failure.nodes, time_s=failure.time_s,
+            what, code=str(failure.kind), joint=failure.joint, nodes=failure.nodes, time_s=failure.time_s,
             temperature_change_K=failure.temperature_change_K, cause=failure.cause or failure.message,
             remedy=remedy or failure.remedy, **more,
         )

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What ends a command or a call early: an object with fields, whose sentence is made from them.
+"""What ends a command or a call early: a code and fields, from which the sentence is rendered.
 
-``str(error)`` is one sentence, ``[FILE: ][ITEM: ]WHAT[: CAUSE][; REMEDY]``; :meth:`StatejumpError.fields` are
-the same facts by name. Nothing ever reads a sentence back.
+``str(error)`` is one sentence, ``[FILE: ][ITEM: ]WHAT[: CAUSE][; REMEDY]``. :meth:`StatejumpError.fields` returns
+the same facts by name. :mod:`statejump.core.error_codes` declares the codes and their sentences. Programs and tests
+compare the code and the fields; nothing reads a sentence back.
 """
 from __future__ import annotations
 
@@ -11,12 +12,15 @@ from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass
 from math import isfinite
+from os import PathLike, fspath
 from typing import Any, ClassVar
+
+from statejump.core.error_codes import CODES
 
 # Order of the fields in JSON.
 FIELDS = (
-    "kind", "message", "file", "case", "item", "key", "value", "allowed", "time_s", "temperature_change_K", "joint",
-    "nodes", "cause", "remedy", "exit_status",
+    "kind", "code", "message", "file", "case", "item", "key", "value", "allowed", "time_s", "temperature_change_K",
+    "joint", "nodes", "details", "cause", "remedy", "exit_status",
 )
 
 
@@ -109,7 +113,8 @@ def shown(value: Any) -> str:
 class StatejumpError(Exception):
     """Bad input, or a run that could not be finished.
 
-    :param what: what is wrong, without what the other fields say
+    :param what: what is wrong, without what the other fields say; by default what the code declares
+    :param code: code, a key of ``CODES``; by default that of the class
     :param file: the file that is meant
     :param place: how the sentence calls the file, if not by its path alone (``results folder out/x``)
     :param case: name of the case that ran
@@ -121,17 +126,20 @@ class StatejumpError(Exception):
     :param nodes: names of nodes
     :param time_s: when [s]
     :param temperature_change_K: at which temperature change [K]
-    :param cause: why; by default what ``allowed`` says
-    :param remedy: what would help
+    :param cause: why; by default what the code declares, else what ``allowed`` says
+    :param remedy: what would help; by default what the code declares
+    :param details: further fields, which the sentences of the code name
     """
 
     kind: ClassVar[str] = "bad_input"
+    default_code: ClassVar[str] = "bad_input"
     exit_status: ClassVar[int] = 2
 
     def __init__(
         self,
         what: str = "",
         *,
+        code: str | None = None,
         file: object = None,
         place: str | None = None,
         case: str | None = None,
@@ -145,15 +153,19 @@ class StatejumpError(Exception):
         temperature_change_K: float | None = None,
         cause: str | None = None,
         remedy: str | None = None,
+        **details: Any,
     ) -> None:
         super().__init__()
-        self.what = what
+        self.code, self.details = code or self.default_code, details
+        declared = CODES[self.code]
+        self.what = what or declared.what.format_map(details)
+        cause, remedy = cause or declared.cause.format_map(details), remedy or declared.remedy.format_map(details)
         self.file = None if file is None else str(file)
         self.place, self.case, self.item, self.key, self.value = place, case, item, key, value
         self.allowed, self.joint, self.nodes = allowed, joint, tuple(nodes)
         self.time_s, self.temperature_change_K = time_s, temperature_change_K
-        self.cause = str(allowed) if cause is None and isinstance(allowed, Range) else cause
-        self.remedy = remedy
+        self.cause = cause or (str(allowed) if isinstance(allowed, Range) else None)
+        self.remedy = remedy or None
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Exceptions travel between the processes of a campaign.
@@ -202,11 +214,13 @@ class StatejumpError(Exception):
         """Return the failure by the names of ``FIELDS``; what is not known is left out."""
         allowed = self.allowed.to_json() if isinstance(self.allowed, Range) else self.allowed and list(self.allowed)
         known = {
-            "kind": self.kind, "message": str(self), "file": self.file, "case": self.case, "item": self.item,
-            "key": self.key, "value": None if self.value is ABSENT else _plain(self.value), "allowed": allowed or None,
-            "time_s": self.time_s, "temperature_change_K": self.temperature_change_K, "joint": self.joint or None,
-            "nodes": list(self.nodes) or None, "cause": self.cause or None, "remedy": self.remedy or None,
-            "exit_status": self.exit_status,
+            "kind": self.kind, "code": self.code, "message": str(self), "file": self.file, "case": self.case,
+            "item": self.item, "key": self.key, "value": None if self.value is ABSENT else _plain(self.value),
+            "allowed": allowed or None, "time_s": self.time_s,
+            "temperature_change_K": self.temperature_change_K, "joint": self.joint or None,
+            "nodes": list(self.nodes) or None,
+            "details": {name: _plain(detail) for name, detail in self.details.items()} or None,
+            "cause": self.cause or None, "remedy": self.remedy or None, "exit_status": self.exit_status,
         }
         return {name: known[name] for name in FIELDS if known[name] is not None}
 
@@ -223,6 +237,8 @@ def _plain(value: Any) -> Any:
     import json  # not to start the command
 
     value = _without_type(value)
+    if isinstance(value, PathLike):
+        return str(fspath(value))
     try:
         json.dumps(value, allow_nan=False)
     except (TypeError, ValueError):
@@ -239,10 +255,12 @@ class NotAllowed(StatejumpError):
     :param beside: with what it is not allowed, as ``with start.mode = 'loaded'``
     """
 
+    default_code = "not_allowed"
+
     def __init__(self, key: str, value: Any = ABSENT, cause: str | None = None, *, beside: str = "",
                  **more: Any) -> None:
         super().__init__(key=key, value=value, cause=cause, **more)
-        self.beside = beside
+        self.beside = beside or CODES[self.code].beside.format_map(self.details)
 
     def phrase(self) -> str:
         given = self.key if self.value is ABSENT else f"{self.key} = {shown(self.value)}"
@@ -257,6 +275,8 @@ class NotAllowed(StatejumpError):
 
 class MissingKey(StatejumpError):
     """A key or a section that must be there is not: ``KEY is missing[: NEEDS]``."""
+
+    default_code = "missing_key"
 
     def __init__(self, key: str, needs: str | None = None, *, section: str = "", **more: Any) -> None:
         super().__init__(key=key, cause=needs, **more)
@@ -277,9 +297,11 @@ class UnknownKey(StatejumpError):
     :param remedy: which was probably meant
     """
 
+    default_code = "unknown_key"
+
     def __init__(self, key: str, *, section: str = "", beside: str = "", **more: Any) -> None:
         super().__init__(key=key, **more)
-        self.section, self.beside = section, beside
+        self.section, self.beside = section, beside or CODES[self.code].beside.format_map(self.details)
 
     def phrase(self) -> str:
         given = self.section or self.key or ""
@@ -291,6 +313,8 @@ class UnknownKey(StatejumpError):
 class Unreadable(StatejumpError):
     """A file cannot be read, or is not what it should be."""
 
+    default_code = "unreadable"
+
 
 class MissingPart(Unreadable, KeyError):
     """A part of a file that is asked for is not there; a KeyError, as of any mapping."""
@@ -300,12 +324,14 @@ class FailedRun(StatejumpError):
     """The input is right as far as it can be judged; the run could not be finished."""
 
     kind = "failed_run"
+    default_code = "failed_run"
 
 
 class NotWritten(StatejumpError):
     """A file or folder of results cannot be written."""
 
     kind = "output"
+    default_code = "not_written"
 
 
 class TolerancesMissed(StatejumpError):
@@ -316,9 +342,10 @@ class TolerancesMissed(StatejumpError):
 
     exit_status = 1
     kind = "tolerance_missed"
+    default_code = "tolerance_missed"
 
     def __init__(self, quantities: Sequence[str], **more: Any) -> None:
-        super().__init__("tolerance missed", cause=", ".join(quantities), **more)
+        super().__init__(cause=", ".join(quantities), **more)
         self.quantities = tuple(quantities)
 
 
@@ -331,8 +358,9 @@ class Interrupted(StatejumpError):
 
     exit_status = 130
     kind = "interrupted"
+    default_code = "interrupted"
 
-    def __init__(self, what: str = "interrupted; nothing was written", *, run: Any = None, **more: Any) -> None:
+    def __init__(self, what: str = "", *, run: Any = None, **more: Any) -> None:
         super().__init__(what, **more)
         self.run = run
 

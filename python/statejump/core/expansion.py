@@ -69,11 +69,9 @@ def check(expansion: Expansion, section: str) -> None:
     """
     rows, alpha = expansion.temperature_change_K, expansion.thermal_expansion_per_K
     if len(rows) < 2 or any(b <= a for a, b in zip(rows, rows[1:])) or not rows[0] <= 0 <= rows[-1]:
-        raise NotAllowed(f"{section}temperature_change_K", rows,
-                         "must be at least two temperature changes [K] that rise, 0 among or between them")
+        raise NotAllowed(f"{section}temperature_change_K", rows, code="expansion_temperatures")
     if len(alpha) != len(rows) or not any(alpha):
-        raise NotAllowed(f"{section}thermal_expansion_per_K", alpha,
-                         f"must be {len(rows)} coefficients [1/K], one for every temperature change, not all of them 0")
+        raise NotAllowed(f"{section}thermal_expansion_per_K", alpha, code="expansion_coefficients", rows=len(rows))
 
 
 def followed(
@@ -94,8 +92,7 @@ def followed(
     rows = np.array(expansion.temperature_change_K)
     for change in (changes.min(), changes.max()):
         if not rows[0] <= change <= rows[-1]:
-            raise NotAllowed("temperature_change_K", rows.tolist(),
-                             f"it must hold the temperature change of {change:g} K that the program reaches")
+            raise NotAllowed("temperature_change_K", rows.tolist(), code="expansion_too_narrow", reached_K=change)
     if isinstance(program, Thermal):
         times, changes = _divided(expansion, times, changes)
     return MemberProgram(times, expansion.strain(changes) / expansion.largest_per_K, program.cycles)
@@ -107,8 +104,7 @@ def _rows(program: Thermal | MemberProgram, period_s: float) -> tuple[Numbers, N
         return rows(program, period_s)
     assert isinstance(program, Thermal) and program.temperature_change_max_K is not None
     if program.shape != "triangle":
-        raise NotAllowed("thermal.shape", program.shape, "must be 'triangle' or 'table' where an expansion follows the "
-                         "temperature, which needs straight pieces")
+        raise NotAllowed("thermal.shape", program.shape, code="expansion_shape")
     return np.array([0.0, 0.5, 1.0]) * period_s, np.array([0.0, program.temperature_change_max_K, 0.0])
 
 

@@ -74,7 +74,7 @@ def opened(path: Path) -> Iterator[h5py.File]:
         inside of this cannot be read
     """
     if not is_file(path):
-        raise Unreadable("no such result file", file=path)
+        raise Unreadable(code="no_such_result_file", file=path)
     try:
         with path.open("rb") as stream:
             _check(stream, path)
@@ -83,26 +83,24 @@ def opened(path: Path) -> Iterator[h5py.File]:
             with h5py.File(stream, "r") as file:
                 yield file
     except (OSError, RuntimeError, MemoryError) as error:
-        raise Unreadable("cannot be read", cause=" ".join(str(error).split()), file=path) from None
+        raise Unreadable(code="cannot_be_read", cause=" ".join(str(error).split()), file=path) from None
 
 
 def _check(stream: IO[bytes], path: Path) -> None:
     """Raise Unreadable unless the bytes are those that were written."""
     block = stream.read(HEAD_BYTES)
     if block.startswith(SIGNATURE):
-        raise Unreadable("not a result file", cause="HDF5, but without the checksum that this version writes",
-                         remedy=AGAIN, file=path)
+        raise Unreadable(code="result_without_checksum", remedy=AGAIN, file=path)
     words = block[:-1].decode("ascii", "replace").split()
     if words[:2] != FORMAT.split():
-        raise Unreadable("not a result file", cause=f"it does not begin with {FORMAT!r}", file=path)
+        raise Unreadable(code="no_result_format", file=path, begin=FORMAT)
     if len(words) > 2 and words[2].isdecimal() and int(words[2]) > VERSION:
-        raise Unreadable(f"version {words[2]} is newer than {VERSION}, the newest that this statejump reads", file=path)
+        raise Unreadable(code="result_newer", file=path, found=words[2], newest=VERSION)
     digest = hashlib.sha256()
     while more := stream.read(1 << 20):
         digest.update(more)
     if block != head(digest.hexdigest()):
-        raise Unreadable("damaged", cause="its checksum is that of other contents: it was cut off or altered",
-                         remedy=AGAIN, file=path)
+        raise Unreadable(code="result_checksum", remedy=AGAIN, file=path)
 
 
 def objects(file: h5py.File, path: Path) -> dict[str, h5py.Group | h5py.Dataset]:
@@ -124,11 +122,11 @@ def objects(file: h5py.File, path: Path) -> dict[str, h5py.Group | h5py.Dataset]
         for name in group:
             place = f"{parent}/{name}"
             if not isinstance(group.get(name, getlink=True), h5py.HardLink):
-                raise Unreadable("damaged", cause=f"{place} is a link out of its place", file=path)
+                raise Unreadable(code="result_link", file=path, object=place)
             item = group[name]
             address = h5py.h5o.get_info(item.id).addr
             if address in seen or not isinstance(item, (h5py.Group, h5py.Dataset)):
-                raise Unreadable("damaged", cause=f"{place} is neither a group nor a data set of its own", file=path)
+                raise Unreadable(code="result_no_object", file=path, object=place)
             seen.add(address)
             if isinstance(item, h5py.Group):
                 groups.append((place, item))
@@ -149,7 +147,7 @@ def _check_texts(item: h5py.Group | h5py.Dataset, place: str, path: Path) -> Non
                 str(text).encode()
         except UnicodeEncodeError:
             shown = called.encode("ascii", "backslashreplace").decode()
-            raise Unreadable("damaged", cause=f"{shown} is not UTF-8", file=path) from None
+            raise Unreadable(code="result_not_utf8", file=path, object=shown) from None
 
 
 def _check_stored(item: h5py.Dataset, place: str, size: int, path: Path) -> int:
@@ -162,11 +160,11 @@ def _check_stored(item: h5py.Dataset, place: str, size: int, path: Path) -> int:
 
     made = item.id.get_create_plist()
     if made.get_external_count() or made.get_layout() == h5py.h5d.VIRTUAL:
-        raise Unreadable("damaged", cause=f"{place} has its numbers in another file", file=path)
+        raise Unreadable(code="result_external", file=path, object=place)
     values = 0 if item.shape is None else math.prod(item.shape)
     declared = item.dtype.itemsize * max(values, math.prod(item.chunks) if item.chunks else 0)
     written = item.id.get_space_status() == h5py.h5d.SPACE_STATUS_ALLOCATED
     stored = min(size, item.id.get_storage_size())
     if declared > MOST_PACKED * (stored if written else size):
-        raise Unreadable("damaged", cause=f"{place} claims to hold more than the file does", file=path)
+        raise Unreadable(code="result_claims_too_much", file=path, object=place)
     return 0 if written else int(declared)

@@ -48,6 +48,6 @@ def seconds(cells: Sequence[str], place: Callable[[int], tuple[int, str]], path:
         else:
             line, column = place(index)
             cause = "only some times name their time zone" if first and date else f"{cell.strip()[:30]!r} is no time"
-            raise Unreadable(f"line {line}, column {column!r}", cause=cause, remedy=f"write {ACCEPTED}", file=path)
+            raise Unreadable(code="no_iso_time", cause=cause, file=path, line=line, column=column, accepted=ACCEPTED)
     values = np.array(found)
     return np.asarray(values - values[0])

@@ -54,9 +54,9 @@ def with_tables(data: Mapping[str, Any], folder: Path, case: type[Section]) -> M
         if section not in lists or section not in fields_of(_declared(known)):
             raise UnknownKey(key, **suggestion(section, list(fields_of(_declared(known))), f"{TABLES_BESIDE}.", ""))
         if not isinstance(file, str):
-            raise NotAllowed(key, file, "must be a text in quotes")
+            raise NotAllowed(key, file, code="no_text")
         if section in made:
-            raise NotAllowed(key, file, f"the case has [[{section}]] as well", remedy="leave one of them out")
+            raise NotAllowed(key, file, code="table_twice", table=section)
         made[section] = read_items(folder / file, key, lists[section], words)
     return made
 
@@ -75,9 +75,9 @@ def read_items(path: Path, key: str, model: type[Section], words: Numbering) -> 
     :raises StatejumpError: one sentence with the file, and line or column
     """
     if path.suffix.lower() not in SUFFIXES:
-        raise NotAllowed(key, path.name, f"must end with {', '.join(SUFFIXES)}")
+        raise NotAllowed(key, path.name, code="suffix_unknown", suffixes=", ".join(SUFFIXES))
     if not is_file(path):
-        raise Unreadable("no such file of tables", file=path)
+        raise Unreadable(code="no_such_table_file", file=path)
     in_text = path.suffix.lower() in TEXT_SUFFIXES
     try:
         return ItemTable(**_text(path, model, words)) if in_text else ItemTable(**_hdf5(path, model, words))
@@ -99,7 +99,7 @@ def _text(path: Path, model: type[Section], words: Numbering) -> dict[str, np.nd
             for (column, rule), cells in zip(keys, zip(*rows)):
                 blocks.setdefault(column.key, []).append(_column(table, column, rule, cells, lines, words))
     if not blocks:
-        raise Unreadable("has no row below its header", file=path)
+        raise Unreadable(code="no_row", file=path)
     joined = {name: _joined(blocks.pop(name)) for name in list(blocks)}  # no longer in memory than as blocks
     return {column.key: _texts(joined[column.key], words) if rule.form in (TEXT, TEXTS) else joined[column.key]
             for column, rule in keys}
@@ -133,8 +133,8 @@ def _column(
     if rule.form == SWITCH:
         for line, cell in zip(lines, cells):
             if cell.strip() and cell.strip().lower() not in SWITCHES:
-                raise Unreadable(f"line {line}, column {quoted(column.name)}",
-                                 cause=f"{quoted(cell)} is not true or false", file=table.path)
+                raise Unreadable(code="cell_not_boolean", file=table.path, line=line, column=quoted(column.name),
+                                 cell=quoted(cell))
         return np.array([SWITCHES.get(cell.strip().lower()) for cell in cells], dtype=object)
     if rule.form in (NUMBER, WHOLE):
         numbers = column.converted(table.numbers(cells, place, empty=True))
@@ -143,16 +143,16 @@ def _column(
         return np.array([None if value != value else int(value) if value == int(value) else value
                          for value in numbers.tolist()], dtype=object)
     if rule.form not in (NUMBERS, TEXTS):
-        raise Unreadable(f"column {quoted(column.name)}", cause="a table cannot have this key", file=table.path)
+        raise Unreadable(code="column_not_in_tables", file=table.path, column=quoted(column.name))
     split = [cell.split() for cell in cells]
     width = max(1, *map(len, split))
     for index, entries in enumerate(split):
         if len(entries) > MOST_IN_LIST:
-            raise Unreadable(f"line {lines[index]}, column {quoted(column.name)}",
-                             cause=f"{len(entries)} entries, a cell has {MOST_IN_LIST} at most", file=table.path)
+            raise Unreadable(code="cell_too_long", file=table.path, line=lines[index], column=quoted(column.name),
+                             entries=len(entries), most=MOST_IN_LIST)
         if rule.form == NUMBERS and entries and len(entries) != width:
-            raise Unreadable(f"line {lines[index]}, column {quoted(column.name)}",
-                             cause=f"{len(entries)} numbers, other rows have {width}", file=table.path)
+            raise Unreadable(code="cell_of_other_length", file=table.path, line=lines[index],
+                             column=quoted(column.name), numbers=len(entries), width=width)
     if rule.form == TEXTS:
         made = np.zeros((len(split), width), np.int32)
         made[np.arange(width) < np.array([[len(entries)] for entries in split])] = words.numbers(
@@ -175,13 +175,13 @@ def _hdf5(path: Path, model: type[Section], words: Numbering) -> dict[str, np.nd
 
     try:
         if not h5py.is_hdf5(path):
-            raise Unreadable("cannot be read", cause="it is not HDF5", file=path)
+            raise Unreadable(code="not_hdf5", file=path)
         with h5py.File(path, "r") as file:
             found = {name.removeprefix("/"): part for name, part in objects(file, path).items() if name != "/"}
             return {column.key: _of_data_set(path, column, rule, found[column.name], words)
                     for column, rule in _keys(list(found), model)}
     except (OSError, RuntimeError, MemoryError) as error:
-        raise Unreadable("cannot be read", cause=" ".join(str(error).split()), file=path) from None
+        raise Unreadable(code="cannot_be_read", cause=" ".join(str(error).split()), file=path) from None
 
 
 def _of_data_set(path: Path, column: Column, rule: Rule, data: Any, words: Numbering) -> np.ndarray | Texts:
@@ -190,18 +190,19 @@ def _of_data_set(path: Path, column: Column, rule: Rule, data: Any, words: Numbe
     name = column.name
     lists = rule.form in (NUMBERS, TEXTS)
     if not isinstance(data, h5py.Dataset) or data.ndim != (2 if lists else 1):
-        raise Unreadable(f"{quoted(name)} must be a data set of {'rows' if lists else 'single values'}", file=path)
+        raise Unreadable(code="data_set_of_wrong_shape", file=path, data_set=quoted(name),
+                         form="rows" if lists else "single values")
     if lists and data.shape[1] > MOST_IN_LIST:
-        raise Unreadable(f"{quoted(name)} has rows of {data.shape[1]}", cause=f"at most {MOST_IN_LIST} are read",
-                         file=path)
+        raise Unreadable(code="data_set_rows_too_long", file=path, data_set=quoted(name), length=data.shape[1],
+                         most=MOST_IN_LIST)
     if rule.form in (NUMBER, NUMBERS, WHOLE, SWITCH):
         if data.dtype.kind not in "fiub":
-            raise Unreadable(f"{quoted(name)} must be of numbers", file=path)
+            raise Unreadable(code="data_set_not_of_numbers", file=path, data_set=quoted(name))
         if rule.form in (NUMBER, NUMBERS):
             return column.converted(np.asarray(data[()], dtype=float))
         return np.asarray(data[()].astype(bool if rule.form == SWITCH else int).tolist(), dtype=object)
     if h5py.check_string_dtype(data.dtype) is None:
-        raise Unreadable(f"{quoted(name)} must be of texts", file=path)
+        raise Unreadable(code="data_set_not_of_texts", file=path, data_set=quoted(name))
     numbers = np.zeros(data.shape, np.int32)
     step = TEXTS_AT_ONCE // data.shape[1] if lists and data.shape[1] else TEXTS_AT_ONCE
     for start in range(0, len(data), step):
@@ -209,7 +210,7 @@ def _of_data_set(path: Path, column: Column, rule: Rule, data: Any, words: Numbe
         try:
             numbers[start:start + step] = words.numbers(rows.reshape(-1).tolist()).reshape(rows.shape)
         except UnicodeDecodeError:
-            raise Unreadable(f"{quoted(name)} has texts that are not UTF-8", file=path) from None
+            raise Unreadable(code="data_set_not_utf8", file=path, data_set=quoted(name)) from None
     return _texts(numbers, words)
 
 
@@ -236,5 +237,5 @@ def _cells(item: Mapping[str, Any], keys: Sequence[str]) -> Iterator[str]:
     for key in keys:
         value = item.get(key, "")
         if isinstance(value, list) and any(isinstance(word, str) and len(word.split()) != 1 for word in value):
-            raise NotAllowed(key, value, "names in a list of a table must have no blanks", item=f"{item.get('name')!r}")
+            raise NotAllowed(key, value, code="name_with_blank", item=f"{item.get('name')!r}")
         yield to_cells(value)

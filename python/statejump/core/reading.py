@@ -23,13 +23,13 @@ def is_file(path: Path) -> bool:
     except (FileNotFoundError, NotADirectoryError):
         return False
     except OSError as error:
-        raise Unreadable("cannot be read", cause=error.strerror, file=path) from None
+        raise Unreadable(code="cannot_be_read", cause=error.strerror, file=path) from None
 
 
 def check_size(path: Path, largest_bytes: int, beside: str = "") -> None:
     """Raise Unreadable for a file that is larger than what is read as a whole; ``beside`` says what else there is."""
     if path.stat().st_size > largest_bytes:
-        raise Unreadable("cannot be read", cause=f"it is larger than {size(largest_bytes)}{beside}", file=path)
+        raise Unreadable(code="file_too_large_for", file=path, largest=size(largest_bytes), why=beside)
 
 
 def finite_number(text: str) -> float | None:
@@ -51,8 +51,8 @@ def open_csv(path: Path, encoding: str = "utf-8-sig") -> Iterator[TextIO]:
         with path.open(newline="", encoding=encoding) as stream:
             yield stream
     except UnicodeError:
-        raise Unreadable("not CSV", cause="the file is not UTF-8 text", file=path) from None
+        raise Unreadable(code="csv_not_utf8", file=path) from None
     except csv.Error as failure:
-        raise Unreadable("not CSV", cause=str(failure), file=path) from None
+        raise Unreadable(code="not_csv", cause=str(failure), file=path) from None
     except OSError as failure:
-        raise Unreadable("cannot be read", cause=failure.strerror, file=path) from None
+        raise Unreadable(code="cannot_be_read", cause=failure.strerror, file=path) from None

@@ -50,9 +50,7 @@ def check(folder: Path, case: Case) -> None:
     if known.get("sha256") == _checksum(case):
         return
     other = os.path.relpath(folder / str(known.get("file"))) if known.get("file") else "a case made in Python"
-    raise NotWritten("holds results of another case", place=f"results folder {folder}", file=folder,
-                     cause=f"{other} has the same case.name",
-                     remedy="change case.name, choose another folder with --results, or replace them with --force")
+    raise NotWritten(code="results_of_other_case", place=f"results folder {folder}", file=folder, other=other)
 
 
 def write(staged: Path, folder: Path, case: Case) -> None:

@@ -47,7 +47,7 @@ class Parts(dict[str, Any]):
         self.place, self.file = place, str(file)
 
     def __missing__(self, name: str) -> Any:
-        raise MissingPart(f"{self.place}/{name} is missing", file=self.file)
+        raise MissingPart(code="part_missing", file=self.file, group=self.place, name=name)
 
     def like(self, parts: Mapping[str, Any]) -> Parts:
         """Return other parts with the same path."""
@@ -74,7 +74,7 @@ class MissingName(UnknownKey, KeyError):
     def __init__(self, what: str, name: Any, known: Sequence[str]) -> None:
         ends = [path for path in known if path.rpartition("/")[2] == name]
         super().__init__(f"{what} {name!r}", **(
-            {"remedy": f"did you mean {' or '.join(ends)}?"} if ends else suggestion(name, known)))
+            {"code": "misspelt_key", "meant": " or ".join(ends)} if ends else suggestion(name, known)))
 
 
 @dataclass(frozen=True)
@@ -264,7 +264,7 @@ class Run:
         except (TypeError, ValueError):
             asked = np.array([np.nan])
         if asked.ndim != 1 or not np.isfinite(asked).all():
-            raise NotAllowed("times_s", ABSENT, "must be a time or a list of times [s]")
+            raise NotAllowed("times_s", ABSENT, code="no_times")
         if np.array_equal(self.time_s, asked):
             return self
         return self._interpolated(asked) if self.sampler is None else self.sampler(asked)

@@ -73,16 +73,15 @@ class Table:
         while cells and not cells[-1]:
             cells.pop()
         if not cells:
-            raise Unreadable("line 1: there is no column", file=path)
+            raise Unreadable(code="no_column", file=path)
         self._counts = len(cells) > 1 and not cells[0]
         if self._counts:
             del cells[0]
         if all(finite_number(cell.replace(",", ".")) is not None for cell in cells):
-            raise Unreadable(f"line {self.line} names no columns", cause="it holds numbers only", file=path,
-                             remedy="write a line of names with units above it")
+            raise Unreadable(code="names_missing", file=path, line=self.line)
         for place, cell in enumerate(cells, start=1):
             if not cell:
-                raise Unreadable(f"line {self.line}: column {place + self._counts} has no name", file=path)
+                raise Unreadable(code="column_without_name", file=path, line=self.line, column=place + self._counts)
         self._first = list(self._taken())
         self.header = tuple(self._with_units(cells))
         self._decided = self.separator == ";"  # that a comma is a decimal mark: German Excel separates so
@@ -178,8 +177,8 @@ class Table:
                     continue
                 remedy = "decimal commas need ';' between the cells, or quotes" if (
                     self.separator == "," and len(row) == 2 * width) else None
-                raise Unreadable(f"line {self.line} has {len(row)} cells", cause=f"the header has {width}",
-                                 remedy=remedy, file=self.path)
+                raise Unreadable(code="row_of_other_length", remedy=remedy, file=self.path, line=self.line,
+                                 cells=len(row), width=width)
             if not any(row) or not any(map(str.strip, row)):
                 continue
             yield self.line, row
@@ -189,8 +188,7 @@ class Table:
         if not cell and before is None:
             return None
         if not cell.isdecimal() or (before is not None and int(cell) != before + 1):
-            raise Unreadable(f"line {self.line}: column 1 has no name", cause="and does not count the rows",
-                             file=self.path)
+            raise Unreadable(code="first_column_without_name", file=self.path, line=self.line)
         return int(cell)
 
     def blocks(self) -> Iterator[tuple[list[int], list[list[str]]]]:
@@ -238,7 +236,7 @@ class Table:
         if value is None:
             line, column = place(index)
             what = f"{quoted(cell)} is not a finite number" if cell.strip() else "the cell is empty"
-            raise Unreadable(f"line {line}, column {quoted(column)}", cause=what, file=self.path)
+            raise Unreadable(code="cell_unusable", cause=what, file=self.path, line=line, column=quoted(column))
         return value
 
     def _without_groups(self, cells: Sequence[str], place: Place) -> list[str]:
@@ -270,17 +268,15 @@ class Table:
     def _check_marks(self) -> None:
         if self._comma and self._point:
             line, column, cell = self._comma
-            raise Unreadable(f"line {line}, column {quoted(column)}", cause=(
-                f"{quoted(cell.strip())} has a decimal comma, {quoted(self._point[2].strip())} in line "
-                f"{self._point[0]} a point"), remedy="write one decimal mark", file=self.path)
+            raise Unreadable(code="decimal_comma_and_point", file=self.path, line=line, column=quoted(column),
+                             cell=quoted(cell.strip()), other=quoted(self._point[2].strip()), other_line=self._point[0])
 
     def check_commas(self) -> None:
         """Refuse commas that may be decimal marks or part thousands, once all rows are read."""
         if self._comma and not self._decided:
             line, column, cell = self._comma
-            raise Unreadable(f"line {line}, column {quoted(column)}", cause=(
-                f"{quoted(cell.strip())} may be a decimal number or one of thousands"),
-                remedy="write decimal points", file=self.path)
+            raise Unreadable(code="decimal_comma_or_thousands", file=self.path, line=line, column=quoted(column),
+                             cell=quoted(cell.strip()))
 
 
 def _cells(line: str) -> list[str]:
@@ -360,7 +356,7 @@ def open_table(path: Path, largest_bytes: int | None = None, beside: str = "") -
     try:
         encoding = _encoding(path)
     except OSError as failure:
-        raise Unreadable("cannot be read", cause=failure.strerror, file=path) from None
+        raise Unreadable(code="cannot_be_read", cause=failure.strerror, file=path) from None
     with open_csv(path, encoding) as stream:
         if largest_bytes is not None:
             check_size(path, largest_bytes, beside)
@@ -396,7 +392,7 @@ def _all(table: Table) -> tuple[list[int], list[tuple[str, ...]]]:
         lines.append(line)
         rows.append(row)
     if not rows:
-        raise Unreadable("holds no samples", file=table.path)
+        raise Unreadable(code="no_samples", file=table.path)
     return lines, list(zip(*rows))
 
 
@@ -437,7 +433,7 @@ def numbers_of(table: Table, column: Column, cells: Sequence[str], lines: Sequen
         if len(units) == 1 and all(durations):
             return table.numbers([found[1] for found in durations if found], place) * _SECONDS[units.pop()]
         if not is_iso(cells[0]):
-            raise Unreadable(f"column {quoted(column.name)}", cause="it names no unit and has no ISO times",
-                             remedy=accepted(column.name, column.key, "s"), file=table.path)
+            raise Unreadable(code="column_without_unit_or_times", remedy=accepted(column.name, column.key, "s"),
+                             file=table.path, column=quoted(column.name))
         return seconds(cells, place, table.path)
     return column.converted(table.numbers(cells, place, empty))

@@ -135,11 +135,11 @@ def check_columns(columns: Mapping[str, np.ndarray]) -> None:
     :raises StatejumpError: they differ in length, hold no number in a row or one that is not finite
     """
     if len({len(values) for values in columns.values()}) > 1:
-        raise StatejumpError("columns differ in length", cause=", ".join(
-            f"{name} has {len(values)}" for name, values in columns.items()))
+        raise StatejumpError(code="columns_of_other_length",
+                             cause=", ".join(f"{name} has {len(values)}" for name, values in columns.items()))
     for name, values in columns.items():
         if values.ndim != 1 or not np.issubdtype(values.dtype, np.number):
-            raise NotAllowed(name, beside="as a column", cause="every row needs a number there")
+            raise NotAllowed(name, code="column_no_numbers")
         wrong = np.flatnonzero(~np.isfinite(values))
         if wrong.size:
-            raise NotAllowed(name, float(values[wrong[0]]), "must be a finite number", item=f"row {wrong[0] + 1}")
+            raise NotAllowed(name, float(values[wrong[0]]), code="not_finite", item=f"row {wrong[0] + 1}")

@@ -68,11 +68,10 @@ def of_means(read: Read) -> Read:
         other = link + ENDS[1 - ENDS.index(end)]
         without, beside = (link, True) if link in place else (other, False)
         if beside or other not in place:
-            raise Unreadable(f"has the column {quoted(name)} {'beside' if beside else 'without'} {quoted(without)}",
-                             cause="a link has one temperature, or one at either end", file=read.path)
+            raise Unreadable(code="link_ends_incomplete", file=read.path, column=quoted(name),
+                             relation="beside" if beside else "without", other=quoted(without))
         if read.offset_K[index] != read.offset_K[place[other]]:
-            raise Unreadable(f"columns {quoted(name)} and {quoted(other)}", cause="they have different units",
-                             file=read.path)
+            raise Unreadable(code="columns_of_other_units", file=read.path, column=quoted(name), other=quoted(other))
         pairs[link] = index, place[other]
     if len(pairs) == len(place):
         return read
@@ -85,8 +84,8 @@ def refuse(read: Read, wrong: NDArray[np.bool_], what: str) -> None:
     """Raise Unreadable for the first value that is wrong."""
     if wrong.any():
         row, column = np.unravel_index(int(np.argmax(wrong)), wrong.shape)
-        raise Unreadable(f"column {quoted(read.names[column])} at {read.time_s[row]:g} s",
-                         cause=f"{read.values[row, column]:g} {what}", file=read.path)
+        raise Unreadable(code="temperature_unusable", cause=f"{read.values[row, column]:g} {what}", file=read.path,
+                         column=quoted(read.names[column]), at_s=read.time_s[row])
 
 
 def listed(names: tuple[str, ...]) -> str:
@@ -99,13 +98,13 @@ def read_columns(path: Path, key: str) -> Read:
     :raises StatejumpError: one sentence with the file, and line or column
     """
     if path.suffix.lower() not in SUFFIXES:
-        raise NotAllowed(key, path.name, f"must end with {', '.join(SUFFIXES)}")
+        raise NotAllowed(key, path.name, code="suffix_unknown", suffixes=", ".join(SUFFIXES))
     if not is_file(path):
-        raise Unreadable("no such file of temperatures", file=path)
+        raise Unreadable(code="no_such_temperature_file", file=path)
     found = _text(path) if path.suffix.lower() in TEXT_SUFFIXES else _hdf5(path)
     _check_names(path, found.names)
     if len(found.time_s) < 2:
-        raise Unreadable("has fewer than two times", file=path)
+        raise Unreadable(code="fewer_than_two_times", file=path)
     return found
 
 
@@ -113,14 +112,14 @@ def _check_names(path: Path, names: tuple[str, ...]) -> None:
     if len(set(names)) < len(names):
         seen: set[str] = set()
         again = next(name for name in names if name in seen or seen.add(name))  # type: ignore[func-returns-value]
-        raise Unreadable(f"two columns are called {quoted(again)}", file=path)
+        raise Unreadable(code="columns_of_one_name", file=path, column=quoted(again))
 
 
 def _text(path: Path) -> Read:
     with open_table(path, LARGEST_BYTES) as table:
         at, time = _time(table)
         if len(table.header) < 2:
-            raise Unreadable("line 1: there is no column of temperatures", file=path)
+            raise Unreadable(code="no_temperature_column", file=path)
         others = [place for place in range(len(table.header)) if place != at]
         columns = [_temperature(path, table.header[place]) for place in others]
         times, rows = [], []
@@ -130,8 +129,8 @@ def _text(path: Path) -> Read:
         lines, cells = zip(*times) if times else ((), ())
         time_s = numbers_of(table, time, cells, lines) if times else np.zeros(0)
     for place in np.flatnonzero(np.diff(time_s) <= 0):
-        raise Unreadable(f"line {times[place + 1][0]}: {table.header[at]} = {times[place + 1][1].strip()}", file=path,
-                         cause=f"times must rise, and {times[place][1].strip()} is before it")
+        raise Unreadable(code="times_do_not_rise", file=path, line=times[place + 1][0], column=table.header[at],
+                         time=times[place + 1][1].strip(), before=times[place][1].strip())
     values = np.array(rows).reshape(-1, len(columns))
     scale = np.array([found.factor / found.divisor for _, found in columns])
     return Read(path, tuple(name for name, _ in columns), np.array([found.offset for _, found in columns]), time_s,
@@ -150,8 +149,8 @@ def _time(table: Table) -> tuple[int, Column]:
         if len(found) == 1:
             return found[0]
         said = "it must be the time" if isinstance(refused, UnknownKey) else refused.cause
-        raise Unreadable(f"line 1: the first column is {quoted(table.header[0])}", cause=said, file=table.path,
-                         remedy="accepted are time_s, time [h], or time with ISO times") from None
+        raise Unreadable(code="first_column_no_times", cause=said, file=table.path,
+                         column=quoted(table.header[0])) from None
 
 
 def _temperature(path: Path, cell: str) -> tuple[str, Conversion]:
@@ -164,8 +163,11 @@ def _temperature(path: Path, cell: str) -> tuple[str, Conversion]:
         found = conversion(unit, "K")
         if found is not None:
             return name, found
-    raise Unreadable(f"line 1: column {quoted(cell)}", cause="it names no unit of temperature" if not ways else
-                     f"{quoted(ways[0][1])} is no unit of temperature", remedy=f"accepted are {ACCEPTED}", file=path)
+    raise Unreadable(
+        code="temperature_column_without_unit",
+        cause="it names no unit of temperature" if not ways else f"{quoted(ways[0][1])} is no unit of temperature",
+        file=path, column=quoted(cell), accepted=ACCEPTED,
+    )
 
 
 def _values(table: Table, line: int, row: Sequence[str], places: Sequence[int]) -> Numbers:
@@ -177,25 +179,25 @@ def _hdf5(path: Path) -> Read:
 
     try:
         if not h5py.is_hdf5(path):
-            raise Unreadable("cannot be read", cause="it is not HDF5", file=path)
+            raise Unreadable(code="not_hdf5", file=path)
         with h5py.File(path, "r") as file:
             found = objects(file, path)
             units = [name for name in HDF5_TEMPERATURES if f"/{name}" in found]
             if len(units) != 1:
-                raise Unreadable("must have one of the data sets " + " and ".join(HDF5_TEMPERATURES), file=path)
+                raise Unreadable(code="temperatures_missing", file=path, data_sets=" and ".join(HDF5_TEMPERATURES))
             time_s, values = _array(found, "time_s", 1, path), _array(found, units[0], 2, path)
             names = _names(found, path)
     except (OSError, RuntimeError, MemoryError) as error:
-        raise Unreadable("cannot be read", cause=" ".join(str(error).split()), file=path) from None
+        raise Unreadable(code="cannot_be_read", cause=" ".join(str(error).split()), file=path) from None
     if values.shape != (len(time_s), len(names)) or not names:
-        raise Unreadable(f"{units[0]} is {values.shape[0]} x {values.shape[1]}",
-                         cause=f"there are {len(time_s)} times and {len(names)} members", file=path)
+        raise Unreadable(code="temperatures_of_other_shape", file=path, data_set=units[0], rows=values.shape[0],
+                         columns=values.shape[1], times=len(time_s), members=len(names))
     read = Read(path, names, np.full(len(names), HDF5_TEMPERATURES[units[0]]), time_s, values)
     bad = ~np.isfinite(time_s)
     bad[1:] |= ~(time_s[1:] > time_s[:-1])
     if bad.any():
         place = int(np.argmax(bad))
-        raise Unreadable(f"time_s[{place}] = {time_s[place]:g}", cause="times must be finite and rise", file=path)
+        raise Unreadable(code="time_not_rising", file=path, index=place, at_s=time_s[place])
     refuse(read, ~np.isfinite(values), "is not a finite number")
     return read
 
@@ -205,7 +207,7 @@ def _array(found: Mapping[str, Any], name: str, dimension: int, path: Path) -> N
 
     item = found.get(f"/{name}")
     if not isinstance(item, h5py.Dataset) or item.dtype.kind not in "iuf" or len(item.shape or ()) != dimension:
-        raise Unreadable(f"must have the data set {name}", cause=f"numbers along {dimension} axes", file=path)
+        raise Unreadable(code="data_set_missing", file=path, data_set=name, axes=dimension)
     return np.asarray(item[()], dtype=float)
 
 
@@ -214,11 +216,11 @@ def _names(found: Mapping[str, Any], path: Path) -> tuple[str, ...]:
 
     item = found.get("/members")
     if not isinstance(item, h5py.Dataset) or len(item.shape or ()) != 1 or h5py.check_string_dtype(item.dtype) is None:
-        raise Unreadable("must have the data set members", cause="their names, texts along one axis", file=path)
+        raise Unreadable(code="members_missing", file=path)
     try:
         names = tuple(str(name) for name in item.asstr()[()])
     except UnicodeDecodeError:
-        raise Unreadable("members has texts that are not UTF-8", file=path) from None
+        raise Unreadable(code="members_not_utf8", file=path) from None
     if any(not name or not name.isprintable() for name in names):
-        raise Unreadable("members has a name that is empty or not printable", file=path)
+        raise Unreadable(code="member_without_name", file=path)
     return names

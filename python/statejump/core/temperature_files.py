@@ -134,12 +134,12 @@ def _checked(given: Mapping[str, Any], section: str, key: str) -> None:
         if given.get(name) is not None:
             _rule(name, given[name], section)
     if not isinstance(given[key], str):
-        raise NotAllowed(f"{section}{key}", given[key], "must be a text in quotes")
+        raise NotAllowed(f"{section}{key}", given[key], code="no_text")
     if given.get("shape") != "table":
-        raise NotAllowed(f"{section}{key}", given[key], f"only with {section}shape = 'table'")
+        raise NotAllowed(f"{section}{key}", given[key], code="only_with_table", in_section=section)
     others = {"table_file", "members_file", "table_time_s", "table_temperature_change_K"} - {key}
     for other in sorted(other for other in others if given.get(other) is not None):
-        raise NotAllowed(f"{section}{other}", beside=f"with {section}{key}")
+        raise NotAllowed(f"{section}{other}", code="beside_key", in_section=section, other_key=key)
 
 
 def _cycles(given: Mapping[str, Any]) -> int:
@@ -159,13 +159,14 @@ def _table(given: Mapping[str, Any], folder: Path, section: str, name: Any) -> d
     column = given.get("table_column") or name
     if column is None:
         if len(read.names) > 1:
-            raise MissingKey(f"{section}table_column", f"{path.name} has the columns {listed(read.names)}")
+            raise MissingKey(f"{section}table_column", code="several_columns", table=path.name,
+                             columns=listed(read.names))
         column = read.names[0]
     if column not in read.names:
         near = difflib.get_close_matches(str(column), read.names, n=1, cutoff=0.5)
-        raise Unreadable(f"has no column {quoted(column)}_K or {quoted(column)}_degC", file=path,
-                         cause=None if near else f"its columns are {listed(read.names)}",
-                         remedy=f"did you mean {near[0]!r}?" if near else None)
+        if near:
+            raise Unreadable(code="misspelt_column", file=path, column=quoted(column), meant=near[0])
+        raise Unreadable(code="no_such_column", file=path, column=quoted(column), known=listed(read.names))
     time_s, changes = _changes(read.column(column), given, section)
     return {**_without(given), "table_time_s": time_s.tolist(), "table_temperature_change_K": changes[:, 0].tolist()}
 
@@ -174,7 +175,7 @@ def _members(given: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Return the common program with the histories of members; as a table it is their mean."""
     _checked(given, "thermal.", "members_file")
     if given.get("table_column") is not None:
-        raise NotAllowed("thermal.table_column", beside="with thermal.members_file")
+        raise NotAllowed("thermal.table_column", code="beside_members_file")
     read = of_means(read_columns(folder / given["members_file"], "thermal.members_file"))
     members = Histories(read.names, *_changes(read, given, "thermal."), source=given["members_file"])
     return {**_without(given), "table_time_s": members.time_s.tolist(),
@@ -195,8 +196,7 @@ def _changes(read: Read, given: Mapping[str, Any], section: str) -> tuple[Number
         changes = changes + (read.offset_K - reference)
         refuse(read, read.values + read.offset_K < 0, "is below absolute zero")
     elif read.offset_K.any():
-        raise MissingKey(f"{section}reference_temperature_K",
-                         f"{read.path.name} has temperatures in °C, and the stress-free temperature must be stated")
+        raise MissingKey(f"{section}reference_temperature_K", code="reference_missing", table=read.path.name)
     refuse(read, np.abs(changes) > LARGEST_CHANGE_K,
            f"is more than {LARGEST_CHANGE_K:g} K away from the stress-free temperature")
     changes = np.where(np.abs(changes) < SAME_TEMPERATURE_K, 0.0, changes)
@@ -205,25 +205,22 @@ def _changes(read: Read, given: Mapping[str, Any], section: str) -> tuple[Number
         changes = np.concatenate((np.zeros((1, changes.shape[1])), changes))
     elif changes[0].any():
         first = int(np.argmax(np.abs(changes[0])))
+        remedy = f"or, if these are temperatures and not changes, {section}reference_temperature_K is"
         raise MissingKey(
-            f"{section}lead_in_s", f"{read.path.name} begins {changes[0, first]:g} K away from the stress-free "
-            f"temperature (column {read.names[first]!r}), and it must be said how long the way there takes",
-            remedy=None if reference is not None else
-            f"or, if these are temperatures and not changes, {section}reference_temperature_K is")
+            f"{section}lead_in_s", code="lead_in_missing", remedy=remedy if reference is None else None,
+            table=read.path.name, away_K=changes[0, first], column=read.names[first],
+        )
     if lead_out is not None:
         time_s = np.concatenate((time_s, [time_s[-1] + float(lead_out)]))
         changes = np.concatenate((changes, np.zeros((1, changes.shape[1]))))
     if not time_s[-1] <= LONGEST_TABLE_S:
-        raise Unreadable("its last time is too late", cause=f"at most {LONGEST_TABLE_S:g} s are allowed",
-                         file=read.path)
+        raise Unreadable(code="last_time_too_late", file=read.path, latest_s=LONGEST_TABLE_S)
     close = np.flatnonzero(~(np.diff(time_s) > np.finfo(float).eps * time_s[-1]))  # rounding of a time near the end
     if close.size:
-        raise Unreadable(f"times {time_s[close[0]]:g} and {time_s[close[0] + 1]:g}", file=read.path,
-                         cause=f"they cannot be told apart within {time_s[-1]:g} s")
+        raise Unreadable(code="times_too_close", file=read.path, first_s=time_s[close[0]],
+                         second_s=time_s[close[0] + 1], whole_s=time_s[-1])
     if _cycles(given) > 1 and changes[-1].any() and given.get("return_to_reference") is False:
         last = int(np.argmax(np.abs(changes[-1])))
-        raise NotAllowed(
-            f"{section}cycles", given.get("cycles"),
-            f"{read.path.name} ends {changes[-1, last]:g} K away from the stress-free temperature (column "
-            f"{read.names[last]!r}), and what is repeated must end where it begins")
+        raise NotAllowed(f"{section}cycles", given.get("cycles"), code="table_does_not_close", table=read.path.name,
+                         away_K=changes[-1, last], column=read.names[last])
     return time_s, changes

@@ -165,8 +165,7 @@ def ending(
     if period_s is not None and abs(period_s - lasts) > SAME_TIME * lasts:
         takes = period_s - lasts
     if takes < 0:
-        raise NotAllowed(key, period_s, f"the table lasts {lasts:g} s, and the return to the reference temperature "
-                         "ends after it", remedy=f"leave {key} out")
+        raise NotAllowed(key, period_s, code="return_too_late", lasts=lasts, key_to_leave_out=key)
     return Ending((cycles - 1) * (lasts + takes) + lasts, last, takes)
 
 
@@ -205,33 +204,29 @@ def check(thermal: Thermal, section: str = "thermal.", returns: bool = False) ->
     for key in KEYS_OF_FILES:
         if getattr(thermal, key, None) is not None:
             # Files are read with the case file, and their names are gone then.
-            raise NotAllowed(f"{section}{key}", getattr(thermal, key),
-                             "only where a case file names a table_file or members_file, or the name of one is given "
-                             "to load() or changed()")
+            raise NotAllowed(f"{section}{key}", getattr(thermal, key), code="only_in_case_file")
     if thermal.shape != "table":
         if thermal.temperature_change_max_K is None:
             rule = rule_of(fields_of(Thermal)["temperature_change_max_K"])
             raise MissingKey(f"{section}temperature_change_max_K", str(rule.allowed), allowed=rule.allowed)
         for key in ("table_time_s", "table_temperature_change_K"):
             if getattr(thermal, key) is not None:
-                raise NotAllowed(f"{section}{key}", cause=f"only with {section}shape = 'table'")
+                raise NotAllowed(f"{section}{key}", code="only_with_table", in_section=section)
         return
     if thermal.temperature_change_max_K is not None:
-        raise NotAllowed(f"{section}temperature_change_max_K", beside=f"with {section}shape = 'table'")
+        raise NotAllowed(f"{section}temperature_change_max_K", code="beside_table_shape", in_section=section)
     times, changes = thermal.table_time_s, thermal.table_temperature_change_K
     if times is None:
-        raise MissingKey(f"{section}table_time_s", "a list of times [s] is needed for a table")
+        raise MissingKey(f"{section}table_time_s", code="table_times_missing")
     if changes is None:
-        raise MissingKey(f"{section}table_temperature_change_K", "one value [K] per time is needed")
+        raise MissingKey(f"{section}table_temperature_change_K", code="table_values_missing")
     if len(times) < 2 or times[0] != 0 or any(b <= a for a, b in zip(times, times[1:])):
-        raise NotAllowed(f"{section}table_time_s", _short(times),
-                         "must be at least two times [s] that start at 0 and rise")
+        raise NotAllowed(f"{section}table_time_s", _short(times), code="table_times")
     if len(changes) != len(times):
-        raise NotAllowed(f"{section}table_temperature_change_K", ABSENT, f"must be {len(times)} values, one per time, "
-                         f"not {len(changes)}")
+        raise NotAllowed(f"{section}table_temperature_change_K", ABSENT, code="table_length", times=len(times),
+                         values=len(changes))
     if changes[0] != 0 or (thermal.cycles > 1 and changes[-1] != 0 and not returns):
-        raise NotAllowed(f"{section}table_temperature_change_K", _short(changes),
-                         "must start at 0 [K] and, with several cycles and without a return, end at 0 [K]")
+        raise NotAllowed(f"{section}table_temperature_change_K", _short(changes), code="table_ends")
 
 
 def _short(values: list[float]) -> Any:
@@ -257,8 +252,7 @@ def period_of(
         given_s = None  # of a further program: what its table lasts
     lasts += return_s
     if given_s is not None and abs(given_s - lasts) > SAME_TIME * lasts:
-        raise NotAllowed(key, given_s, f"the table lasts {lasts:g} s, and its own times are the times",
-                         remedy=f"leave {key} out")
+        raise NotAllowed(key, given_s, code="period_beside_table", lasts=lasts, key_to_leave_out=key)
     return lasts
 
 

@@ -61,13 +61,11 @@ def find_yade() -> str:
     from shutil import which  # cases import this module, but few of them start YADE
 
     if not _paths.YADE:
-        raise FailedRun("YADE is missing", cause="this statejump was built without it",
-                        remedy="for 'dem' and 'compare' build with 'make demo' on Debian 12 or 13")
+        raise FailedRun(code="built_without_yade")
     wanted = os.environ.get("STATEJUMP_YADE", "yade")
     found = which(wanted)
     if found is None:
-        raise FailedRun("YADE is missing", cause=f"no command {wanted!r} found",
-                        remedy="install Debian's package 'yade' or set STATEJUMP_YADE to the command")
+        raise FailedRun(code="no_yade", command=wanted)
     return found
 
 
@@ -115,7 +113,7 @@ def run(case: Case, values: Mapping[str, Any], make_run: MakeRun, tell: Tell) ->
             try:
                 stopped.run = replace(make_run(case, samples.columns, samples.about), complete=False)
             except (KeyError, IndexError, ValueError):  # interrupted before a run can be made
-                stopped = Interrupted("interrupted before a whole sample; nothing was written")
+                stopped = Interrupted(code="interrupted_before_sample")
         raise stopped from None
     return make_run(case, done.columns, done.about)
 
@@ -143,14 +141,14 @@ def execute(values: Mapping[str, Any], tell: Tell) -> Samples:
         except KeyboardInterrupt:
             raise _interrupted(output) from None
         except OSError as error:
-            raise FailedRun(f"YADE cannot be started: {command[0]}", cause=error.strerror) from None
+            raise FailedRun(code="yade_not_started", cause=error.strerror, command=command[0]) from None
         except StatejumpError as failure:
             raise failure.located(case=name) from None
         try:
             about = json.loads(output.with_name(output.name + ".json").read_text(encoding="utf-8"))
             return Samples(read_samples(output), about)
         except (OSError, ValueError, IndexError, StatejumpError) as error:
-            raise FailedRun("the DEM run left no complete result", case=name, cause=str(error)) from None
+            raise FailedRun(code="dem_without_result", case=name, cause=str(error)) from None
 
 
 def _watch(command: list[str], environment: dict[str, str], tell: Tell) -> None:
@@ -187,10 +185,9 @@ def _watch(command: list[str], environment: dict[str, str], tell: Tell) -> None:
     if failure is not None:
         raise RunFailed(**failure)
     if process.returncode < 0:
-        raise FailedRun(f"the DEM run was killed by signal {-process.returncode}; nothing was written")
+        raise FailedRun(code="dem_killed", signal=-process.returncode)
     if process.returncode != 0 or not finished:
-        raise FailedRun(f"YADE ended with status {process.returncode} before the run was finished",
-                        cause=last or None)
+        raise FailedRun(code="yade_ended", cause=last or None, status=process.returncode)
 
 
 def _message(line: str) -> dict[str, Any]:
@@ -213,7 +210,7 @@ class RunFailed(FailedRun):
     """
 
     def __init__(self, cause: str, *, place: str = "", **more: Any) -> None:
-        super().__init__("the DEM run failed", cause=cause, **more)
+        super().__init__(code="dem_failed", cause=cause, **more)
         self.words = place
 
     def __str__(self) -> str:
@@ -232,4 +229,4 @@ def _interrupted(output: Path) -> Interrupted:
     try:
         return Interrupted(run=Samples(read_samples(partial, whole=False), {}))
     except (OSError, ValueError, StatejumpError):
-        return Interrupted("interrupted before the first sample; nothing was written")
+        return Interrupted(code="interrupted_before_first_sample")

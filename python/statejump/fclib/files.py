@@ -40,33 +40,33 @@ def read(path: str | Path) -> Problem:
 
     path = Path(path)
     if not is_file(path):
-        raise Unreadable("no such file", file=path)
+        raise Unreadable(code="no_such_file", file=path)
     try:
         if not h5py.is_hdf5(path):
-            raise Unreadable("cannot be read", cause="it is not HDF5", file=path)
+            raise Unreadable(code="not_hdf5", file=path)
         with h5py.File(path, "r") as file:
             objects(file, path)
             return _problem(file)
     except StatejumpError as error:
         raise error.located(file=path) from None
     except (OSError, RuntimeError, MemoryError) as error:
-        raise Unreadable("cannot be read", cause=" ".join(str(error).split()), file=path) from None
+        raise Unreadable(code="cannot_be_read", cause=" ".join(str(error).split()), file=path) from None
 
 
 def _problem(file: h5py.File) -> Problem:
     if LOCAL not in file:
         other = next((f"it holds a {what} problem ({name}), and only a local one is solved"
                       for name, what in OTHERS.items() if name in file), "it is not a file of FCLIB")
-        raise Unreadable(f"/{LOCAL} is missing", cause=other)
+        raise Unreadable(code="fclib_missing", cause=other, group=LOCAL)
     group = _group(file, LOCAL)
     dimension = _number(group, "spacedim")
     if dimension not in (2, 3):
-        raise Unreadable(f"{group.name}/spacedim = {dimension}", cause="must be 2 or 3")
+        raise Unreadable(code="fclib_dimension", group=group.name, dimension=dimension)
     vectors = _group(group, "vectors")
     q, mu = _vector(vectors, "q"), _vector(vectors, "mu")
     if q.size != dimension * mu.size:
-        raise Unreadable(f"{vectors.name}/q has {q.size} entries",
-                         cause=f"{mu.size} contacts in dimension {dimension} need {dimension * mu.size}")
+        raise Unreadable(code="fclib_vector_length", group=vectors.name, entries=q.size, contacts=mu.size,
+                         dimension=dimension, needed=dimension * mu.size)
     delassus: Any = _matrix(group, "W", (q.size, q.size))
     if "V" in group or "R" in group:
         delassus, q = _without_equations(group, delassus, q)
@@ -83,7 +83,7 @@ def _without_equations(
     coupling = _matrix(group, "V", (q.size, s.size)).toarray()
     matrix = _matrix(group, "R", (s.size, s.size)).toarray()
     if np.linalg.matrix_rank(matrix) < s.size:
-        raise Unreadable(f"{group.name}/R is singular", cause="only equations that can be eliminated are taken")
+        raise Unreadable(code="fclib_singular", group=group.name)
     inner = np.linalg.solve(matrix, np.column_stack([coupling.T, s]))
     return delassus.toarray() - coupling @ inner[:, :-1], q - coupling @ inner[:, -1]
 
@@ -97,7 +97,7 @@ def _stored(file: h5py.File, size: int) -> list[Stored]:
     for name in names:
         reactions = _vector(_group(file, name), "r")
         if reactions.size != size:
-            raise Unreadable(f"/{name}/r has {reactions.size} entries", cause=f"q has {size}")
+            raise Unreadable(code="fclib_reactions_length", group=name, entries=reactions.size, needed=size)
         found.append(Stored(name, reactions))
     return found
 
@@ -107,7 +107,8 @@ def _group(parent: h5py.Group, name: str) -> h5py.Group:
 
     found = parent.get(name)
     if not isinstance(found, h5py.Group):
-        raise Unreadable(f"{parent.name.rstrip('/')}/{name} is " + ("missing" if found is None else "not a group"))
+        raise Unreadable(code="fclib_group_missing" if found is None else "fclib_no_group",
+                         group=f"{parent.name.rstrip('/')}/{name}")
     return found
 
 
@@ -117,12 +118,12 @@ def _numbers(parent: h5py.Group, name: str, whole: bool) -> NDArray[Any]:
     place = f"{parent.name}/{name}"
     found = parent.get(name)
     if not isinstance(found, h5py.Dataset):
-        raise Unreadable(f"{place} is " + ("missing" if found is None else "not a data set"))
+        raise Unreadable(code="fclib_data_missing" if found is None else "fclib_no_data_set", data_set=place)
     if found.shape is None or len(found.shape) > 1 or found.dtype.kind not in ("iu" if whole else "iuf"):
-        raise Unreadable(f"{place} is damaged", cause=f"must be a list of {'whole ' if whole else ''}numbers")
+        raise Unreadable(code="fclib_no_numbers", data_set=place, whole_="whole " if whole else "")
     values: NDArray[Any] = np.atleast_1d(found[()]).astype(np.int64 if whole else float)
     if not np.isfinite(values).all():
-        raise Unreadable(f"{place} is damaged", cause="it has numbers that are not finite")
+        raise Unreadable(code="fclib_not_finite", data_set=place)
     return values
 
 
@@ -133,7 +134,7 @@ def _vector(parent: h5py.Group, name: str) -> NDArray[np.float64]:
 def _number(parent: h5py.Group, name: str) -> int:
     values = _numbers(parent, name, whole=True)
     if values.size != 1:
-        raise Unreadable(f"{parent.name}/{name} has {values.size} entries", cause="must be one number")
+        raise Unreadable(code="fclib_no_number", group=parent.name, data_set=name, entries=values.size)
     return int(values[0])
 
 
@@ -143,22 +144,22 @@ def _matrix(parent: h5py.Group, name: str, shape: tuple[int, int]) -> scipy.spar
     group = _group(parent, name)
     rows, columns, kind = (_number(group, key) for key in ("m", "n", "nz"))
     if (rows, columns) != shape:
-        raise Unreadable(f"{group.name} is {rows} x {columns}", cause=f"must be {shape[0]} x {shape[1]}")
+        raise Unreadable(code="fclib_matrix_shape", group=group.name, rows=rows, columns=columns, wanted_rows=shape[0],
+                         wanted_columns=shape[1])
     p, i = (_numbers(group, key, whole=True) for key in ("p", "i"))
     x = _vector(group, "x")
     if kind not in (COLUMNS, ROWS) and kind < 0:
-        raise Unreadable(f"{group.name}/nz = {kind}", cause="must be -2, -1 or a number of entries")
+        raise Unreadable(code="fclib_storage", group=group.name, nz=kind)
     if kind >= 0:
         if min(p.size, i.size, x.size) < kind:
-            raise Unreadable(f"{group.name} is damaged", cause=f"p, i and x have less than nz = {kind} entries")
+            raise Unreadable(code="fclib_too_few_entries", group=group.name, nz=kind)
         p, i, x = p[:kind], i[:kind], x[:kind]
         _check_indices(group, "i", i, rows)
         _check_indices(group, "p", p, columns)
         return sparse.coo_matrix((x, (i, p)), shape).tocsc()
     lines, across = (columns, rows) if kind == COLUMNS else (rows, columns)
     if p.size != lines + 1 or p[0] != 0 or (np.diff(p) < 0).any() or min(i.size, x.size) < p[-1]:
-        raise Unreadable(f"{group.name}/p is damaged",
-                         cause=f"must be {lines + 1} numbers that rise from 0 to at most the entries of i and x")
+        raise Unreadable(code="fclib_pointers", group=group.name, numbers=lines + 1)
     i, x = i[: p[-1]], x[: p[-1]]
     _check_indices(group, "i", i, across)
     form = sparse.csc_matrix if kind == COLUMNS else sparse.csr_matrix
@@ -168,7 +169,7 @@ def _matrix(parent: h5py.Group, name: str, shape: tuple[int, int]) -> scipy.spar
 def _check_indices(group: h5py.Group, name: str, values: NDArray[Any], bound: int) -> None:
     wrong = values[(values < 0) | (values >= bound)]
     if wrong.size:
-        raise Unreadable(f"{group.name}/{name} holds {wrong[0]}", cause=f"must be between 0 and {bound - 1}")
+        raise Unreadable(code="fclib_index", group=group.name, data_set=name, index=wrong[0], largest=bound - 1)
 
 
 def _text(parent: Any, name: str) -> str:

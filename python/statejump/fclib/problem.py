@@ -32,8 +32,8 @@ class NotSolved(StatejumpError):
     kind = "not_solved"
 
     def __init__(self, solution: Solution, tolerance: float, **more: Any) -> None:
-        super().__init__("not solved", cause=f"merit {solution.merit.largest:.3g} after {solution.effort}, "
-                         f"tolerance {tolerance:g}", **more)
+        super().__init__(code="not_solved", merit=solution.merit.largest, effort=solution.effort, tolerance=tolerance,
+                         **more)
         self.solution = solution
 
 
@@ -93,7 +93,7 @@ class Problem:
         for name in ("q", "mu"):
             values = np.asarray(getattr(self, name), dtype=float)
             if values.ndim != 1:
-                raise StatejumpError(f"{name} has shape {values.shape}", cause="must be a list of numbers")
+                raise StatejumpError(code="problem_no_list", name=name, shape=values.shape)
             object.__setattr__(self, name, values)
         with engine():
             object.__setattr__(self, "_problem", self._made())
@@ -102,11 +102,11 @@ class Problem:
         if not hasattr(self.delassus, "tocsc"):
             dense = np.asarray(self.delassus, dtype=float)
             if dense.ndim != 2:
-                raise StatejumpError(f"W has shape {dense.shape}", cause="must be a square array")
+                raise StatejumpError(code="problem_not_square", shape=dense.shape)
             return _engine.FrictionProblem(self.dimension, dense, self.q, self.mu)
         columns = self.delassus.tocsc()
         if columns.shape != (self.q.size, self.q.size):
-            raise StatejumpError(f"W has shape {columns.shape}", cause=f"q has {self.q.size} entries")
+            raise StatejumpError(code="problem_shape", shape=columns.shape, entries=self.q.size)
         return _engine.FrictionProblem.of_columns(
             self.dimension, columns.indptr, columns.indices, columns.data.astype(float), self.q, self.mu
         )

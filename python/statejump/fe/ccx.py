@@ -42,19 +42,18 @@ def displacements(deck: Sequence[str], set_name: str) -> list[dict[int, np.ndarr
     """
     program = shutil.which(PROGRAM)
     if program is None:
-        raise StatejumpError("CalculiX is not installed", cause=f"there is no {PROGRAM} on the PATH",
-                             remedy="install Debian's calculix-ccx")
+        raise StatejumpError(code="no_calculix", program=PROGRAM)
     with scratch() as folder:
         (folder / "deck.inp").write_text("\n".join(deck) + "\n", encoding="ascii")
         try:
             done = subprocess.run([program, "deck"], cwd=folder, capture_output=True, text=True, errors="replace",
                                   stdin=subprocess.DEVNULL, timeout=LONGEST_S, check=False)
         except subprocess.TimeoutExpired:
-            raise FailedRun(f"CalculiX was not done after {LONGEST_S:g} s") from None
+            raise FailedRun(code="calculix_too_slow", limit_s=LONGEST_S) from None
         said = [" ".join(line.split()).partition("; please")[0] for line in done.stdout.splitlines()
                 if "*ERROR" in line]
         if done.returncode or said or "Job finished" not in done.stdout:
-            raise FailedRun("CalculiX did not come to the end", cause=said[0] if said else None)
+            raise FailedRun(code="calculix_failed", cause=said[0] if said else None)
         return _read(folder / "deck.dat", set_name)
 
 

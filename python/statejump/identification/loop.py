@@ -74,11 +74,9 @@ class Loop:
         force, displacement = FORCES[self.angular], DISPLACEMENTS[self.angular]
         remedy = f"multiply {force} by -1: it is positive where it resists a positive {displacement}"
         if energy < -max(CHANCE * doubt, PHASE * largest):
-            raise StatejumpError("the loop gives out energy", remedy=remedy,
-                                 cause=f"{-energy:.4g} J: the sign of the {force} is reversed")
+            raise StatejumpError(code="loop_gives_energy", remedy=remedy, energy_J=-energy, force=force)
         if energy <= PHASE * largest and np.corrcoef(self.displacement, self.force)[0, 1] < PUSHES:
-            raise StatejumpError(f"the {force} falls as the {displacement} rises", cause="its sign is reversed",
-                                 remedy=remedy)
+            raise StatejumpError(code="loop_falls", remedy=remedy, force=force, displacement=displacement)
 
     def _energy(self) -> tuple[float, float]:
         """Return the energy that the joint takes up, and its standard deviation by the noise of the force: between the
@@ -113,7 +111,7 @@ def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown", ig
         that does not move or has too few rows
     """
     if start not in STARTS:
-        raise NotAllowed("start", start, f"must be one of {', '.join(STARTS)}", allowed=STARTS)
+        raise NotAllowed("start", start, code="not_one_of", allowed=STARTS, known=", ".join(STARTS))
     if isinstance(source, Mapping):
         return _loop("loop", _named(source), start)
     file = Path(source)
@@ -135,23 +133,21 @@ def _named(source: Mapping[str, Any]) -> dict[str, np.ndarray]:
 def _loop(name: str, columns: Mapping[str, np.ndarray], start: str) -> Loop:
     pairs = [pair for pair in PAIRS if pair[0] in columns or pair[1] in columns]
     if not pairs:
-        raise MissingKey("displacement_m", "a loop has displacement_m and force_N, or rotation_rad and moment_N_m",
-                         section="column displacement_m")
+        raise MissingKey("displacement_m", code="loop_columns_missing", section="column displacement_m")
     if len(pairs) > 1:
         beside = next(name for name in PAIRS[1] if name in columns)
-        raise NotAllowed(beside, beside=f"beside {next(name for name in PAIRS[0] if name in columns)}",
-                         cause="a loop is force over displacement or moment over rotation")
+        raise NotAllowed(beside, code="loop_of_two_kinds", other=next((name for name in PAIRS[0] if name in columns)))
     for column in pairs[0]:
         if column not in columns:
-            raise MissingKey(column, f"it goes with {next(one for one in pairs[0] if one != column)}",
-                             section=f"column {column}")
+            raise MissingKey(column, code="partner_missing", section=f"column {column}",
+                             partner=next((one for one in pairs[0] if one != column)))
     check_columns(columns)
     displacement, force = (np.array(columns[column], dtype=float) for column in pairs[0])
     for column, values in zip(pairs[0], (displacement, force)):
         if not np.ptp(values) > 0:
-            raise NotAllowed(column, float(values[0]), "is the same in every row: that is no loop")
+            raise NotAllowed(column, float(values[0]), code="loop_constant")
     if len(displacement) < FEWEST_ROWS:
-        raise StatejumpError(f"{len(displacement)} rows are too few", cause=f"a loop needs {FEWEST_ROWS}")
+        raise StatejumpError(code="too_few_rows", rows=len(displacement), fewest=FEWEST_ROWS)
     found = Loop(name, displacement, force, pairs[0] == PAIRS[1], start)
     found.check_sign()
     return found

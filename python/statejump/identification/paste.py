@@ -42,10 +42,9 @@ class Entry:
 def check(target: str, angular: bool) -> None:
     """Raise NotAllowed where a loop says nothing of such a joint."""
     if target not in TARGETS:
-        raise NotAllowed("target", target, f"must be one of {', '.join(TARGETS)}", allowed=tuple(TARGETS))
+        raise NotAllowed("target", target, code="not_one_of", allowed=tuple(TARGETS), known=", ".join(TARGETS))
     if TARGETS[target][2] not in (None, angular):
-        raise NotAllowed("target", target, "it takes a loop of moment over rotation" if not angular else
-                         "it takes a loop of force over displacement")
+        raise NotAllowed("target", target, code="target_of_rotation" if not angular else "target_of_displacement")
 
 
 def deviation(interval: Interval, confidence: float) -> float | None:

@@ -193,7 +193,7 @@ class Identification:
             return pandas.DataFrame(self._rows_of_models(), columns=MODEL_COLUMNS)
         if table == "rows":
             return pandas.DataFrame(self._columns())
-        raise NotAllowed("table", table, "must be 'parameters', 'models' or 'rows'")
+        raise NotAllowed("table", table, code="no_table_of_fit")
 
     def _columns(self) -> dict[str, np.ndarray]:
         displacement, force = self.loop.displacement, self.loop.force
@@ -255,15 +255,16 @@ def identified(
     """Identify a joint; see :func:`statejump.identify`."""
     for key, given in (("normal_force_N", normal_force_N), ("journal_radius_m", journal_radius_m)):
         if given is not None and not 0 < given < float("inf"):
-            raise NotAllowed(key, given, "must be a number above 0")
+            raise NotAllowed(key, given, code="not_positive")
     if not (isinstance(confidence, (int, float)) and confidence in CONFIDENCE):
-        raise NotAllowed("confidence", confidence, allowed=CONFIDENCE)
+        raise NotAllowed("confidence", confidence, code="out_of_range", allowed=CONFIDENCE)
     names = list(MODELS) if model == AUTO else [model] if isinstance(model, str) else list(model)
     for name in names:
         if name not in MODELS:
-            raise NotAllowed("model", name, f"must be {AUTO} or of {', '.join(MODELS)}", allowed=(AUTO, *MODELS))
+            raise NotAllowed("model", name, code="model_unknown", allowed=(AUTO, *MODELS), auto=AUTO,
+                             models=", ".join(MODELS))
     if not names:
-        raise NotAllowed("model", model, "names no joint")
+        raise NotAllowed("model", model, code="no_joint_model")
     loop = read_loop(source, start, ignored)
     chosen_target = target or ("umbrella" if loop.angular else "spring_slider")
     paste.check(chosen_target, loop.angular)

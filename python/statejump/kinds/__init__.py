@@ -29,7 +29,7 @@ def _object(place: str) -> Kind[Any]:
     try:
         found: Kind[Any] = getattr(import_module(module), name)
     except (ImportError, AttributeError) as problem:
-        raise StatejumpError(f"kind {place!r} cannot be loaded", value=place, cause=str(problem)) from None
+        raise StatejumpError(code="kind_not_loaded", value=place, cause=str(problem), name=place) from None
     return found
 
 

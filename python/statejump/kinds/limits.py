@@ -63,9 +63,6 @@ def check_memory(case: Case, model: str) -> None:
     history = history_of(case, model)
     needed, free = PEAK_BYTES[model] * history.samples * history.values, free_memory()
     if free is not None and needed > free:
-        raise NotAllowed(
-            "thermal.cycles", case.thermal.cycles,
-            f"a history of {history.samples:,} samples of {history.values:,} values needs about {size(needed)} of "
-            f"memory, of which {size(free)} are free", remedy="take fewer cycles or fewer samples per cycle",
-            file=case.origin.file, case=case.name,
-        )
+        raise NotAllowed("thermal.cycles", case.thermal.cycles, code="too_little_memory", file=case.origin.file,
+                         case=case.name, samples=history.samples, values=history.values, needed=size(needed),
+                         free=size(free))

@@ -247,7 +247,7 @@ class Kind(Generic[CaseType]):
         """Return the case of a parsed document. :raises StatejumpError: one failure, without the file's name"""
         for section in self.Case.NOT_IN_FILE:
             if section in data:
-                raise NotAllowed(f"section [{section}]", cause=self.Case.NOT_IN_FILE[section])
+                raise NotAllowed(f"section [{section}]", code="not_from_file", cause=self.Case.NOT_IN_FILE[section])
         made = structure(self.Case, data)
         thermal.check(made.thermal, returns=made.ending is not None)
         made.check_cycles()
@@ -268,5 +268,5 @@ def needed(kind: Kind[Any], protocol: type[Capability], case: Definition) -> Cap
     if supports(kind, protocol):
         return cast(Capability, kind)
     others = " and ".join(repr(other) for other in _OTHERS(protocol))
-    raise NotAllowed("case.kind", kind.name, f"'statejump {_COMMANDS[protocol]}' is for {others or 'no kind of case'}",
-                     file=case.origin.file)
+    raise NotAllowed("case.kind", kind.name, code="command_not_for_kind", file=case.origin.file,
+                     command=_COMMANDS[protocol], kinds=others or "no kind of case")

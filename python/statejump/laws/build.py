@@ -51,12 +51,11 @@ def build(header: Path, folder: Path | None = None) -> Path:
     """
     header = Path(header)
     if not is_file(header):
-        raise Unreadable("there is no such file", file=header)
+        raise Unreadable(code="no_header", file=header)
     compiler = find_compiler()
     kernel = kernel_hash(KERNEL_INCLUDE)
     if kernel != _engine.kernel_hash():
-        raise StatejumpError("these kernel headers are not those that the engine was compiled from",
-                             file=KERNEL_INCLUDE, remedy="build or install the project again")
+        raise StatejumpError(code="other_headers", file=KERNEL_INCLUDE)
     folder = default_folder() if folder is None else Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -64,11 +63,11 @@ def build(header: Path, folder: Path | None = None) -> Path:
             made = compile_law(compiler, header.resolve(), kernel, Path(scratch))
             found = _engine.inspect_user_law(str(made))
             if found["problem"]:
-                raise StatejumpError(found["problem"].replace(str(made), str(header)), file=header)
+                raise StatejumpError(found["problem"].replace(str(made), str(header)), code="law_unusable", file=header)
             target = folder / f"{found['kind']}_{found['name']}.so"
             write_bytes(target, made.read_bytes())
     except OSError as error:
-        raise NotWritten("cannot be written", cause=error.strerror, file=folder) from None
+        raise NotWritten(code="cannot_be_written", cause=error.strerror, file=folder) from None
     _engine.load_user_laws()
     return target
 
@@ -81,9 +80,8 @@ def find_compiler() -> str:
         if found:
             return found
     if wanted:
-        raise StatejumpError("no C++ compiler", key="CXX", value=wanted, cause=f"$CXX = {wanted!r} cannot be run")
-    raise StatejumpError("no C++ compiler", cause=f"none of {', '.join(COMPILERS)} is installed",
-                         remedy="on Debian, apt install g++ libeigen3-dev libboost-dev")
+        raise StatejumpError(code="compiler_not_run", key="CXX", value=wanted, compiler=wanted)
+    raise StatejumpError(code="no_compiler", compilers=", ".join(COMPILERS))
 
 
 def compile_law(compiler: str, header: Path, kernel: str, folder: Path) -> Path:
@@ -101,7 +99,7 @@ def compile_law(compiler: str, header: Path, kernel: str, folder: Path) -> Path:
         first = next((line for line in lines if "error" in line), lines[0])
         for known in (header.parent, folder, KERNEL_INCLUDE):
             first = first.replace(f"{known}{os.sep}", "")
-        raise StatejumpError(f"{header.name} does not compile", cause=first)
+        raise StatejumpError(code="law_does_not_compile", cause=first, header=header.name)
     return made
 
 

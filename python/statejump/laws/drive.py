@@ -82,11 +82,10 @@ def drive(
     except StatejumpError as error:
         raise error.located(file=file) from None
     if not (isinstance(steps_per_row, int) and steps_per_row >= 1):
-        raise NotAllowed("steps_per_row", steps_per_row, "must be a whole number from 1")
+        raise NotAllowed("steps_per_row", steps_per_row, code="no_count")
     rows = len(next(iter(columns.values())))
     if (rows - 1) * steps_per_row >= MOST_STEPS:
-        raise NotAllowed("steps_per_row", steps_per_row,
-                         f"{rows} rows of that many steps are more than {MOST_STEPS} in all")
+        raise NotAllowed("steps_per_row", steps_per_row, code="too_many_law_steps", rows=rows, most=MOST_STEPS)
     row, path = _refined(columns, steps_per_row)
     normal = next(name for name in NORMAL if name in path)
     along = next(name for name in ALONG if name in path)
@@ -110,11 +109,11 @@ def drive(
         )
     except _engine.EngineFailure as failure:
         key = next(name for name in arguments if name.startswith(failure.key or ""))
-        raise NotAllowed(key, arguments[key], failure.cause) from None
+        raise NotAllowed(key, arguments[key], failure.cause, code="engine_argument") from None
     problem = answer.pop("problem")
     if problem:
         reached = row[len(answer["slide_x_m"])]
-        raise FailedRun(file=file, item=f"row {reached:g}", cause=f"law {law!r}: {problem}")
+        raise FailedRun(code="law_failed", file=file, item=f"row {reached:g}", law=law, why=problem)
     return _named({"row": row} | path, answer)
 
 
@@ -134,8 +133,8 @@ def _driven(name: str) -> tuple[str, Law]:
             names.append(law.name)
     for kind in DRIVEN:
         if problem := _engine.law_problem(kind, name):
-            raise NotAllowed("law", name, problem)
-    raise NotAllowed("law", name, f"must be one of {', '.join(dict.fromkeys(names))}", allowed=tuple(names))
+            raise NotAllowed("law", name, problem, code="law_unusable")
+    raise NotAllowed("law", name, code="not_one_of", allowed=tuple(names), known=", ".join(dict.fromkeys(names)))
 
 
 def _columns(history: Mapping[str, Any] | str | Path) -> tuple[Path | None, dict[str, np.ndarray]]:
@@ -151,41 +150,41 @@ def _check(columns: Mapping[str, np.ndarray], kind: str, law: Law) -> None:
     for name in columns:
         if name not in COLUMNS:
             near = get_close_matches(name, COLUMNS, 1)
-            raise UnknownKey(name, section=f"column {name}", cause=f"did you mean {near[0]}?" if near else
-                             f"known are {', '.join(COLUMNS)}")
+            raise UnknownKey(name, section=f"column {name}", **(
+                {"code": "misspelt_key", "meant": near[0]} if near else
+                {"code": "no_such_key", "known": ", ".join(COLUMNS)}))
     _one_of(columns, NORMAL, "penetration_depth_m or normal_force_N")
     _one_of(columns, ALONG, "slide_m, slide_x_m with slide_y_m, or tangential_force_N")
     if ("slide_x_m" in columns) != ("slide_y_m" in columns):
         there, missing = sorted(("slide_x_m", "slide_y_m"), key=lambda name: name not in columns)
-        raise MissingKey(missing, f"{there} goes with it", section=f"column {missing}")
+        raise MissingKey(missing, code="column_partner_missing", section=f"column {missing}", partner=there)
     check_columns(columns)
     if "normal_force_N" in columns:
         below = np.flatnonzero(columns["normal_force_N"] < 0)
         if below.size:
-            raise NotAllowed("normal_force_N", float(columns["normal_force_N"][below[0]]),
-                             "must be at least 0 [N]: the bodies do not pull on each other", item=f"row {below[0] + 1}")
+            raise NotAllowed("normal_force_N", float(columns["normal_force_N"][below[0]]), code="bodies_pull",
+                             item=f"row {below[0] + 1}")
     if "tangential_force_N" in columns and columns["tangential_force_N"][0] != 0:
-        raise NotAllowed("tangential_force_N", float(columns["tangential_force_N"][0]),
-                         "must be 0 [N] in the first row, where the contact is made", item="row 1")
+        raise NotAllowed("tangential_force_N", float(columns["tangential_force_N"][0]), code="first_row_not_zero",
+                         item="row 1")
     timed = kind == "dissipation" and law.parameters or kind == "friction" and not (law.has_memory or law.frictionless)
     if timed and "time_s" not in columns:
-        raise MissingKey("time_s", f"law {law.name!r} depends on velocity", section="column time_s")
+        raise MissingKey("time_s", code="law_needs_time", section="column time_s", law=law.name)
     if "time_s" in columns:
         late = np.flatnonzero(np.diff(columns["time_s"]) <= 0)
         if late.size:
-            raise NotAllowed("time_s", float(columns["time_s"][late[0] + 1]), "must grow from row to row [s]",
+            raise NotAllowed("time_s", float(columns["time_s"][late[0] + 1]), code="rows_do_not_grow",
                              item=f"row {late[0] + 2}")
     if kind == "dissipation" and law.parameters and "normal_force_N" in columns:
-        raise NotAllowed("normal_force_N", beside=f"with law {law.name!r}",
-                         cause="its force depends on the rate of penetration_depth_m, which has to be given")
+        raise NotAllowed("normal_force_N", code="law_needs_penetration", law=law.name)
 
 
 def _one_of(columns: Mapping[str, np.ndarray], names: tuple[str, ...], told: str) -> None:
     there = [name for name in names if name in columns]
     if not there:
-        raise MissingKey(names[0], f"the history needs {told}", section=f"column {names[0]}")
+        raise MissingKey(names[0], code="history_column_missing", section=f"column {names[0]}", needs_=told)
     if len(there) > 1:
-        raise NotAllowed(there[1], beside=f"beside {there[0]}", cause=f"the history needs {told}, one of them")
+        raise NotAllowed(there[1], code="history_columns_exclude", other=there[0], needs_=told)
 
 
 def _refined(columns: Mapping[str, np.ndarray], steps: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:

@@ -276,8 +276,7 @@ class Drawing:
             deforms=way > 0,
         )
         if not np.isfinite([size, way, self.scene["largest_force_N"], magnification]).all():
-            raise Unreadable("cannot be drawn", cause="places or forces are not finite, or too large",
-                             case=self.result.name)
+            raise Unreadable(code="drawing_not_finite", case=self.result.name)
 
     def _largest_way(self) -> float:
         """Return how far [m] a point goes from its start at most; those that are relative to others left out."""

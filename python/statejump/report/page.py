@@ -29,10 +29,7 @@ def _asset(name: str) -> str:
     try:
         return path.read_text(encoding="utf-8")
     except OSError:
-        raise StatejumpError(
-            f"the page's script is missing ({path})",
-            remedy="`make build` builds it; it needs Node and, once, the npm registry",
-        ) from None
+        raise StatejumpError(code="page_script_missing", script=path) from None
 
 
 def embedded_json(data: Any) -> Markup:
@@ -58,7 +55,7 @@ def _payload(document: Document | CampaignDocument) -> dict[str, Any]:
     data = document.payload()
     wrong = next(_not_finite(data), None)
     if wrong is not None:
-        raise Unreadable("cannot be drawn", cause=f"{wrong} is not finite", case=document.title)
+        raise Unreadable(code="page_not_finite", case=document.title, entry=wrong)
     return data
 
 
@@ -102,6 +99,6 @@ def write(documents: Sequence[Document | CampaignDocument | UnsolvedDocument], p
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise NotWritten("cannot be written", file=path, cause=error.strerror or str(error)) from None
+        raise NotWritten(code="cannot_be_written", file=path, cause=error.strerror or str(error)) from None
     with write_atomically(path) as stream:
         stream.write(text)

@@ -32,8 +32,7 @@ class UnsolvedDocument:
 
     def __init__(self, case: Case, source: str, identifier: str) -> None:
         if not has(case, CaseDrawing):
-            raise NotAllowed("case.kind", case.kind, "a page of a case that is not solved is for 'truss'",
-                             file=case.origin.file, remedy=f"'statejump compare {source}' solves it")
+            raise NotAllowed("case.kind", case.kind, code="page_only_of_truss", file=case.origin.file, source=source)
         self._case, self.source, self.identifier = case, source, identifier
         self.title, self.case_name, self.text = case.title, case.name, case.origin.text
         self.sentences = words.described(case)

@@ -20,19 +20,18 @@ def check(file: h5py.File, path: Path) -> None:
     """Raise Unreadable unless the file is a result file of a known layout, and its contents match this layout."""
     form = file.attrs.get("format")
     if not isinstance(form, str) or form != FORMAT:
-        raise Unreadable("not a result file", cause=f"HDF5, but its attribute format is not {FORMAT!r}", file=path)
+        raise Unreadable(code="result_other_format", file=path, wanted=FORMAT)
     version = file.attrs.get("layout_version", 0)
     if isinstance(version, np.integer) and version > VERSION:
-        raise Unreadable(f"layout version {version} is newer than {VERSION}, the newest that this statejump reads",
-                         file=path)
+        raise Unreadable(code="layout_newer", file=path, found=version, newest=VERSION)
     found = {"/": file, **objects(file, path)}
     models = [model for model in file["models"]] if isinstance(found.get("/models"), h5py.Group) else []
     _check_missing(found, models, path)
     for model in models:
         if model not in MODELS:
-            raise Unreadable(f"/models/{model} is not a model", cause=f"must be {' or '.join(MODELS)}", file=path)
+            raise Unreadable(code="model_unknown_in_file", file=path, model=model, models=" or ".join(MODELS))
     if not models:
-        raise Unreadable("/models has no model", file=path)
+        raise Unreadable(code="no_model", file=path)
     axes: dict[tuple[str, str], list[tuple[str, int]]] = {}
     for place, item in found.items():
         _check_attributes(place, item, path)
@@ -55,7 +54,7 @@ def check(file: h5py.File, path: Path) -> None:
 
 
 def _damaged(path: Path, cause: str) -> Unreadable:
-    return Unreadable("damaged", cause=cause, file=path)
+    return Unreadable(code="damaged", cause=cause, file=path)
 
 
 def _check_missing(found: dict[str, Any], models: list[str], path: Path) -> None:
@@ -65,7 +64,8 @@ def _check_missing(found: dict[str, Any], models: list[str], path: Path) -> None
         for model in models if "{model}" in entry.path else [""]:
             place, _, attribute = entry.path.replace("{model}", model).partition("@")
             if place not in found or (attribute and attribute not in found[place].attrs):
-                raise Unreadable(f"{place}{'@' if attribute else ''}{attribute} is missing", file=path)
+                raise Unreadable(code="object_missing", file=path, object=place, at="@" if attribute else "",
+                                 attribute=attribute)
 
 
 def _type(item: Any) -> str:

@@ -97,13 +97,13 @@ def case_differences(first: Result, second: Result) -> tuple[list[str], list[str
 def check_comparable(first: Result, second: Result) -> None:
     """Raise StatejumpError unless both files are of the same case."""
     if first.kind != second.kind:
-        raise StatejumpError("not comparable", cause=f"kinds {first.kind} and {second.kind}")
+        raise StatejumpError(code="kinds_differ", first=first.kind, second=second.kind)
     physical, _ = case_differences(first, second)
     if physical:
         more = f", and {len(physical) - 1} more" if len(physical) > 1 else ""
-        raise StatejumpError("not comparable", cause=f"the cases differ: {physical[0]}{more}")
+        raise StatejumpError(code="cases_differ", key_that_differs=physical[0], more=more)
     if first.names != second.names:
-        raise StatejumpError("not comparable", cause="the files name other links or contacts")
+        raise StatejumpError(code="items_differ")
 
 
 def pairs(first: Result, second: Result) -> list[tuple[str, str]]:
@@ -112,7 +112,7 @@ def pairs(first: Result, second: Result) -> list[tuple[str, str]]:
     if common:
         return common
     if not first.models or not second.models:
-        raise StatejumpError("not comparable", cause="a file holds no run")
+        raise StatejumpError(code="no_run")
     return [(next(iter(first.models)), next(iter(second.models)))]
 
 
@@ -192,7 +192,7 @@ def difference(first: Result, second: Result) -> list[RunDifference]:
         one, other = first.models[names[0]], second.models[names[1]]
         ends = float(one.time_s[-1]), float(other.time_s[-1])
         if complete and not abs(ends[0] - ends[1]) <= SAME_TIME * max(ends):
-            raise StatejumpError("not comparable", cause=f"the runs last {ends[0]:g} s and {ends[1]:g} s")
+            raise StatejumpError(code="durations_differ", first_s=ends[0], second_s=ends[1])
         times = one.time_s[one.time_s <= min(ends) * (1 + SAME_TIME)]
         left, right = one.at(times), other.at(times)
         with np.errstate(over="ignore", invalid="ignore"):  # rows and columns report values that are not finite

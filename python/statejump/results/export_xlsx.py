@@ -49,14 +49,12 @@ def write(result: Result, path: Path) -> Path:
         from openpyxl import Workbook  # 0.2 s, which may be missing
         from openpyxl.cell import WriteOnlyCell  # as Workbook
     except ImportError:
-        raise StatejumpError("openpyxl is missing", remedy="install Debian's package 'python3-openpyxl', or take "
-                             "--format csv") from None
+        raise StatejumpError(code="openpyxl_missing") from None
     book = Workbook(write_only=True)
     for name, header, rows, content in _tables(result):
         if rows + 1 > MOST_ROWS or len(header) > MOST_COLUMNS:
-            raise NotWritten("is too large for a sheet", place=f"table {name!r}", cause=f"{rows:,} rows and "
-                             f"{len(header):,} columns, a sheet has {MOST_ROWS:,} and {MOST_COLUMNS:,}",
-                             remedy="take --format csv")
+            raise NotWritten(code="table_too_large", place=f"table {name!r}", rows=rows, columns=len(header),
+                             most_rows=MOST_ROWS, most_columns=MOST_COLUMNS)
         sheet = book.create_sheet(name[:LONGEST_NAME])
         sheet.freeze_panes = "A2"
 
@@ -75,5 +73,5 @@ def write(result: Result, path: Path) -> Path:
     try:
         book.save(path)
     except OSError as error:
-        raise NotWritten("cannot be written", file=path, cause=error.strerror or str(error)) from None
+        raise NotWritten(code="cannot_be_written", file=path, cause=error.strerror or str(error)) from None
     return path

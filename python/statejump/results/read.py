@@ -39,11 +39,11 @@ def read(path: str | Path) -> Result:
             check(file, path)
             result = _result(file, path)
     except RecursionError:
-        raise Unreadable("damaged", cause="objects stand too deeply in each other", file=path) from None
+        raise Unreadable(code="objects_too_deep", file=path) from None
     except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
-        raise Unreadable("damaged", cause=" ".join(str(error).split()), file=path) from None
+        raise Unreadable(code="damaged", cause=" ".join(str(error).split()), file=path) from None
     for problem in problems(result):
-        raise Unreadable("damaged", cause=f"/scene: {' '.join(problem.split())}", file=path)
+        raise Unreadable(code="scene_damaged", file=path, why=" ".join(problem.split()))
     return result
 
 

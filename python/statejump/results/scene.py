@@ -126,7 +126,7 @@ def resolve(value: Value, run: Run, names: Mapping[str, list[str]]) -> np.ndarra
     try:
         found = _item(run.column(value["data"]), value, names)
     except (KeyError, ValueError) as error:
-        raise StatejumpError("scene", cause=f"{value} refers to nothing in the file: {error}") from None
+        raise StatejumpError(code="scene_reference", reference=value, why=error) from None
     return value.get("offset", 0.0) + value.get("scale", 1.0) * found
 
 

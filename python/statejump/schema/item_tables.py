@@ -68,7 +68,7 @@ class ItemTable:
         lengths = {key: values.shape[0] if values.ndim else 0 for key, values in self.columns.items()}
         for key, length in lengths.items():
             if length != max(lengths.values()) or self.columns[key].ndim not in (1, 2):
-                raise NotAllowed(key, length, f"all columns must have {max(lengths.values())} rows")
+                raise NotAllowed(key, length, code="columns_not_of_one_length", rows=max(lengths.values()))
         self.length = max(lengths.values(), default=0)
 
     def __len__(self) -> int:
@@ -104,7 +104,7 @@ class ItemColumns(Sequence[ItemType], Generic[ItemType]):
         self._model, self._length = model, len(table)
         self._fields = fields_of(model)
         if not self._length:
-            raise NotAllowed(section, cause=f"must be one or more sections [[{section}]]")
+            raise NotAllowed(section, code="no_table", table=section)
         for key in table.columns:
             if key not in self._fields:
                 raise UnknownKey(key, item=f"tables.{section}", **suggestion(key, list(self._fields)))
@@ -367,7 +367,7 @@ def _checked(section: str, table: ItemTable, key: str, field: attrs.Attribute[An
         try:
             rule.check(key, given if plain else [text for text in given if text])
             if key == "name" and not given:
-                raise NotAllowed(key, given, "must be a text in quotes that is not empty")
+                raise NotAllowed(key, given, code="empty_text")
         except NotAllowed as refused:
             refused.item = _where(section, table, place)
             raise

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import inf, isfinite
 from typing import Any, TypeVar
 
-from statejump.core.errors import MissingKey, NotAllowed, UnknownKey
+from statejump.core.errors import ABSENT, MissingKey, NotAllowed, UnknownKey
 from statejump.schema.fields import Section, default_of, definition, fields_of, is_required, rule_of, text
 from statejump.schema.item_tables import ItemColumns, ItemTable, where
 from statejump.schema.rules import NUMBER, NUMBERS, TEXT, TEXTS, suggestion
@@ -22,7 +22,7 @@ class Item(Section):
 
     def __attrs_post_init__(self) -> None:
         if not self.name:
-            raise NotAllowed("name", self.name, "must be a text in quotes that is not empty")
+            raise NotAllowed("name", self.name, code="empty_text")
 
 
 def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[ItemType]:
@@ -39,8 +39,8 @@ def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[Ite
     if isinstance(value, ItemTable):
         return ItemColumns(model, section, value)
     if not isinstance(value, list) or not value or not all(isinstance(table, dict) for table in value):
-        needs = f"must be one or more sections [[{section}]]"
-        raise NotAllowed(section, cause=needs) if isinstance(value, (list, dict)) else NotAllowed(section, value, needs)
+        given = ABSENT if isinstance(value, (list, dict)) else value
+        raise NotAllowed(section, given, code="no_table", table=section)
     fields = fields_of(model)
     rules = {key: rule_of(field) for key, field in fields.items()}
     needed = [key for key, field in fields.items() if is_required(field)]
@@ -88,7 +88,7 @@ def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[Ite
             try:
                 rules[key].check(key, converted)
                 if key == "name" and not given:
-                    raise NotAllowed(key, given, "must be a text in quotes that is not empty")
+                    raise NotAllowed(key, given, code="empty_text")
             except NotAllowed as refused:
                 refused.value = given
                 refused.item = where(section, table, number)

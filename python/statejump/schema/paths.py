@@ -90,7 +90,7 @@ def with_keys_moved(model: type[Section], data: Mapping[str, Any], file: str = "
         if not isinstance(target, Mapping):
             continue  # whoever reads the section refuses it
         if name in target:
-            raise NotAllowed(old, part[key], f"the case has {now} as well", remedy=f"leave {old} out")
+            raise NotAllowed(old, part[key], code="key_twice", new_key=now, old_key=old)
         data = {**data, section: {name: value for name, value in part.items() if name != key}}
         data[there] = {**data.get(there, {}), name: part[key]}  # which may be the same section
     return data
@@ -101,7 +101,7 @@ def attribute_of(model: type[Section], path: str) -> attrs.Attribute[Any]:
     known, pattern = keys_of(model), pattern_of(path)
     if pattern not in known:
         now = getattr(model, "MOVED", {}).get(path)
-        raise UnknownKey(path, **(suggestion(path, list(known)) if now is None else {"remedy": f"it is {now} now"}))
+        raise UnknownKey(path, **(suggestion(path, list(known)) if now is None else {"code": "key_moved", "now": now}))
     return known[pattern]
 
 
@@ -130,13 +130,13 @@ def set_value(model: type[Section], data: dict[str, Any], path: str, value: Any)
             target[key] = value
 
 
-def _no_item(section: str, item: str, key: str, names: Sequence[str]) -> dict[str, str]:
+def _no_item(section: str, item: str, key: str, names: Sequence[str]) -> dict[str, Any]:
     """Return the fields of the UnknownKey for an item that is not there."""
     if not names:
-        return {"cause": f"the case has no [[{section}]]"}
+        return {"code": "no_such_table", "table": section}
     if any(sign in item for sign in "*?["):
-        return {"cause": f"no {section} has a name that fits {item!r}; their names are {', '.join(names[:5])}"
-                + (", ..." if len(names) > 5 else "")}
+        known = ", ".join(names[:5]) + (", ..." if len(names) > 5 else "")
+        return {"code": "no_item_fits", "table": section, "pattern": item, "known": known}
     return suggestion(item, names, f"{section}.", f".{key}")
 
 
@@ -181,7 +181,7 @@ def value_of(case: Section, path: str) -> Any:
     if not found:
         raise UnknownKey(path, **_no_item(section, item, key, names))
     if any(value != found[0] for value in found):
-        raise StatejumpError(f"{path} has several values", key=path)
+        raise StatejumpError(code="several_values", key=path, path=path)
     return found[0]
 
 

@@ -86,11 +86,11 @@ def _number(rule: Rule, key: str, value: Any) -> None:
     whole = rule.form == WHOLE
     if isinstance(value, bool) or not isinstance(value, int if whole else (int, float)):
         kind = "a whole number" if whole else "a number"
-        raise NotAllowed(key, value, f"must be {kind}, {_range(rule)}", allowed=rule.allowed)
+        raise NotAllowed(key, value, code="wrong_type", allowed=rule.allowed, type=kind, range=_range(rule))
     if isinstance(value, float) and not math.isfinite(value):
-        raise NotAllowed(key, value, f"must be finite, {_range(rule)}", allowed=rule.allowed)
+        raise NotAllowed(key, value, code="number_not_finite", allowed=rule.allowed, range=_range(rule))
     if value not in rule.allowed:
-        raise NotAllowed(key, value, allowed=rule.allowed)
+        raise NotAllowed(key, value, code="out_of_range", allowed=rule.allowed)
 
 
 def _range(rule: Rule) -> str:
@@ -99,41 +99,42 @@ def _range(rule: Rule) -> str:
 
 def _switch(rule: Rule, key: str, value: Any) -> None:
     if not isinstance(value, bool):
-        raise NotAllowed(key, value, "must be true or false")
+        raise NotAllowed(key, value, code="not_boolean")
 
 
 def _text(rule: Rule, key: str, value: Any) -> None:
     if not isinstance(value, str):
-        raise NotAllowed(key, value, "must be a text in quotes")
+        raise NotAllowed(key, value, code="no_text")
     if not value.isprintable() and printable(value) != value:
-        raise NotAllowed(key, value, "must have no control characters")
+        raise NotAllowed(key, value, code="control_characters")
     if rule.known is not None:
         check_name(key, value, rule.names)
     if rule.expression is not None and not re.fullmatch(rule.expression, value):
-        raise NotAllowed(key, value, "must consist of letters, digits, '_' and '-'")
+        raise NotAllowed(key, value, code="no_folder_name")
 
 
 def _numbers(rule: Rule, key: str, value: Any) -> None:
     if not isinstance(value, (list, tuple)):
-        raise NotAllowed(key, value, f"must be a list of numbers [{rule.unit}]")
+        raise NotAllowed(key, value, code="not_numbers", unit=rule.unit)
     if rule.length is not None and len(value) != rule.length:
-        raise NotAllowed(key, value, f"must be a list of {rule.length} numbers [{rule.unit}]")
+        raise NotAllowed(key, value, code="wrong_number_of_numbers", length=rule.length, unit=rule.unit)
     for item in value:
         try:
             _number(rule, key, item)
         except NotAllowed as refused:
-            raise NotAllowed(key, value, refused.cause, allowed=rule.allowed) from None
+            raise NotAllowed(key, value, code=refused.code, allowed=rule.allowed, **refused.details) from None
 
 
 def _texts(rule: Rule, key: str, value: Any) -> None:
     if not isinstance(value, (list, tuple)) or not all(isinstance(item, str) for item in value):
-        raise NotAllowed(key, value, "must be a list of texts in quotes")
+        raise NotAllowed(key, value, code="not_texts")
     if rule.known is not None:
         for item in value:
             try:
                 check_name(key, item, rule.names)
             except NotAllowed as refused:
-                raise NotAllowed(key, value, refused.cause, allowed=rule.names) from None
+                raise NotAllowed(key, value, code="unknown_name", allowed=rule.names,
+                                 known=refused.details["known"]) from None
 
 
 class Attached:
@@ -147,7 +148,7 @@ class Attached:
 
 def _attached(rule: Rule, key: str, value: Any) -> None:
     if not isinstance(value, Attached):
-        raise NotAllowed(key, value, rule.source)
+        raise NotAllowed(key, value, rule.source, code="not_from_file")
 
 
 _CHECKS = {NUMBER: _number, WHOLE: _number, SWITCH: _switch, TEXT: _text, NUMBERS: _numbers, TEXTS: _texts,
@@ -158,11 +159,11 @@ def check_name(key: str, value: Any, names: Sequence[str], **more: Any) -> str:
     """Return the value if it is one of the names, else raise NotAllowed that suggests the nearest."""
     if value in names:
         return str(value)
-    cause = "must be " + " or ".join(repr(name) for name in names)
+    more |= {"allowed": tuple(names), "known": " or ".join(repr(name) for name in names)}
     near = difflib.get_close_matches(value, names, n=1, cutoff=0.5) if isinstance(value, str) else []
-    remedy = f"did you mean {near[0]!r}?" if near else None
-    given = ABSENT if value is None else value
-    raise NotAllowed(key, given, cause, allowed=tuple(names), remedy=remedy, **more)
+    if near:
+        raise NotAllowed(key, value, code="misspelt_name", meant=near[0], **more)
+    raise NotAllowed(key, ABSENT if value is None else value, code="unknown_name", **more)
 
 
 def folder_name(text: str) -> str:
@@ -171,8 +172,8 @@ def folder_name(text: str) -> str:
 
 
 def suggestion(word: str, known: Sequence[str], before: str = "", after: str = "") -> dict[str, str]:
-    """Return the fields of an UnknownKey: the nearest known word as remedy, else all of them as cause."""
+    """Return code and details of an UnknownKey: the nearest known word, else all of them."""
     match = difflib.get_close_matches(str(word), known, n=1, cutoff=0.5)  # a dict may have keys that are no texts
     if match:
-        return {"remedy": f"did you mean {before}{match[0]}{after}?"}
-    return {"cause": "known are " + ", ".join(known)}
+        return {"code": "misspelt_key", "meant": f"{before}{match[0]}{after}"}
+    return {"code": "no_such_key", "known": ", ".join(known)}

@@ -21,23 +21,23 @@ def read_toml(path: str | Path, what: str) -> tuple[str, dict[str, Any]]:
         with Path(path).open("rb") as stream:
             content = stream.read(LARGEST_BYTES + 1)  # a device has no end
         if len(content) > LARGEST_BYTES:
-            raise Unreadable("cannot be read", cause=f"it is larger than {size(LARGEST_BYTES)}", file=path)
+            raise Unreadable(code="file_too_large", file=path, largest=size(LARGEST_BYTES))
         text = content.decode("utf-8-sig")  # editors of Windows write a byte order mark
     except FileNotFoundError:
-        raise Unreadable(f"no such {what} file", file=path) from None
+        raise Unreadable(code="no_such_case_file", file=path, of=what) from None
     except UnicodeDecodeError:
-        raise Unreadable("not TOML", cause="the file is not UTF-8 text", file=path) from None
+        raise Unreadable(code="toml_not_utf8", file=path) from None
     except OSError as failure:
-        raise Unreadable("cannot be read", cause=failure.strerror, file=path) from None
+        raise Unreadable(code="cannot_be_read", cause=failure.strerror, file=path) from None
     try:
         return text, tomllib.loads(text)
     except tomllib.TOMLDecodeError as failure:
         reason, line = _reason(failure, text)
-        raise Unreadable(f"not TOML, line {line}", cause=reason, file=path) from None
+        raise Unreadable(code="not_toml_at_line", cause=reason, file=path, line=line) from None
     except RecursionError:
-        raise Unreadable("not TOML", cause="tables or lists stand too deeply in each other", file=path) from None
+        raise Unreadable(code="toml_too_deep", file=path) from None
     except ValueError as failure:  # what Python refuses to make a number of
-        raise Unreadable("not TOML", cause=" ".join(str(failure).split(";")[0].split()), file=path) from None
+        raise Unreadable(code="not_toml", cause=" ".join(str(failure).split(";")[0].split()), file=path) from None
 
 
 def _reason(failure: tomllib.TOMLDecodeError, text: str) -> tuple[str, int]:

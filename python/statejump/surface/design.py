@@ -88,9 +88,9 @@ class Design:
         """
         position, way = _points("position_m", position_m), np.asarray(axis, dtype=float)
         if way.shape != (3,) or not np.isfinite(way).all() or not np.linalg.norm(way) > 0:
-            raise NotAllowed("axis", axis, "must be three numbers that are not all 0")
+            raise NotAllowed("axis", axis, code="no_direction")
         if focal_length_m is not None and not 0 < focal_length_m < np.inf:
-            raise NotAllowed("focal_length_m", focal_length_m, "must be a number above 0 [m]")
+            raise NotAllowed("focal_length_m", focal_length_m, code="not_positive_with_unit")
         frame = _frame(position, way / np.linalg.norm(way))
         middle = position.mean(axis=0)
         local = (position - middle) @ frame.T
@@ -98,7 +98,7 @@ class Design:
         squared = np.sum(lateral**2, axis=1)
         plane = np.column_stack((np.ones(len(local)), lateral))
         if not _determined(plane):
-            raise StatejumpError(f"{len(position)} nodes do not determine a surface", remedy="more of them")
+            raise StatejumpError(code="surface_undetermined", count=len(position))
         curvature = 0.0 if focal_length_m is None else 1 / (4 * focal_length_m)
         curved = np.column_stack((plane, squared))
         if focal_length_m is None and _determined(curved):
@@ -167,7 +167,7 @@ class Design:
                 lengths = np.linalg.norm(matrix, axis=0)
                 basis, factor = np.linalg.qr(matrix / lengths)
                 return _Fit(tuple(kept), basis, np.linalg.inv(factor) / lengths[:, None])
-        raise StatejumpError(f"{len(self.position_m)} nodes do not determine a best fit", remedy="more of them")
+        raise StatejumpError(code="fit_undetermined", count=len(self.position_m))
 
     def errors(self, displacement_m: Any, measure: str = "normal") -> Errors:
         """Return the errors when the nodes have moved.
@@ -222,7 +222,7 @@ class Design:
         :raises StatejumpError: the nodes are a profile, or do not determine so many terms
         """
         if self.profile:
-            raise StatejumpError("the nodes lie in one plane with the axis: a profile has no Zernike terms")
+            raise StatejumpError(code="profile_without_zernike")
         displacement = _points("displacement_m", displacement_m, len(self.position_m))
         normals = self.normals
         sag = np.sum(normals * (displacement @ self.frame.T), axis=1) / normals[:, -1]
@@ -233,7 +233,7 @@ class Design:
 def check_measure(measure: str) -> None:
     """Raise NotAllowed for a measure that there is not."""
     if measure not in MEASURES:
-        raise NotAllowed("measure", measure, f"must be one of {', '.join(MEASURES)}", allowed=tuple(MEASURES))
+        raise NotAllowed("measure", measure, code="not_one_of", allowed=tuple(MEASURES), known=", ".join(MEASURES))
 
 
 def rms(residual_m: np.ndarray) -> Any:
@@ -244,11 +244,10 @@ def rms(residual_m: np.ndarray) -> Any:
 def _points(key: str, given: Any, rows: int | None = None) -> np.ndarray:
     points = np.asarray(given, dtype=float)
     if points.ndim != 2 or points.shape[1] != 3 or (rows is not None and len(points) != rows):
-        raise NotAllowed(key, beside="as an array", cause=f"must have a row of x, y, z for each of "
-                         f"{'the' if rows is None else rows} nodes")
+        raise NotAllowed(key, code="array_of_other_shape", count="the" if rows is None else rows)
     if not np.isfinite(points).all():
         row = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
-        raise NotAllowed(key, beside="as an array", cause="must hold finite numbers", item=f"row {row + 1}")
+        raise NotAllowed(key, code="array_not_finite", item=f"row {row + 1}")
     return points
 
 
@@ -259,7 +258,7 @@ def _frame(position: np.ndarray, axis: np.ndarray) -> np.ndarray:
     across = across - np.outer(across @ axis, axis)
     spread, directions = np.linalg.svd(across, full_matrices=False)[1:]
     if not spread[0] > 0:
-        raise StatejumpError("the nodes lie on a line along the axis")
+        raise StatejumpError(code="nodes_along_axis")
     if spread[1] <= LEAST_SINGULAR_VALUE * spread[0]:
         way = directions[0] * (1 if directions[0][np.argmax(np.abs(directions[0]))] > 0 else -1)
         return np.stack((way, axis))

@@ -23,12 +23,11 @@ def rotation_rad(position_m: Any, displacement_m: Any) -> np.ndarray:
     """
     position, displacement = (np.asarray(each, dtype=float) for each in (position_m, displacement_m))
     if position.ndim != 2 or position.shape[1] != 3 or position.shape != displacement.shape[-2:]:
-        raise NotAllowed("displacement_m", beside="as an array", cause="must, as position_m, have a row of x, y, z for "
-                         "each node")
+        raise NotAllowed("displacement_m", code="displacement_of_other_shape")
     arm, moved = position - position.mean(axis=0), displacement - displacement.mean(axis=-2, keepdims=True)
     spread = np.linalg.svd(arm, compute_uv=False)
     if len(arm) < 3 or spread[1] <= ON_A_LINE * spread[0]:
-        raise StatejumpError("the nodes lie on one line: how they turn about it is not determined")
+        raise StatejumpError(code="nodes_on_one_line")
     inertia = np.sum(arm**2) * np.eye(3) - arm.T @ arm
     turn: np.ndarray = np.cross(arm, moved).sum(axis=-2) @ np.linalg.inv(inertia)
     return turn
@@ -45,7 +44,7 @@ def pointing_rad(position_m: Any, displacement_m: Any, direction: Sequence[float
     """
     way = np.asarray(direction, dtype=float)
     if way.shape != (3,) or not np.isfinite(way).all() or not np.linalg.norm(way) > 0:
-        raise NotAllowed("direction", direction, "must be three numbers that are not all 0")
+        raise NotAllowed("direction", direction, code="no_direction")
     turned = np.cross(rotation_rad(position_m, displacement_m), way / np.linalg.norm(way))
     found = np.linalg.norm(turned, axis=-1)
     return found if found.ndim else float(found)

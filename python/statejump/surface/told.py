@@ -28,7 +28,7 @@ def read_nodes(file: Path) -> tuple[np.ndarray, np.ndarray]:
     columns = read_known(file, COLUMNS, texts=("node",))
     for name in (*DRAWN, *MOVED):
         if name not in columns:
-            raise MissingKey(name, "a node needs its place and its displacement", section=f"column {name}", file=file)
+            raise MissingKey(name, code="node_column_missing", section=f"column {name}", file=file)
     drawn, moved = (np.stack([columns[name] for name in names], axis=1) for names in (DRAWN, MOVED))
     return drawn, moved
 

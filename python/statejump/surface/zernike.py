@@ -24,7 +24,7 @@ def noll(term: int) -> tuple[int, int]:
     :raises StatejumpError: there is no such term
     """
     if not isinstance(term, int) or term < 1:
-        raise NotAllowed("term", term, "must be a whole number from 1")
+        raise NotAllowed("term", term, code="no_count")
     degree = 0
     while (degree + 1) * (degree + 2) // 2 < term:
         degree += 1
@@ -57,7 +57,7 @@ def fitted(points: np.ndarray, values: np.ndarray, terms: int | None = None) -> 
     :raises StatejumpError: the points do not determine so many
     """
     if terms is not None and not (isinstance(terms, int) and 1 <= terms <= MOST):
-        raise NotAllowed("terms", terms, f"must be a whole number, between 1 and {MOST}")
+        raise NotAllowed("terms", terms, code="terms_out_of_range", most=MOST)
     most = MOST if terms is None else terms
     matrix = np.stack([zernike(term, points) for term in range(1, most + 1)], axis=1)
     lengths = np.linalg.norm(matrix, axis=0)
@@ -66,4 +66,4 @@ def fitted(points: np.ndarray, values: np.ndarray, terms: int | None = None) -> 
         if count <= len(points) and (lengths[:count] > 0).all() and np.linalg.svd(
                 part / lengths[:count], compute_uv=False)[-1] > LEAST_SINGULAR_VALUE:
             return np.asarray(np.linalg.lstsq(part, values, rcond=None)[0])
-    raise StatejumpError(f"{len(points)} nodes do not determine {most} Zernike terms", remedy="ask for fewer")
+    raise StatejumpError(code="zernike_undetermined", count=len(points), terms=most)

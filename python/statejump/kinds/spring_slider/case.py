@@ -161,11 +161,11 @@ class SpringSliderCase(Case):
         key, constant = "link.thermal_expansion_per_K", self.link.thermal_expansion_per_K
         if self.expansion is None:
             if constant is None:
-                raise MissingKey(key, "a number [1/K], or a section [expansion], is needed")
+                raise MissingKey(key, code="expansion_missing")
             no_length_left(key, constant, self)
             return
         if constant is not None:
-            raise NotAllowed(key, constant, "only without [expansion]")
+            raise NotAllowed(key, constant, code="only_without_expansion_section")
         expansion.check(self.expansion, "expansion.")
         try:
             assert self.bar_program is not None
@@ -176,7 +176,7 @@ class SpringSliderCase(Case):
         for change in self.turning_changes_K:
             if 1 + self.thermal_strain(change) <= 0:
                 raise NotAllowed("expansion.thermal_expansion_per_K", self.expansion.thermal_expansion_per_K,
-                                 f"the link has no length left at a temperature change of {change:g} K")
+                                 code="link_without_length", at_K=change)
 
     def check(self) -> None:
         """Raise StatejumpError for what is wrong between several keys."""
@@ -185,35 +185,25 @@ class SpringSliderCase(Case):
         for side, key in ((-1, "clearance_minus_m"), (1, "clearance_plus_m")):
             for change in self.temperature_range_K:
                 if not self.clearance_m(side, change) > 0:
-                    raise NotAllowed(
-                        f"joint.{key}", getattr(joint, key),
-                        f"the expansion of pad and slot closes it at a temperature change of {change:g} K, it must "
-                        "stay above 0 [m] within the program",
-                    )
+                    raise NotAllowed(f"joint.{key}", getattr(joint, key), code="clearance_closes", at_K=change)
         if joint.clearance_minus_m >= link.stress_free_length_m:
-            raise NotAllowed("joint.clearance_minus_m", joint.clearance_minus_m,
-                             f"must be below link.stress_free_length_m = {link.stress_free_length_m!r} [m]")
+            raise NotAllowed("joint.clearance_minus_m", joint.clearance_minus_m, code="not_below_link_length",
+                             stress_free_length_m=link.stress_free_length_m)
         rigidity = link.young_modulus_Pa * link.cross_section_area_m2
         if self.friction_force_N >= rigidity:
-            raise NotAllowed(
-                "joint.friction_coefficient", joint.friction_coefficient,
-                f"the friction force {self.friction_force_N:g} N must be below E A = {rigidity:g} N",
-            )
+            raise NotAllowed("joint.friction_coefficient", joint.friction_coefficient, code="friction_above_rigidity",
+                             friction_force_N=self.friction_force_N, rigidity=rigidity)
         if self.friction_force_N + abs(joint.preload_force_N) >= rigidity:
-            raise NotAllowed(
-                "joint.preload_force_N", joint.preload_force_N,
-                f"its size and the friction force {self.friction_force_N:g} N must stay below E A = {rigidity:g} N",
-            )
+            raise NotAllowed("joint.preload_force_N", joint.preload_force_N, code="preload_above_rigidity",
+                             friction_force_N=self.friction_force_N, rigidity=rigidity)
         if joint.play_m and not self.friction_force_N:
-            raise NotAllowed("joint.play_m", joint.play_m,
-                             "needs friction, in series with which it is: give joint.friction_coefficient above 0")
+            raise NotAllowed("joint.play_m", joint.play_m, code="play_without_friction")
         if joint.stop_stiffness_N_per_m is not None:
             for key in ("pad_thermal_expansion_per_K", "slot_thermal_expansion_per_K"):
                 if getattr(joint, key):
-                    raise NotAllowed(f"joint.{key}", getattr(joint, key),
-                                     "must be 0 with joint.stop_stiffness_N_per_m: soft stops do not expand")
+                    raise NotAllowed(f"joint.{key}", getattr(joint, key), code="soft_stops_do_not_expand")
         if self.dem_settings.time_step_s is not None:
             stable = stable_step.stable_time_step(self)
             if self.dem_settings.time_step_s > stable:
-                raise NotAllowed("dem.time_step_s", self.dem_settings.time_step_s,
-                                 f"must be above 0 and at most the stable time step {stable:.4g} [s]")
+                raise NotAllowed("dem.time_step_s", self.dem_settings.time_step_s, code="above_stable_time_step",
+                                 stable_s=stable)

@@ -118,7 +118,7 @@ def convergence(case: SpringSliderCase, tell: Tell = lambda share: None, decades
         try:
             runs.append(require(case, DemModel).dem(variant, one_of(tell, place, len(every))))
         except Interrupted:
-            raise Interrupted("interrupted; no table was written") from None
+            raise Interrupted(code="table_interrupted") from None
     found = compared(case, (slower, finer), (runs[: len(slower)], runs[len(slower) :]))
     return replace(found, decades=decades)
 

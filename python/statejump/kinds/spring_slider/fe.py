@@ -37,21 +37,20 @@ def answer(case: SpringSliderCase) -> ccx.Answer:
     """
     joint = case.joint
     if case.expansion is not None:
-        raise NotAllowed("expansion", cause="'statejump fe' takes one coefficient of expansion")
+        raise NotAllowed("expansion", code="fe_one_coefficient")
     if joint.stop_stiffness_N_per_m is not None:
-        raise NotAllowed("joint.stop_stiffness_N_per_m", joint.stop_stiffness_N_per_m,
-                         "'statejump fe' takes rigid stops only")
+        raise NotAllowed("joint.stop_stiffness_N_per_m", joint.stop_stiffness_N_per_m, code="fe_rigid_stops")
     for key in ("preload_stiffness_N_per_m", "preload_force_N", "pad_thermal_expansion_per_K",
                 "slot_thermal_expansion_per_K", "play_m"):
         if getattr(joint, key):
-            raise NotAllowed(f"joint.{key}", getattr(joint, key), "'statejump fe' takes 0 only")
+            raise NotAllowed(f"joint.{key}", getattr(joint, key), code="fe_zero_only")
     if not joint.friction_coefficient:
-        raise NotAllowed("joint.friction_coefficient", 0.0, "'statejump fe' needs friction to hold the block")
+        raise NotAllowed("joint.friction_coefficient", 0.0, code="fe_needs_friction")
     corners = _corners(case)
     lines = deck(case, corners)
     found = ccx.displacements(lines, "TIP")
     if len(found) != 1 + INCREMENTS * (len(corners) - 1):
-        raise FailedRun("CalculiX left out increments")
+        raise FailedRun(code="calculix_increments")
     x = np.array([step[TIP][0] for step in found])
     branches = [(np.linspace(first, last, INCREMENTS + 1), x[place * INCREMENTS:(place + 1) * INCREMENTS + 1])
                 for place, (first, last) in enumerate(zip(corners, corners[1:]))]
@@ -82,9 +81,9 @@ def _corners(case: SpringSliderCase) -> list[float]:
         elif value != corners[-1]:
             corners.append(value)
     if len(corners) < 2:
-        raise NotAllowed("thermal", cause="the temperature does not change, 'statejump fe' needs a branch")
+        raise NotAllowed("thermal", code="fe_no_branch")
     if len(corners) > MOST_BRANCHES + 1:
-        raise NotAllowed("thermal.cycles", thermal.cycles, f"'statejump fe' follows 1 to {MOST_BRANCHES} branches")
+        raise NotAllowed("thermal.cycles", thermal.cycles, code="fe_branches", most=MOST_BRANCHES)
     return corners
 
 
@@ -121,7 +120,7 @@ def kinks(change: np.ndarray, moved: np.ndarray, slope: float) -> list[tuple[str
 def _rows(case: SpringSliderCase, ours: Sequence[tuple[str, float]], theirs: Sequence[tuple[str, float]],
           jump_m: float) -> Iterator[Quantity]:
     if [kind for kind, _ in ours] != [kind for kind, _ in theirs]:
-        raise FailedRun("CalculiX finds other events", cause=f"{len(theirs)} beside {len(ours)} of the reduced model")
+        raise FailedRun(code="calculix_events", theirs=len(theirs), ours=len(ours))
     for place, ((kind, own), (_, other)) in enumerate(zip(ours, theirs), start=1):
         yield row(f"{kind}_{place}_temperature_change", "K", own, other, TOLERANCE)
     exact = reduced.solve(case).state_jump_m

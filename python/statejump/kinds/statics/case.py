@@ -35,13 +35,12 @@ KEYS_OF_TYPES = {
     "mesh_unit_m": ("mesh",),
 }
 # What a key of a [[force]] must be.
-NEEDS = {
-    "name": "must be a text in quotes",
-    "force_N": f"must be a list of three numbers [N], none beyond {LARGEST_FORCE_N:g}",
-    "force_rate_N_per_K": "must be a list of three numbers [N/K] together with temperature_change_K",
-    "temperature_change_K":
-        f"must be a list of numbers between {-LARGEST_TEMPERATURE_CHANGE_K:g} and {LARGEST_TEMPERATURE_CHANGE_K:g} [K] "
-        "together with force_rate_N_per_K",
+NEEDS: dict[str, dict[str, Any]] = {
+    "name": {"code": "no_text"},
+    "force_N": {"code": "force_components", "largest_N": LARGEST_FORCE_N},
+    "force_rate_N_per_K": {"code": "force_rate"},
+    "temperature_change_K": {"code": "force_temperatures", "least_K": -LARGEST_TEMPERATURE_CHANGE_K,
+                             "largest_K": LARGEST_TEMPERATURE_CHANGE_K},
 }
 
 
@@ -60,13 +59,13 @@ class Force(Section):
 
     def __attrs_post_init__(self) -> None:
         if self.name == "":
-            raise NotAllowed("name", self.name, NEEDS["name"])
+            raise NotAllowed("name", self.name, **NEEDS["name"])
         rate, changes = self.force_rate_N_per_K, self.temperature_change_K
         if rate is None and changes is None:
             return
         for key, value in (("force_rate_N_per_K", rate), ("temperature_change_K", changes)):
             if not value:
-                raise NotAllowed(key, value, NEEDS[key])
+                raise NotAllowed(key, value, **NEEDS[key])
 
     def at_temperatures(self, name: str) -> list[LoadCase]:
         """Return the force, or the force at every temperature."""
@@ -87,7 +86,7 @@ def read_forces(name: str, value: Any) -> list[Force]:
     """
     given = [value] if isinstance(value, Mapping) else value
     if not isinstance(given, list) or not given or not all(isinstance(table, Mapping) for table in given):
-        raise NotAllowed(name, value, f"must be one or more sections [[{name}]] with force_N = [x, y, z]")
+        raise NotAllowed(name, value, code="no_forces", name=name)
     known = fields_of(Force)
     found = []
     for number, table in enumerate(given, start=1):
@@ -96,12 +95,12 @@ def read_forces(name: str, value: Any) -> list[Force]:
             if key not in known:
                 raise UnknownKey(key, item=item, **suggestion(key, list(known)))
         if "force_N" not in table:
-            raise MissingKey("force_N", NEEDS["force_N"], item=item, allowed=rule_of(known["force_N"]).allowed)
+            raise MissingKey("force_N", item=item, allowed=rule_of(known["force_N"]).allowed, **NEEDS["force_N"])
         try:
             found.append(Force(**table))
         except NotAllowed as refused:
             key = refused.key or ""
-            raise NotAllowed(key, table.get(key), NEEDS[key], item=item, allowed=refused.allowed) from None
+            raise NotAllowed(key, table.get(key), item=item, allowed=refused.allowed, **NEEDS[key]) from None
     return found
 
 
@@ -177,29 +176,25 @@ class StaticsCase(Case):
         for key, types in KEYS_OF_TYPES.items():
             value = getattr(joint, key)
             if value is None and joint.type in types:
-                raise MissingKey(f"joint.{key}", f"joint.type = {joint.type!r} needs it")
+                raise MissingKey(f"joint.{key}", code="needed_by_type", type=joint.type)
             if value is not None and joint.type not in types:
-                raise NotAllowed(f"joint.{key}", value,
-                                 "only with joint.type = " + " or ".join(repr(name) for name in types))
+                raise NotAllowed(f"joint.{key}", value, code="only_with_type",
+                                 types=" or ".join((repr(name) for name in types)))
         if joint.lobe_amplitude_m is not None and joint.clearance_m is not None:
             if not joint.lobe_amplitude_m < joint.clearance_m:
-                raise NotAllowed("joint.lobe_amplitude_m", joint.lobe_amplitude_m,
-                                 f"must be at least 0 and below joint.clearance_m = {joint.clearance_m!r} [m]")
+                raise NotAllowed("joint.lobe_amplitude_m", joint.lobe_amplitude_m, code="lobe_amplitude",
+                                 clearance_m=joint.clearance_m)
         if self.picture.friction_coefficients and not self.is_planar:
-            raise NotAllowed("picture.friction_coefficients", cause="only for joints in one or two dimensions")
+            raise NotAllowed("picture.friction_coefficients", code="only_below_three_dimensions")
 
     def _check_forces(self) -> None:
         loads = self.load_cases
         if len(loads) > MOST_FORCES:
-            raise StatejumpError(f"force stands for {len(loads)} forces", key="force",
-                                 cause=f"must be at most {MOST_FORCES}")
+            raise StatejumpError(code="too_many_forces", key="force", forces=len(loads), most=MOST_FORCES)
         for load in loads:
             x, y, z = load.force_N
             if hypot(x, y, z) == 0:
-                raise NotAllowed(f"force {load.name!r}", [0, 0, 0], "without a force every position is at rest")
+                raise NotAllowed(f"force {load.name!r}", [0, 0, 0], code="no_force")
             if self.joint.type in ("journal", "lobed") and z != 0:
-                raise NotAllowed(
-                    f"force {load.name!r}", list(load.force_N),
-                    f"joint.type = {self.joint.type!r} is planar, the third number must be 0; 'cylinder' takes axial "
-                    "forces",
-                )
+                raise NotAllowed(f"force {load.name!r}", list(load.force_N), code="force_out_of_plane",
+                                 type=self.joint.type)

@@ -68,17 +68,16 @@ def read_mesh(case: StaticsCase) -> _engine.RestMesh:
     try:
         path.open("rb").close()
     except OSError as failure:
-        raise MeshUnusable(f"{path} cannot be read", cause=failure.strerror, **about) from None
+        raise MeshUnusable(code="mesh_not_read", cause=failure.strerror, path=path, **about) from None
     try:
         from statejump.kinds.statics import mesh_files  # VTK, 0.2 s, which may be missing
     except ImportError as failure:
-        raise MeshUnusable("VTK for Python is needed (python3-vtk9)", cause=str(failure), **about) from None
+        raise MeshUnusable(code="no_vtk", cause=str(failure), **about) from None
     if path.suffix.lower() not in mesh_files.READERS:
-        wanted = f"must end with {', '.join(mesh_files.READERS)}"
-        raise NotAllowed(about.pop("key"), about.pop("value"), wanted, **about)
+        raise NotAllowed(**about, code="suffix_unknown", suffixes=", ".join(mesh_files.READERS))
     surface = mesh_files.triangles_of(path)
     if surface.GetNumberOfPolys() == 0:
-        raise MeshUnusable(f"{path} holds no triangles", **about)
+        raise MeshUnusable(code="mesh_without_triangles", path=path, **about)
     stored = mesh_files.vtk_to_numpy(surface.GetPoints().GetData())
     points = stored.astype(float) * joint.mesh_unit_m
     triangles = mesh_files.vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)

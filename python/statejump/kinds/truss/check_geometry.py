@@ -33,20 +33,14 @@ def _lengths(truss: ResolvedTruss) -> None:
         for index in np.flatnonzero(distances(truss.nodes.position_m, items.nodes) == 0)[:1]:
             ends = [truss.nodes.names[node] for node in items.nodes[index]]
             place = truss.nodes.position_m[items.nodes[index, 0]][: truss.dimension].tolist()
-            raise StatejumpError(
-                f"nodes {' and '.join(map(repr, ends))} are at one place, {place} m",
-                cause=f"the {section} has no length", item=f"{section} {items.names[index]!r}", key="nodes", value=ends,
-                nodes=ends,
-            )
+            raise StatejumpError(code="zero_length", item=f"{section} {items.names[index]!r}", key="nodes", value=ends,
+                                 nodes=ends, ends=" and ".join(map(repr, ends)), place_m=place, part=section)
 
 
 def _stretches(springs: Springs) -> None:
     for index in np.flatnonzero(~np.isfinite(springs.free_length_m))[:1]:
-        raise NotAllowed(
-            "preload_N", float(springs.preload_N[index]),
-            f"a stiffness of {springs.stiffness_N_per_m[index]:g} N/m gives it at no length that is a number",
-            item=f"spring {springs.names[index]!r}",
-        )
+        raise NotAllowed("preload_N", float(springs.preload_N[index]), code="spring_without_length",
+                         item=f"spring {springs.names[index]!r}", stiffness=springs.stiffness_N_per_m[index])
 
 
 def _expansions(truss: ResolvedTruss, ranges_K: np.ndarray) -> None:
@@ -54,13 +48,11 @@ def _expansions(truss: ResolvedTruss, ranges_K: np.ndarray) -> None:
     for side in (0, 1):
         changes = links.temperature_fraction * ranges_K[links.program, side]
         for index in np.flatnonzero(1 + links.thermal_expansion_per_K * changes <= 0)[:1]:
-            raise NotAllowed(
-                "thermal_expansion_per_K", float(links.thermal_expansion_per_K[index]),
-                f"the link has no length left at a temperature change of {changes[index]:g} K, "
-                f"{links.temperature_fraction[index]:g} times that of program "
-                f"{truss.program_names[links.program[index]]!r}", item=f"link {links.names[index]!r}",
-                temperature_change_K=float(changes[index]),
-            )
+            raise NotAllowed("thermal_expansion_per_K", float(links.thermal_expansion_per_K[index]),
+                             code="link_without_length_of_program", item=f"link {links.names[index]!r}",
+                             temperature_change_K=float(changes[index]), at_K=changes[index],
+                             fraction=links.temperature_fraction[index],
+                             program=truss.program_names[links.program[index]])
 
 
 class NoSupport(StatejumpError):
@@ -69,8 +61,8 @@ class NoSupport(StatejumpError):
     :param loose: a node of each of them
     """
 
-    def __init__(self, what: str, *, loose: tuple[str, ...], **fields: Any) -> None:
-        super().__init__(what, **fields)
+    def __init__(self, *, loose: tuple[str, ...], **fields: Any) -> None:
+        super().__init__(**fields)
         self.loose = loose
 
 
@@ -89,8 +81,7 @@ def _supports(truss: ResolvedTruss) -> None:
     for ends in pairs:
         used[ends.ravel()] = True
     for node in np.flatnonzero(~used)[:1]:
-        raise StatejumpError(f"node {names[node]!r} is not allowed", cause="no link, spring, joint or support uses it",
-                             nodes=(names[node],))
+        raise StatejumpError(code="node_unused", nodes=(names[node],), node=names[node])
     parts, part_of = len(names), np.arange(len(names), dtype=np.int32)
     for ends in pairs:  # one after the other, for a graph takes many times what they do
         first, second = part_of[ends].T
@@ -104,11 +95,7 @@ def _supports(truss: ResolvedTruss) -> None:
     _, firsts = np.unique(part_of, return_index=True)
     loose = tuple(names[at] for at in firsts[~held_parts])
     if not held.any():
-        raise NoSupport("no node has a support (fixed or guide_normal)", cause="the truss moves as a whole",
-                        loose=loose)
+        raise NoSupport(code="no_support", loose=loose)
     first = [names[at] for at in firsts[: MOST_LISTED + 1]]
-    raise NoSupport(
-        f"the truss is in {parts} parts, with the nodes {listed(first)} in one each",
-        cause=f"that of node {loose[0]!r} has no support and no link, spring or joint to a part that has one",
-        nodes=loose[:1], loose=loose,
-    )
+    raise NoSupport(code="truss_in_parts", nodes=loose[:1], loose=loose, parts=parts, one_of_each=listed(first),
+                    loose_node=loose[0])

@@ -35,27 +35,24 @@ def check(case: TrussSections, links: Mapping[str, Any]) -> None:
         where = {"item": f"link {link.name!r}"}
         weighed = link.mass_kg is not None or link.density_kg_per_m3 is not None
         if not weighed and any(case.truss.gravity_m_per_s2 or ()):
-            raise MissingKey("mass_kg", "what has weight has one of them", section="density_kg_per_m3 or mass_kg",
-                             **where)
+            raise MissingKey("mass_kg", code="mass_missing", section="density_kg_per_m3 or mass_kg", **where)
         for key in ("centre_of_mass_m", "moment_of_inertia_kg_m2"):
             if getattr(link, key) is None:
                 continue
             if link.mass_kg is None:
-                raise MissingKey("mass_kg", f"{key} is of a body of that mass", **where)
+                raise MissingKey("mass_kg", code="mass_of_body_missing", of=key, **where)
             if case.motion.masses == "lumped":
-                raise NotAllowed("motion.masses", "lumped", f"link {link.name!r} has {key}, which masses at nodes have "
-                                 "not; must be 'consistent'")
+                raise NotAllowed("motion.masses", "lumped", code="body_with_lumped_masses", link=link.name, of=key)
         if link.centre_of_mass_m is not None and dimension == 3 and link.centre_of_mass_m[1]:
-            raise NotAllowed("centre_of_mass_m", link.centre_of_mass_m, "in a spatial truss it is on the line of its "
-                             "nodes: [distance, 0]", **where)
+            raise NotAllowed("centre_of_mass_m", link.centre_of_mass_m, code="centre_not_on_line", **where)
     driven: dict[str, str] = {}
     for drive in case.drive:
         where = {"item": f"drive {drive.name!r}"}
         if dimension == 3:
-            raise NotAllowed("link", drive.link, "drives are of planar trusses", **where)
+            raise NotAllowed("link", drive.link, code="drive_not_planar", **where)
         known_name("link", drive.link, drive.link, links, "link", **where)
         if drive.link in driven:
-            raise NotAllowed("link", drive.link, f"drive {driven[drive.link]!r} turns it already", **where)
+            raise NotAllowed("link", drive.link, code="link_driven_already", drive=driven[drive.link], **where)
         driven[drive.link] = drive.name
         _check_program(drive, where)
 
@@ -64,20 +61,20 @@ def _check_program(drive: Drive, where: Mapping[str, Any]) -> None:
     times, speeds = drive.table_time_s, drive.table_angular_velocity_rad_per_s
     if (times is None) != (speeds is None):
         missing = "table_time_s" if times is None else "table_angular_velocity_rad_per_s"
-        raise MissingKey(missing, "a table has both times and angular velocities", **where)
+        raise MissingKey(missing, code="drive_table_incomplete", **where)
     if times is None or speeds is None:
         if drive.angular_velocity_rad_per_s is None:
-            raise MissingKey("angular_velocity_rad_per_s", "a number [rad/s], or a table, is needed", **where)
+            raise MissingKey("angular_velocity_rad_per_s", code="drive_without_speed", **where)
         return
     if drive.angular_velocity_rad_per_s is not None or drive.ramp_s:
         key = "ramp_s" if drive.ramp_s else "angular_velocity_rad_per_s"
-        raise NotAllowed(key, getattr(drive, key), "only without a table", **where)
+        raise NotAllowed(key, getattr(drive, key), code="only_without_table", **where)
     if len(times) != len(speeds) or not times:
-        raise NotAllowed("table_angular_velocity_rad_per_s", speeds, f"must be as many numbers as table_time_s has, "
-                         f"which are {len(times)}, one or more", **where)
+        raise NotAllowed("table_angular_velocity_rad_per_s", speeds, code="drive_table_length", times=len(times),
+                         **where)
     for before, after in zip(times, times[1:]):
         if not after > before:
-            raise NotAllowed("table_time_s", times, f"must increase, {after:g} follows {before:g} [s]", **where)
+            raise NotAllowed("table_time_s", times, code="times_must_increase", after=after, before=before, **where)
 
 
 def refused_at_rest(truss: ResolvedTruss) -> str | None:

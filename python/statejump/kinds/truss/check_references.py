@@ -44,7 +44,7 @@ def check_references(case: TrussSections) -> None:
     check_mechanism.check(case, links)
     if case.reflector is not None:
         if not case.reflector.nodes:
-            raise NotAllowed("reflector.nodes", [], "must be one or more nodes")
+            raise NotAllowed("reflector.nodes", [], code="no_nodes")
         for place in np.flatnonzero(node_places.called(case.reflector.nodes) == UNKNOWN):
             known_name("reflector.nodes", ABSENT, case.reflector.nodes[place], nodes, "node", beside="as it is")
 
@@ -88,11 +88,12 @@ def _expansions(case: TrussSections) -> None:
     for link in where_wrong(case.link, wrong):
         where = {"item": f"link {link.name!r}"}
         if link.expansion is not None and link.thermal_expansion_per_K is not None:
-            raise NotAllowed("thermal_expansion_per_K", link.thermal_expansion_per_K, "only without expansion", **where)
+            raise NotAllowed("thermal_expansion_per_K", link.thermal_expansion_per_K, code="only_without_expansion",
+                             **where)
         if link.expansion is not None:
             known_name("expansion", link.expansion, link.expansion, expansions, "expansion", **where)
         elif link.thermal_expansion_per_K is None:
-            raise MissingKey("thermal_expansion_per_K", "a number [1/K], or an expansion, is needed", **where)
+            raise MissingKey("thermal_expansion_per_K", code="expansion_of_link_missing", **where)
 
 
 def _members(case: TrussSections) -> None:
@@ -106,26 +107,27 @@ def _members(case: TrussSections) -> None:
         if item.name not in columns:
             if item.program is None and expands:
                 near = difflib.get_close_matches(item.name, members.names, n=1, cutoff=0.8)
-                raise NotAllowed("thermal.members_file", file, f"it has no column of {where['item']}",
-                                 remedy=f"is {near[0]!r} meant?" if near else "or name a program for it")
+                raise NotAllowed("thermal.members_file", file, code="no_column_of_item",
+                                 remedy=f"is {near[0]!r} meant?" if near else "or name a program for it",
+                                 part=where["item"])
             continue
         if item.program is not None:
-            raise NotAllowed("program", item.program, "thermal.members_file has its temperature", **where)
+            raise NotAllowed("program", item.program, code="temperature_from_members_file", **where)
         if item.temperature_fraction != 1:
-            raise NotAllowed("temperature_fraction", item.temperature_fraction,
-                             "thermal.members_file has its temperature", **where)
+            raise NotAllowed("temperature_fraction", item.temperature_fraction, code="temperature_from_members_file",
+                             **where)
     known = {item.name for item, _, _ in _followers(case)}
     kinds = " and ".join(f"no {section}" for section in ("link", *(joint.section for joint in _WITH_TEMPERATURE)))
     for name in members.names:
         if name not in known:
-            raise NotAllowed("thermal.members_file", file, f"its column {name!r} is of {kinds}")
+            raise NotAllowed("thermal.members_file", file, code="column_of_several", column=name, kinds=kinds)
 
 
 def _alternatives(case: TrussSections) -> None:
     for link in where_wrong(case.link, lambda links: said(links, "density_kg_per_m3") & said(links, "mass_kg")):
         if link.density_kg_per_m3 is not None and link.mass_kg is not None:
-            raise NotAllowed("mass_kg", link.mass_kg, "only without density_kg_per_m3", item=f"link {link.name!r}")
+            raise NotAllowed("mass_kg", link.mass_kg, code="only_without_density", item=f"link {link.name!r}")
     for spring in where_wrong(case.spring, lambda ties: said(ties, "preload_N") & said(ties, "free_length_m")):
         if spring.preload_N is not None and spring.free_length_m is not None:
-            raise NotAllowed("preload_N", spring.preload_N, "only without free_length_m",
+            raise NotAllowed("preload_N", spring.preload_N, code="only_without_free_length",
                              item=f"spring {spring.name!r}")

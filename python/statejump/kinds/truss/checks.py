@@ -35,7 +35,7 @@ def check(case: TrussSections, resolve: Callable[[], ResolvedTruss]) -> None:
     :param resolve: returns its arrays; called when its references are valid
     """
     if case.tables is not None:
-        raise NotAllowed("section [tables]", cause="only where a case file names files")
+        raise NotAllowed("section [tables]", code="tables_only_in_case_file")
     _programs(case)
     _expansions(case)
     _names(case)
@@ -43,8 +43,7 @@ def check(case: TrussSections, resolve: Callable[[], ResolvedTruss]) -> None:
     check_references(case)
     check_geometry(resolve())
     if case.motion.displacement_tolerance_m is not None and case.motion.theta != 0.5:
-        raise NotAllowed("motion.theta", case.motion.theta, "it is of equal steps, which "
-                         "motion.displacement_tolerance_m has not")
+        raise NotAllowed("motion.theta", case.motion.theta, code="theta_without_equal_steps")
     if case.motion.scheme == "regularised":
         _regularised(case)
 
@@ -53,12 +52,11 @@ def _regularised(case: TrussSections) -> None:
     scheme = "with motion.scheme = 'regularised'"
     for key, usual in (("displacement_tolerance_m", None), ("theta", 0.5), ("restitution", 0.0)):
         if getattr(case.motion, key) != usual:
-            raise NotAllowed(f"motion.{key}", getattr(case.motion, key), f"it is not read {scheme}")
+            raise NotAllowed(f"motion.{key}", getattr(case.motion, key), code="not_read_by_scheme", scheme=scheme)
     if case.motion.masses != "lumped":
-        raise NotAllowed("motion.masses", case.motion.masses, f"must be 'lumped' {scheme}, as in the DEM")
+        raise NotAllowed("motion.masses", case.motion.masses, code="masses_not_lumped", scheme=scheme)
     if case.reduced_settings.sticking == "rigid":
-        raise NotAllowed("reduced.sticking", case.reduced_settings.sticking,
-                         f"must be 'elastic' or 'partial_slip' {scheme}: its contacts bend, as in the DEM")
+        raise NotAllowed("reduced.sticking", case.reduced_settings.sticking, code="sticking_not_elastic", scheme=scheme)
 
 
 def _programs(case: TrussSections) -> None:
@@ -71,11 +69,9 @@ def _programs(case: TrussSections) -> None:
             raise
         lasts = program.cycles * program.period_s
         if abs(lasts - case.duration_s) > thermal.SAME_TIME * case.duration_s:
-            raise NotAllowed(
-                "period_s", program.period_s,
-                f"{program.cycles} cycles of it last {lasts:.10g} s and must last {case.duration_s:.10g} s, as "
-                "thermal.cycles of thermal.period_s do", item=f"program {item.name!r}",
-            )
+            raise NotAllowed("period_s", program.period_s, code="program_of_other_duration",
+                             item=f"program {item.name!r}", cycles=program.cycles, lasts=lasts,
+                             wanted_s=case.duration_s)
 
 
 def _expansions(case: TrussSections) -> None:
@@ -94,7 +90,7 @@ def _names(case: TrussSections) -> None:
         seen: set[str] = set()
         for number, item in enumerate(each(getattr(case, section), "name"), start=1):
             if item.name in seen:
-                raise NotAllowed("name", item.name, f"another {section} has it", item=f"{section} {number}")
+                raise NotAllowed("name", item.name, code="name_taken", item=f"{section} {number}", part=section)
             seen.add(item.name)
 
 
@@ -112,7 +108,7 @@ def _vectors(case: TrussSections) -> None:
         for key, unit, direction in keys:
             vector(key, getattr(node, key), unit, dimension, direction, item=f"node {node.name!r}", nodes=(node.name,))
         if dimension == 2 and "z" in node.fixed:
-            raise NotAllowed("fixed", node.fixed, "a planar truss has 'x' and 'y' only", item=f"node {node.name!r}",
+            raise NotAllowed("fixed", node.fixed, code="planar_directions", item=f"node {node.name!r}",
                              nodes=(node.name,))
     for joint in JOINTS:
         for item in where_wrong(listed_joints(case, joint),
@@ -123,4 +119,4 @@ def _vectors(case: TrussSections) -> None:
     if case.reflector is not None:
         axis = case.reflector.axis
         if len(axis) != dimension or not any(axis):
-            raise NotAllowed("reflector.axis", axis, f"must be {dimension} numbers, not zero in every direction")
+            raise NotAllowed("reflector.axis", axis, code="reflector_axis", dimension=dimension)

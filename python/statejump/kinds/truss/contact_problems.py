@@ -47,21 +47,17 @@ def contact_problems(case: TrussCase, number: int, tell: Tell = lambda share: No
     NUMBER.check("number", number)
     truss = case.resolve()
     if truss.sticking == "partial_slip":
-        raise StatejumpError(cause='contacts that slip in part (reduced.sticking = "partial_slip") have no cone of '
-                             "Coulomb's", case=case.name, remedy='set reduced.sticking to "elastic" or "rigid"')
+        raise StatejumpError(code="partial_slip_without_cone", case=case.name)
     joints = truss.number_of_joints()
     if not joints:
-        raise StatejumpError(cause="the truss has no joints, so it has no contact problem", case=case.name)
+        raise StatejumpError(code="truss_without_joints", case=case.name)
     if joints > MOST_JOINTS:
-        raise StatejumpError(f"the truss has {joints} joints", case=case.name,
-                             cause=f"the matrix of a contact problem is dense, so it must be at most {MOST_JOINTS}")
+        raise StatejumpError(code="too_many_joints", case=case.name, count=joints, most=MOST_JOINTS)
     wanted = (np.arange(number) + 0.5) / number * case.duration_s
     found = whole_path(truss, tell, cycle_ends_only=True, problem_times=wanted, **settings(case))
     problems = [_problem(case, problem) for problem in found.problems if problem["joints"]]
     if not problems:
-        raise StatejumpError("no joint of the truss is a contact", case=case.name,
-                             cause="Iwan joints have no cone of Coulomb's, ball joints one in two directions, the "
-                             "problems have one")
+        raise StatejumpError(code="no_contact", case=case.name)
     return problems
 
 

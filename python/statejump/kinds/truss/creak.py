@@ -136,10 +136,10 @@ def creak(case: TrussCase, node: str, tell: Tell = lambda share: None) -> Creak:
     names = case.resolve().nodes.names
     if node not in names:
         some = ", ".join(names[:8]) + (" …" if len(names) > 8 else "")
-        raise NotAllowed("node", node, f"the truss has the nodes {some}", case=case.name)
+        raise NotAllowed("node", node, code="no_such_node_of", case=case.name, known=some)
     if case.motion.displacement_tolerance_m is not None:
         raise NotAllowed("motion.displacement_tolerance_m", case.motion.displacement_tolerance_m,
-                         "a spectrum is of equal steps: leave it out and set motion.steps_per_cycle", case=case.name)
+                         code="spectrum_of_unequal_steps", case=case.name)
     found = motion.simulate(case, tell, names.index(node))
     run = result.motion_run(case, found)
     step = found.time_step_s

@@ -38,7 +38,7 @@ PATH_SHARE = 0.1  # fraction of the reported progress of a DEM run that belongs 
 
 def refuse(case: TrussCase, why: str, **fields: Any) -> StatejumpError:
     """Return the error for an item that the DEM cannot represent."""
-    return StatejumpError(cause=why, case=case.name, remedy="'statejump reduced' can run the case", **fields)
+    return StatejumpError(code="dem_cannot_run", cause=why, case=case.name, **fields)
 
 
 def stable_time_step(case: TrussCase, path: Course) -> float:

@@ -36,7 +36,7 @@ def draw(case: TrussCase, axes: Axes | None = None, names: bool = False) -> Figu
     elif isinstance(axes, Axes3D):
         draw_spatial(truss, axes, most_named)
     else:
-        raise StatejumpError("not drawn", cause="a spatial truss needs axes with projection='3d'", key="axes")
+        raise StatejumpError(code="spatial_axes_needed", key="axes")
     figure = axes.figure
     assert isinstance(figure, Figure)
     return figure

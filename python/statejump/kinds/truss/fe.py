@@ -81,32 +81,30 @@ def _sliding(case: TrussCase, truss: ResolvedTruss) -> tuple[list[str], tuple[Qu
     :raises NotAllowed: there are other joints, or something else that this deck does not have
     """
     if truss.number_of_joints() > len(truss.sliders.names) or truss.sticking == "partial_slip":
-        raise NotAllowed("joints", cause="beside them there are other joints, or partial slip")
+        raise NotAllowed("joints", code="fe_other_joints")
     for index in np.flatnonzero(truss.sliders.have_springs)[:1]:
-        raise NotAllowed("slider", cause="the deck's sliders have rigid stops and no play",
-                         item=f"slider {truss.sliders.names[index]!r}")
+        raise NotAllowed("slider", code="fe_soft_sliders", item=f"slider {truss.sliders.names[index]!r}")
     if truss.start_friction == FRICTIONLESS:
-        raise NotAllowed("start.friction", truss.start_friction, "the deck's sliders stick where they are drawn")
+        raise NotAllowed("start.friction", truss.start_friction, code="fe_start_friction")
     return fe_sliding.rows(case, truss)
 
 
 def _refuse(truss: ResolvedTruss) -> None:
     """Raise NotAllowed for what the deck does not have."""
     if not truss.links.names:
-        raise NotAllowed("link", cause="'statejump fe' takes trusses with links")
+        raise NotAllowed("link", code="fe_no_links")
     of_angles = [(joint.section, truss.joints[joint.section].names) for joint in JOINTS
                  if not isinstance(joint, (AlongAxis, RoundParts))]
     of_springs = [("spring", truss.springs.names), ("torsion_spring", truss.torsion_springs.names)]
     for section, names in of_springs + of_angles:
         if names:
-            raise NotAllowed(section, cause="'statejump fe' takes trusses of links, sliders, Iwan joints and joints "
-                             "with clearance only")
+            raise NotAllowed(section, code="fe_other_parts")
     ends = truss.nodes.position_m[truss.links.nodes]
     drawn = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     free = truss.links.stress_free_length_m
     for index in np.flatnonzero(np.abs(drawn - free) > UNSTRESSED * drawn)[:1]:
-        raise NotAllowed("stress_free_length_m", float(free[index]), "'statejump fe' takes links as long as drawn, "
-                         f"{drawn[index]:.9g} m", item=f"link {truss.links.names[index]!r}")
+        raise NotAllowed("stress_free_length_m", float(free[index]), code="fe_link_not_as_drawn",
+                         item=f"link {truss.links.names[index]!r}", drawn_m=drawn[index])
 
 
 def _hottest(case: TrussCase, truss: ResolvedTruss) -> Numbers:

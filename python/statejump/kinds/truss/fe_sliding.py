@@ -48,7 +48,7 @@ def rows(case: TrussCase, truss: ResolvedTruss) -> tuple[list[str], tuple[Quanti
     lines = deck(truss, times)
     found = ccx.displacements(lines, "JOINTS")
     if len(found) != len(times) - 1:
-        raise FailedRun("CalculiX left out increments")
+        raise FailedRun(code="calculix_increments")
     other = np.array([[step[node + 1] for node in range(len(truss.nodes.names))] for step in found])
     path = whole_path(_small(truss), increments_per_branch=case.reduced_settings.increments_per_branch)
     at = np.array([int(np.argmin(np.abs(path.states["time_s"] - time))) for time in times])
@@ -86,7 +86,7 @@ def corners(case: TrussCase, truss: ResolvedTruss) -> list[float]:
     """Return the times [s] between which all programs are straight, over all cycles."""
     for program in truss.programs:
         if program.shape not in ("triangle", "table") and np.any(range_K(program)):
-            raise NotAllowed("thermal.shape", program.shape, "sliders of 'statejump fe' follow 'triangle' and 'table'")
+            raise NotAllowed("thermal.shape", program.shape, code="fe_slider_shape")
     cycle: set[float] = set()
     for program in truss.programs:
         table = (program_rows(program, case.period_s)[0] if program.shape == "table"
@@ -97,8 +97,7 @@ def corners(case: TrussCase, truss: ResolvedTruss) -> list[float]:
     near = 1e-9 * case.duration_s
     times = [every[0], *(after for before, after in zip(every, every[1:]) if after - before > near)]
     if len(times) > MOST_BRANCHES + 1:
-        raise NotAllowed("thermal.cycles", case.thermal.cycles,
-                         f"sliders of 'statejump fe' are followed over at most {MOST_BRANCHES} branches")
+        raise NotAllowed("thermal.cycles", case.thermal.cycles, code="fe_slider_branches", most=MOST_BRANCHES)
     return times
 
 

@@ -13,7 +13,7 @@ def lumped_mass_kg(truss: ResolvedTruss) -> np.ndarray:
     """Return the mass of every node [kg]. :raises MissingKey: a link has none"""
     for name, link in zip(truss.links.names, truss.links.mass_kg):
         if np.isnan(link):
-            raise MissingKey("mass_kg", "what moves has one of them", section="density_kg_per_m3 or mass_kg",
+            raise MissingKey("mass_kg", code="mass_of_moving_link_missing", section="density_kg_per_m3 or mass_kg",
                              item=f"link {name!r}", case=truss.name)
     mass = truss.nodes.mass_kg.copy()
     held = np.asarray(truss.nodes.fixed.all(axis=1))

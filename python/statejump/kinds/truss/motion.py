@@ -141,11 +141,10 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
                              remedy="leave a direction of a node free, or run without --dynamic", case=case.name)
     for name in BALL_JOINT.rigid_ones(truss.joints[BALL_JOINT.section])[:1]:
         if case.motion.start != "drawn":
-            raise NotAllowed("motion.start", case.motion.start, f"must be 'drawn' with ball_joint {name!r}, whose "
-                             "contact is rigid: no path says where it rests", case=case.name, joint=name)
+            raise NotAllowed("motion.start", case.motion.start, code="start_not_drawn", case=case.name, joint=name,
+                             ball_joint=name)
     if case.motion.start == "drawn" and case.start.friction == FRICTIONLESS:
-        raise NotAllowed("start.friction", case.start.friction, "must be 'stuck', there is no equilibrium before the "
-                         "motion", beside="with motion.start = 'drawn'", case=case.name)
+        raise NotAllowed("start.friction", case.start.friction, code="start_not_stuck", case=case.name)
     regularised = case.motion.scheme == "regularised"
     if regularised:
         from statejump.kinds.truss import stable_steps  # explicit steps need the DEM's, which starts from a motion
@@ -163,12 +162,12 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
         )
     except _engine.EngineFailure as failure:
         if failure.item and failure.allowed:
-            raise NotAllowed(str(failure.key), failure.value, f"must be {failure.allowed}", item=failure.item,
-                             case=truss.name) from None
+            raise NotAllowed(str(failure.key), failure.value, code="engine_refused", item=failure.item, case=truss.name,
+                             needed=failure.allowed) from None
         raise EngineFailed(failure, remedy=_remedy(case, failure), case=truss.name, place=truss.name) from None
     events = TrussEvents(truss, **found.pop("events"))
     if not found["complete"] and len(found["states"].get("time_s", ())) < 2:
-        raise Interrupted("interrupted before a whole sample; nothing was written")
+        raise Interrupted(code="interrupted_before_sample")
     made = TrussMotion(truss=truss, events=events, regularised=regularised,
                        equal=case.motion.displacement_tolerance_m is None, **found)
     if not made.complete:

@@ -418,5 +418,5 @@ def page(result: Result, case: TrussCase) -> TrussPart | None:
         return None
     for items, wanted in names_of(case).items():
         if result.names.get(items, wanted) != wanted:
-            raise Unreadable("damaged", cause=f"/names/{items} has other names than the case")
+            raise Unreadable(code="names_of_other_case", items=items)
     return TrussPart(result, case)

@@ -30,34 +30,34 @@ def known_name(key: str, value: Any, name: str, known: Mapping[str, Any], what: 
     if name in known:
         return
     nearest = difflib.get_close_matches(name, list(known), n=1, cutoff=0.5)
+    where |= {"nodes": (name,) if what == "node" else (), "what_it_is": what, "name": name}
     if nearest:
-        remedy = f"did you mean {nearest[0]!r}?"
-    else:
-        remedy = f"known are {listed(list(known))}" if known else f"the file has no section [[{what}]]"
-    raise NotAllowed(key, value, f"there is no {what} {name!r}", remedy=remedy,
-                     nodes=(name,) if what == "node" else (), **where)
+        raise NotAllowed(key, value, code="misspelt_reference", meant=nearest[0], **where)
+    if known:
+        raise NotAllowed(key, value, code="no_such_reference", known=listed(list(known)), **where)
+    raise NotAllowed(key, value, code="reference_without_section", **where)
 
 
 def known_nodes(names: list[str], least: int, nodes: Mapping[str, Any], where: Mapping[str, Any]) -> None:
     """Raise NotAllowed unless ``nodes`` of an item are two different nodes, or one where the least is one."""
     if not least <= len(names) <= 2:
         many = "2 nodes" if least == 2 else "1 node, on ground, or 2 nodes"
-        raise NotAllowed("nodes", names, f"must be {many}", **where)
+        raise NotAllowed("nodes", names, code="wrong_number_of_nodes", wanted=many, **where)
     for name in names:
         if name not in nodes:
             known_name("nodes", names, name, nodes, "node", **where)
     if len(names) == 2 and names[0] == names[1]:
-        raise NotAllowed("nodes", names, "must be two different nodes", **where)
+        raise NotAllowed("nodes", names, code="nodes_not_different", **where)
 
 
 def known_links(names: list[str], links: Mapping[str, Any], where: Mapping[str, Any]) -> None:
     """Raise NotAllowed unless ``links`` of an item are two different links or one."""
     if not 1 <= len(names) <= 2:
-        raise NotAllowed("links", names, "must be 2 links, or 1 against ground", **where)
+        raise NotAllowed("links", names, code="wrong_number_of_links", **where)
     for name in names:
         known_name("links", names, name, links, "link", **where)
     if len(names) == 2 and names[0] == names[1]:
-        raise NotAllowed("links", names, "must be two different links", **where)
+        raise NotAllowed("links", names, code="links_not_different", **where)
 
 
 @dataclass(frozen=True)
@@ -101,18 +101,17 @@ def vector(key: str, value: list[float] | None, unit: str, dimension: int, direc
     if value is None:
         return
     if len(value) != dimension:
-        raise NotAllowed(key, value, f"must be {dimension} numbers [{unit}], as truss.dimension is {dimension}",
-                         **where)
+        raise NotAllowed(key, value, code="wrong_number_of_components", dimension=dimension, unit=unit, **where)
     if direction and not any(value):
-        raise NotAllowed(key, value, "must not be zero in every direction", **where)
+        raise NotAllowed(key, value, code="zero_vector", **where)
 
 
 def axis_of_rotation(axis: list[float] | None, dimension: int, where: Mapping[str, Any]) -> None:
     """Raise an error unless an axis of rotation is absent in a planar truss and given in a spatial one."""
     if dimension == 2 and axis is not None:
-        raise NotAllowed("axis", axis, "in a planar truss it is z", **where)
+        raise NotAllowed("axis", axis, code="planar_axis", **where)
     if dimension == 3 and axis is None:
-        raise MissingKey("axis", "a list of 3 numbers is needed in a spatial truss", **where)
+        raise MissingKey("axis", code="axis_missing", **where)
     vector("axis", axis, "-", dimension, True, **where)
 
 
@@ -148,13 +147,9 @@ def _turned_links(truss: ResolvedTruss, section: str, items: Any, rows: slice, j
     index = int(np.argmax(wrong))
     where = f"{section} {items.names[rows][index]!r}"
     if apart[index]:
-        raise NotAllowed(
-            "links", [links.names[link] for link in pairs[index]],
-            "the links share no place, neither a node nor a joint between their ends", item=where,
-        )
-    raise NotAllowed("axis", axes[index].tolist(),
-                     f"link {links.names[pairs[index, int(np.argmax(along[index]))]]!r} lies along it and has no angle "
-                     "about it", item=where)
+        raise NotAllowed("links", [links.names[link] for link in pairs[index]], code="links_without_place", item=where)
+    raise NotAllowed("axis", axes[index].tolist(), code="axis_along_link", item=where,
+                     link=links.names[pairs[index, int(np.argmax(along[index]))]])
 
 
 def _pair_codes(truss: ResolvedTruss, ones: np.ndarray, others: np.ndarray) -> np.ndarray:

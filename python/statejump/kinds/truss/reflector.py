@@ -16,8 +16,7 @@ def surface(case: TrussCase) -> tuple[Design, np.ndarray]:
     """
     truss = case.resolve()
     if truss.reflector is None:
-        raise StatejumpError("section [reflector] is missing", file=case.origin.file,
-                             remedy="it names the nodes of the surface")
+        raise StatejumpError(code="reflector_missing", file=case.origin.file)
     nodes = np.asarray(truss.reflector.nodes)
     try:
         return Design.of(truss.nodes.position_m[nodes], truss.reflector.axis, truss.reflector.focal_length_m), nodes

@@ -16,8 +16,7 @@ from statejump.kinds.truss.resolved import ResolvedTruss
 
 
 def _refuse(case: TrussCase, why: str, **fields: Any) -> StatejumpError:
-    return StatejumpError(cause=f"{why}, which motion.scheme = 'regularised' has not", case=case.name,
-                          remedy="leave motion.scheme out", **fields)
+    return StatejumpError(code="regularised_cannot", case=case.name, why=why, **fields)
 
 
 def _moves_along(truss: ResolvedTruss, node: int, axis: np.ndarray) -> bool:
@@ -54,6 +53,5 @@ def check(case: TrussCase) -> None:
         raise _refuse(case, f"link {truss.drives.names[0]!r} is driven")
     least = least_steps_per_cycle(case)
     if case.motion.steps_per_cycle < least:
-        raise NotAllowed("motion.steps_per_cycle", case.motion.steps_per_cycle,
-                         f"must be at least {least} with motion.scheme = 'regularised': its steps are explicit",
-                         case=case.name)
+        raise NotAllowed("motion.steps_per_cycle", case.motion.steps_per_cycle, code="too_few_steps_of_regularised",
+                         case=case.name, least=least)

@@ -263,18 +263,11 @@ class UmbrellaCase(Case):
         for change in (0.0, *self.temperature_range_K):
             ab, bc = self.link_lengths_m(change)
             if not abs(ab - bc) < frame < ab + bc:
-                raise NotAllowed(
-                    "frame.length_m", frame,
-                    f"must be above {abs(ab - bc):.9g} and below {ab + bc:.9g} [m], or the links cannot meet at a "
-                    f"temperature change of {change:g} K",
-                )
+                raise NotAllowed("frame.length_m", frame, code="links_cannot_meet", least=abs(ab - bc), most=ab + bc,
+                                 at_K=change)
         flare, bias = self.flare_angle_rad, self.torsion_spring.bias_rad
         if not 0 < flare + bias < pi:
-            raise NotAllowed(
-                "torsion_spring.bias_rad", bias,
-                f"must be above {-flare:.9g} and below {pi - flare:.9g} [rad], so that the free flare angle lies "
-                "between 0 and pi",
-            )
+            raise NotAllowed("torsion_spring.bias_rad", bias, code="bias_out_of_range", least=-flare, most=pi - flare)
 
     def _check_laws(self) -> None:
         for kind, key in (("normal", "normal_law"), ("dissipation", "dissipation_law"), ("friction", "friction_law"),
@@ -282,86 +275,69 @@ class UmbrellaCase(Case):
             name = getattr(self.joint, key)
             problem = _engine.law_problem(kind, name)
             if problem:  # a law of one's own that is known and cannot be used
-                raise NotAllowed(f"joint.{key}", name, problem)
+                raise NotAllowed(f"joint.{key}", name, problem, code="law_unusable")
         dissipation = laws.law("dissipation", self.joint.dissipation_law)
         may_be_zero = any(p.name == "restitution" and p.allows(0) for p in dissipation.parameters)
         if self.joint.restitution == 0 and not may_be_zero:
-            raise NotAllowed("joint.restitution", self.joint.restitution, "must be above 0 [-]",
-                             beside=f"with joint.dissipation_law = {dissipation.name!r}")
+            raise NotAllowed("joint.restitution", self.joint.restitution, code="restitution_zero", law=dissipation.name)
         friction = laws.law("friction", self.joint.friction_law)
         if friction.needs_point_contact and not laws.law("normal", self.joint.normal_law).point_contact:
             points = ", ".join(law.name for law in laws.catalogue("normal") if law.point_contact)
-            raise NotAllowed("joint.normal_law", self.joint.normal_law, f"must be one of {points}",
-                             beside=f"with joint.friction_law = {friction.name!r}")
+            raise NotAllowed("joint.normal_law", self.joint.normal_law, code="law_not_with_friction", law=friction.name,
+                             known=points)
 
     def _check_joint(self) -> None:
         joint = self.joint
         clearance = joint.radial_clearance_m
         if not check_radii(self.bearing_radius_m, joint.journal_radius_m):
-            raise NotAllowed(
-                "joint.radial_clearance_m", clearance,
-                f"too small beside joint.journal_radius_m = {joint.journal_radius_m!r} [m], the radii come out equal",
-            )
+            raise NotAllowed("joint.radial_clearance_m", clearance, code="radii_equal",
+                             journal_radius_m=joint.journal_radius_m)
         for part in ("journal", "bearing"):
             expansion = getattr(joint, f"{part}_thermal_expansion_per_K")
             for change in self.temperature_range_K:
                 if 1 + expansion * change <= 0:
-                    raise NotAllowed(f"joint.{part}_thermal_expansion_per_K", expansion,
-                                     f"the {part} has no radius left at a temperature change of {change:g} K")
+                    raise NotAllowed(f"joint.{part}_thermal_expansion_per_K", expansion, code="part_without_radius",
+                                     part=part, at_K=change)
         for change in self.temperature_range_K:
             if not self.clearance_m(change) > 0:
-                raise NotAllowed(
-                    "joint.radial_clearance_m", clearance,
-                    f"the expansion of journal and bearing closes it at a temperature change of {change:g} K, it must "
-                    "stay above 0 [m] within the program",
-                )
+                raise NotAllowed("joint.radial_clearance_m", clearance, code="clearance_of_rib_closes", at_K=change)
         if joint.friction_v1_m_per_s <= joint.friction_v0_m_per_s:
-            raise NotAllowed("joint.friction_v1_m_per_s", joint.friction_v1_m_per_s,
-                             f"must be above joint.friction_v0_m_per_s = {joint.friction_v0_m_per_s!r} [m/s]")
+            raise NotAllowed("joint.friction_v1_m_per_s", joint.friction_v1_m_per_s, code="not_above_v0",
+                             friction_v0_m_per_s=joint.friction_v0_m_per_s)
 
     def _check_start(self) -> None:
         start, clearance = self.start, self.joint.radial_clearance_m
         if start.mode == "loaded":
             self._check_loaded()
         elif start.contact_angle_rad != 0:
-            raise NotAllowed("start.contact_angle_rad", start.contact_angle_rad, "only with start.mode = 'loaded'")
+            raise NotAllowed("start.contact_angle_rad", start.contact_angle_rad, code="only_with_loaded_start")
         elif start.eccentricity_m > clearance:
-            raise NotAllowed(
-                "start.eccentricity_m", start.eccentricity_m,
-                f"must be between 0 and joint.radial_clearance_m = {clearance!r} [m], beyond it the joint starts in "
-                "deep penetration",
-            )
+            raise NotAllowed("start.eccentricity_m", start.eccentricity_m, code="beyond_clearance", clearance=clearance)
         if self.ensemble.start_spread_m > clearance:
             raise NotAllowed("ensemble.start_spread_m", self.ensemble.start_spread_m,
-                             f"must be above 0 and at most joint.radial_clearance_m = {clearance!r} [m]")
+                             code="not_above_zero_to_clearance", clearance=clearance)
 
     def _check_loaded(self) -> None:
         start, joint, spring = self.start, self.joint, self.torsion_spring
         for key in ("eccentricity_m", "eccentricity_angle_rad"):
             if getattr(start, key) != 0:
-                raise NotAllowed(f"start.{key}", getattr(start, key), "equilibrium decides",
-                                 beside="with start.mode = 'loaded'")
+                raise NotAllowed(f"start.{key}", getattr(start, key), code="equilibrium_decides")
         for key in ("stiffness_N_m_per_rad", "bias_rad"):
             if getattr(spring, key) == 0:
-                raise NotAllowed("start.mode", start.mode,
-                                 f"torsion_spring.{key} is 0, and only a biased torsion spring loads the joint")
+                raise NotAllowed("start.mode", start.mode, code="spring_does_not_load", spring_key=key)
         if start.friction == FRICTIONLESS and start.contact_angle_rad != 0:
-            raise NotAllowed("start.contact_angle_rad", start.contact_angle_rad,
-                             "must be 0 [rad], where the contact needs no friction",
-                             beside="with start.friction = 'frictionless'")
+            raise NotAllowed("start.contact_angle_rad", start.contact_angle_rad, code="angle_of_frictionless")
         holds = laws.law("friction", joint.friction_law).holds_static_load
         largest = atan(joint.friction_coefficient) if holds else 0.0
         if abs(start.contact_angle_rad) > largest:
-            raise NotAllowed(
-                "start.contact_angle_rad", start.contact_angle_rad,
-                f"must be between {-largest:.9g} and {largest:.9g} [rad], atan of joint.friction_coefficient"
-                if largest else "must be 0 [rad]: this friction holds no static load",
-            )
+            if not largest:
+                raise NotAllowed("start.contact_angle_rad", start.contact_angle_rad, code="friction_holds_no_load")
+            raise NotAllowed("start.contact_angle_rad", start.contact_angle_rad, code="angle_beyond_friction",
+                             least_rad=-largest, largest_rad=largest)
 
     def _check_run(self) -> None:
         if self.reduced_settings.method == "adaptive" and laws.law("friction", self.joint.friction_law).has_memory:
-            raise NotAllowed("reduced.method", "adaptive", "friction with memory is not smooth, use 'rk4'",
-                             beside=f"with joint.friction_law = {self.joint.friction_law!r}")
+            raise NotAllowed("reduced.method", "adaptive", code="adaptive_with_memory", law=self.joint.friction_law)
         samples = self.output.samples_per_cycle
         for part, key in (
             ("reduced", "steps_per_cycle"),
@@ -371,4 +347,4 @@ class UmbrellaCase(Case):
         ):
             steps = getattr(self.value_named(part), key)
             if steps % samples != 0:
-                raise NotAllowed(f"{part}.{key}", steps, f"must be a multiple of output.samples_per_cycle = {samples}")
+                raise NotAllowed(f"{part}.{key}", steps, code="no_multiple_of_samples", samples=samples)

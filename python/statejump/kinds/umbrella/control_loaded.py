@@ -182,7 +182,7 @@ def study(case: UmbrellaCase, wanted: float | None, with_dem: bool, tell: Tell) 
     """Study a joint that a biased spring loads from the start."""
     now = loaded_jump(case)
     if now.size_rad is None:
-        raise StatejumpError("there is no quasi-static jump to control", case=case.name, cause=now.note)
+        raise StatejumpError(code="no_quasi_static_jump", case=case.name, cause=now.note)
     if wanted is None and now.size_rad > 0:
         wanted = now.size_rad / 2
     links = (

@@ -42,7 +42,8 @@ class QuasiStatic:
 
     def _path(self, links: str) -> Any:
         if links not in self.paths:
-            raise NotAllowed("links", links, f"must be {' or '.join(map(repr, self.paths))}", allowed=tuple(self.paths))
+            raise NotAllowed("links", links, code="must_be_named", allowed=tuple(self.paths),
+                             names=" or ".join(map(repr, self.paths)))
         return self.paths[links]
 
     def frame(self, links: str = RIGID) -> pandas.DataFrame:

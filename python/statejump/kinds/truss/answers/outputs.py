@@ -98,9 +98,8 @@ def chosen_output(found: TrussPath, name: str) -> Output:
     if name == "node" or name.startswith("node:"):
         return node_output(found, name[5:] or None if name != "node" else None)
     if name not in ("rms", "tilt"):
-        raise NotAllowed("output", name, "must be 'node', 'node:NAME', 'rms' or 'tilt'",
-                         allowed=("node", "node:NAME", "rms", "tilt"))
+        raise NotAllowed("output", name, code="output_unknown", allowed=("node", "node:NAME", "rms", "tilt"))
     surface = reflector.surface(found.truss)
     if surface is None:
-        raise NotAllowed("output", name, "the truss has no [reflector] whose nodes determine a fit")
+        raise NotAllowed("output", name, code="no_fit")
     return rms_output(found, surface) if name == "rms" else tilt_output(found, surface)

@@ -110,7 +110,7 @@ class TrussAnswers:
     def plot_ranking(self) -> Figure:
         """Draw the joints that hold the jump. :raises StatejumpError: no joints are ranked"""
         if self.shares is None:
-            raise StatejumpError("no joints are ranked", cause="; ".join(self.notes), case=self.case.name)
+            raise StatejumpError(code="no_ranking", cause="; ".join(self.notes), case=self.case.name)
         return _RANKING(self.shares, self.output, self.case.title)
 
     def write(self, folder: Path, frames: int = 0, phase: Phase = silent) -> list[Path]:
@@ -191,7 +191,7 @@ def _of_cycles(case: TrussCase, cycles: int | None) -> TrussCase:
         return case
     for program in case.program:
         if program.cycles is not None:
-            raise NotAllowed("cycles", ABSENT, f"program {program.name!r} of the case has cycles of its own")
+            raise NotAllowed("cycles", ABSENT, code="program_with_own_cycles", program=program.name)
     changed = case.changed({"thermal.cycles": cycles})
     assert isinstance(changed, TrussCase)
     # The file that was given is named with the answers; how many cycles were run, the resolved case says.

@@ -39,8 +39,7 @@ def control(
     check_wanted(jump_below, "m")
     refuse_runs(runs, case)
     if with_dem:
-        raise NotAllowed("--dem", cause="a truss with what is found goes into a case of its own, which 'statejump "
-                         "compare' checks", case=case.name)
+        raise NotAllowed("--dem", code="dem_of_control", case=case.name)
     truss, increments = case.resolve(), case.reduced_settings.increments_per_branch
     names = truss.nodes.names
     if places.node is not None:

@@ -66,11 +66,11 @@ def _put_in(made: Document, given: Mapping[str, str], dimension: int) -> list[st
             try:
                 values[key] = float(text)
             except ValueError:
-                raise NotAllowed(key, text, "must be a number") from None
+                raise NotAllowed(key, text, code="not_a_number") from None
     nodes, links = ({item["name"]: item for item in made[part]} for part in ("node", "link"))
     if in_link:
         if LINK not in given:
-            raise MissingKey(LINK, "in which the slider is")
+            raise MissingKey(LINK, code="slider_link_missing")
         for name in matching(LINK, given[LINK], links):
             _slider_in_link(made, links[name], nodes, given.get("node"), values)
     elif revolute:
@@ -87,8 +87,7 @@ def _section(path: Path, section: str, known: Sequence[str]) -> dict[str, Any]:
     _, data = read_toml(path, "joint")
     found = data.get(section)
     if not (isinstance(found, list) and len(found) == 1 and isinstance(found[0], Mapping)):
-        raise StatejumpError(f"holds no section [[{section}]]", file=path,
-                             remedy=f"statejump identify --for {section} writes one")
+        raise StatejumpError(code="no_section", file=path, wanted=section)
     for key in found[0]:
         if key not in known:
             raise UnknownKey(key, file=path, **suggestion(key, known))
@@ -116,7 +115,7 @@ def matching(key: str, pattern: str, known: Iterable[str]) -> list[str]:
 
 def _slider(made: Document, node: dict[str, Any], values: dict[str, Any], dimension: int) -> None:
     if "axis" not in values:
-        raise MissingKey("axis", "along which it slides: " + ", ".join("xyz"[:dimension]) + ", or link")
+        raise MissingKey("axis", code="slider_axis_missing", directions=", ".join("xyz"[:dimension]))
     place = values["axis"].index(1.0)
     # The support gives way along the axis; across it the node stays held.
     node["fixed"] = [axis for axis in node.get("fixed", ()) if axis != "xyz"[place]]

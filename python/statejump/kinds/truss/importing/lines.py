@@ -36,20 +36,20 @@ class Line(int):
 def text_of(path: Path, most: int = LARGEST_BYTES) -> list[str]:
     """Return the lines of a file. :raises Unreadable: there is none, it is too large or no text"""
     if not is_file(path):
-        raise Unreadable("no such file", file=path)
+        raise Unreadable(code="no_such_file", file=path)
     try:
         with path.open("rb") as stream:
             content = stream.read(most + 1)
         if len(content) > most:
-            raise Unreadable("cannot be read", cause=f"it is larger than {size(LARGEST_BYTES)}", file=path)
+            raise Unreadable(code="file_too_large", file=path, largest=size(LARGEST_BYTES))
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
         # Comments in the language of the user; names and numbers are ASCII in either.
         text = content.decode("latin-1")
         if "\x00" in text:
-            raise Unreadable("cannot be read", cause="it is not text", file=path) from None
+            raise Unreadable(code="not_text", file=path) from None
     except OSError as failure:
-        raise Unreadable("cannot be read", cause=failure.strerror, file=path) from None
+        raise Unreadable(code="cannot_be_read", cause=failure.strerror, file=path) from None
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
@@ -87,14 +87,13 @@ class Source:
     def _inside(self, line: int, given: str, depth: int) -> Path:
         shown = repr(printable(given))[:60]
         if depth >= DEEPEST:
-            raise Unreadable(f"line {line}: more than {DEEPEST} files include each other", file=self.path)
+            raise Unreadable(code="includes_too_deep", file=self.path, line=line, deepest=DEEPEST)
         try:
             path = (self.folder / given).resolve()
         except (OSError, RuntimeError, ValueError):
-            raise Unreadable(f"line {line}: {shown} is not the name of a file", file=self.path) from None
+            raise Unreadable(code="no_file_name", file=self.path, line=line, included=shown) from None
         if not path.is_relative_to(self.folder):
-            raise Unreadable(f"line {line}: the included file {shown} is outside the deck's folder", file=self.path,
-                             remedy="copy it beside the deck")
+            raise Unreadable(code="include_outside", file=self.path, line=line, included=shown)
         if not is_file(path):
-            raise Unreadable(f"line {line}: there is no included file {shown}", file=self.path)
+            raise Unreadable(code="no_included_file", file=self.path, line=line, included=shown)
         return path

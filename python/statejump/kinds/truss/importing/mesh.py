@@ -84,7 +84,7 @@ def _add(deck: Deck, mesh: Any, block: int, kind: str, ends: np.ndarray) -> None
 
 def _read(path: Path) -> Any:
     if not is_file(path):
-        raise Unreadable("no such file", file=path)
+        raise Unreadable(code="no_such_file", file=path)
     check_size(path, LARGEST_BYTES)
     return _by_vtk(path) if path.suffix.lower() in BY_VTK else _by_meshio(path)
 
@@ -96,15 +96,14 @@ def _by_vtk(path: Path) -> Any:
                           capture_output=True, check=False)
     said = done.stderr.decode("utf-8", "replace")
     if "No module named 'vtkmodules" in said:
-        raise StatejumpError("files of VTK are read by VTK, which is not installed", file=path,
-                             remedy="install the Debian package python3-vtk9")
+        raise StatejumpError(code="vtk_missing", file=path)
     try:
         with np.load(io.BytesIO(done.stdout), allow_pickle=False) as archive:
             found = dict(archive)
         points = found["points"]
     except (ValueError, EOFError, OSError, KeyError, zipfile.BadZipFile):
         cause = ADDRESS.sub("", said.rsplit("): ", 1)[-1]) or f"VTK ends with status {done.returncode}"
-        raise Unreadable("not a mesh that VTK reads", cause=" ".join(cause.split())[:200], file=path) from None
+        raise Unreadable(code="not_vtk", cause=" ".join(cause.split())[:200], file=path) from None
     named: dict[str, dict[str, np.ndarray]] = {"cells": {}, "ends": {}, "point data": {}, "cell data": {}}
     for key, values in found.items():
         group, _, name = key.partition("/")
@@ -122,8 +121,7 @@ def _by_meshio(path: Path) -> Any:
     try:
         import meshio  # 0.3 s, which may be missing
     except ImportError:
-        raise StatejumpError("meshes are read by meshio, which is not installed", file=path,
-                             remedy="install the Debian package python3-meshio") from None
+        raise StatejumpError(code="meshio_missing", file=path) from None
     form = FORMATS[path.suffix.lower()]
     try:
         # meshio prints what it thinks of a file, and for some faults it wants to end the program.
@@ -137,7 +135,7 @@ def _by_meshio(path: Path) -> Any:
         raise
     except (Exception, SystemExit) as failure:  # what a parser of other people raises for a damaged file is anything
         cause = " ".join(str(failure).split()) or type(failure).__name__
-        raise Unreadable(f"not a mesh that meshio reads as {form}", cause=cause[:200], file=path) from None
+        raise Unreadable(code="not_meshio", cause=cause[:200], file=path, form=form) from None
 
 
 def _check_hdf5(path: Path) -> None:

@@ -204,7 +204,7 @@ class Deck:
     def check_waived(self) -> None:
         """Refuse an ``--ignore`` that names nothing of the deck. :raises NotAllowed: there is one"""
         for name in sorted(self.options.ignored - self.waived):
-            raise NotAllowed("--ignore", name, "the deck has no unsupported item of this name")
+            raise NotAllowed("--ignore", name, code="nothing_to_ignore")
 
     def fail(self, line: int, what: str, cause: str | None = None) -> Unreadable:
         """Return why the deck cannot be read."""

@@ -19,18 +19,18 @@ def read(path: Path, form: str | None = None, bars: Path | None = None, options:
     """
     form = form or SUFFIXES.get(path.suffix.lower())
     if form is None:
-        raise NotAllowed("FILE", path.name, f"must end with {', '.join(SUFFIXES)}", remedy="--format says what it is")
+        raise NotAllowed("FILE", path.name, code="deck_suffix", suffixes=", ".join(SUFFIXES))
     if form == "mesh" and path.suffix.lower() not in mesh.FORMATS:
-        raise NotAllowed("FILE", path.name, f"a mesh must end with {', '.join(mesh.FORMATS)}")
+        raise NotAllowed("FILE", path.name, code="mesh_suffix", suffixes=", ".join(mesh.FORMATS))
     if form == "tables":
         if bars is None:
-            raise NotAllowed("FILE", path.name, "a table of nodes needs a table of bars", remedy="--bars names it")
+            raise NotAllowed("FILE", path.name, code="bars_table_missing")
         deck = tables.read(path, bars)
         deck.named_units = True
     else:
         deck = mesh.read(path) if form == "mesh" else \
             {"abaqus": abaqus.read, "nastran": nastran.read}[form](path, options or Options())
     if not deck.bars:
-        raise Unreadable("holds no bars", file=path, remedy=", ".join(
-            f"{card}: {why}" for card, _, _, why in deck.left_rows()[:3]) or None)
+        raise Unreadable(code="no_bars", file=path,
+                         remedy=", ".join(f"{card}: {why}" for card, _, _, why in deck.left_rows()[:3]) or None)
     return deck

@@ -55,7 +55,7 @@ def _rows(deck: Deck, path: Path, needed: Sequence[str], more: Sequence[str]) ->
     """Return the rows of a table by column, with their lines; numbers in SI units."""
     deck.path = path
     if not is_file(path):
-        raise Unreadable("no such file", file=path)
+        raise Unreadable(code="no_such_file", file=path)
     with open_table(path, LARGEST_BYTES) as table:
         try:
             columns = matched(table.header, (*needed, *more))

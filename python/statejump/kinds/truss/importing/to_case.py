@@ -197,7 +197,7 @@ def _changes(deck: Deck, given: float | None) -> list[float]:
         if change is None:
             change = given
         if change is None:
-            raise MissingKey("--temperature-change", f"link {bar.name!r} has no temperature", file=deck.path)
+            raise MissingKey("--temperature-change", code="link_without_temperature", file=deck.path, link=bar.name)
         found.append(change)
     return found
 
@@ -224,9 +224,9 @@ def _link(deck: Deck, bar: Bar, change: float, peak: float, units: Units,
         elif key in given:
             numbers[key] = given[key]
         else:
-            raise StatejumpError(f"{bar.kind} {bar.name!r} has no {words}", file=deck.path,
-                                 cause=bar.why_no_area if words[0] == "c" and bar.why_no_area else None,
-                                 remedy=f"{OPTIONS[key]} gives all of them one")
+            raise StatejumpError(code="bar_without_property", file=deck.path,
+                                 cause=bar.why_no_area if words[0] == "c" and bar.why_no_area else None, kind=bar.kind,
+                                 name=bar.name, property=words, option=OPTIONS[key])
     made: dict[str, Any] = {
         "name": _called("L", bar.name),
         "nodes": [node_name(end) for end in bar.nodes],

@@ -67,12 +67,8 @@ class AlongAxis(JointType[ItemType, ArraysType]):
         across = np.linalg.eigvalsh(held)[:, 1] <= SAME_DIRECTION**2
         for number in np.flatnonzero(along | across)[:1]:
             joint, node = joints.names[on_ground[number]], nodes.names[carrier[number]]
-            cause = (
-                f"the supports of node {node!r} hold it along the axis" if along[number] else
-                f"node {node!r} is free across the axis, {self.noun} on ground needs supports there (fixed or "
-                "guide_normal)"
-            )
-            raise NotAllowed("axis", [float(value) for value in axis[number, : truss.dimension]], cause,
+            why = {"code": "held_along_axis"} if along[number] else {"code": "free_across_axis", "type": self.noun}
+            raise NotAllowed("axis", [float(value) for value in axis[number, : truss.dimension]], node=node, **why,
                              nodes=(node,), **self.where(joint))
 
     def joined(self, joints: ArraysType) -> np.ndarray:

@@ -101,8 +101,7 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
 
     def check_vectors(self, item: BallJoint, dimension: int) -> None:
         if dimension == 2:
-            raise NotAllowed("truss.dimension", 2, "a ball joint needs 3: its friction has two directions; in a planar "
-                             "truss a revolute does the same", **self.where(item.name))
+            raise NotAllowed("truss.dimension", 2, code="ball_joint_planar", **self.where(item.name))
 
     def may_be_wrong_vectors(self, items: ItemColumns[BallJoint], dimension: int) -> np.ndarray:
         return np.full(len(items), dimension == 2)
@@ -110,9 +109,7 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
     def check_geometry(self, truss: ResolvedTruss, joints: BallJoints, ranges_K: np.ndarray) -> None:
         rubs = (joints.friction_coefficient > 0) & ~joints.rigid
         for index in np.flatnonzero((truss.sticking == "rigid") & rubs)[:1]:
-            raise NotAllowed("reduced.sticking", truss.sticking,
-                             'must be "elastic" or "partial_slip" with ball joints that have friction: a contact that '
-                             "sticks rigidly does not say along which direction of its plane it begins to slide",
+            raise NotAllowed("reduced.sticking", truss.sticking, code="ball_joint_rigid",
                              **self.where(joints.names[index]))
         self.check_parts(truss, joints, ranges_K, np.linalg.norm(self.offset_m(truss, joints), axis=1))
 

@@ -88,10 +88,9 @@ class IwanJointType(AlongAxis[IwanJoint, IwanJoints]):
         super().check_geometry(truss, joints, ranges_K)
         longest = np.log10(joints.spacing) * (joints.elements - 1)
         for index in np.flatnonzero(longest >= np.log10(LONGEST))[:1]:
-            raise NotAllowed(
-                "spacing", float(joints.spacing[index]),
-                f"with elements = {joints.elements[index]} the last interval is 1e{longest[index]:.0f} times the first "
-                f"one, it must be below {LONGEST:g} times", **self.where(joints.names[index]))
+            raise NotAllowed("spacing", float(joints.spacing[index]), code="iwan_spacing",
+                             elements=joints.elements[index], power=longest[index], limit=LONGEST,
+                             **self.where(joints.names[index]))
 
     def symbols(self, truss: ResolvedTruss, joints: IwanJoints) -> list[Symbol]:
         places, up = self.places(truss, joints)

@@ -110,8 +110,7 @@ class RevoluteType(RoundParts[Revolute, Revolutes]):
     def check_geometry(self, truss: ResolvedTruss, joints: Revolutes, ranges_K: np.ndarray) -> None:
         slips = (truss.sticking == "partial_slip") & (joints.friction_coefficient > 0)
         for index in np.flatnonzero(joints.rigid & slips)[:1]:
-            raise NotAllowed("contact", "rigid", 'must be "hertz" with reduced.sticking = "partial_slip": a rigid '
-                             "contact has no area of which a part slips", **self.where(joints.names[index]))
+            raise NotAllowed("contact", "rigid", code="partial_slip_rigid", **self.where(joints.names[index]))
         offset = self.offset_m(truss, joints)
         along = (offset * joints.axis).sum(axis=1, keepdims=True) * joints.axis
         self.check_parts(truss, joints, ranges_K, np.linalg.norm(offset - along, axis=1))

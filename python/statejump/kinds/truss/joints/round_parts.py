@@ -77,22 +77,20 @@ class RoundParts(JointType[ItemType, ArraysType]):
             if link is None:
                 # Nothing at hand says how such a part turns.
                 if not nodes[node].fixed and nodes[node].guide_normal is None:
-                    raise MissingKey(
-                        link_key, f"without a link the {part} does not turn, so node {node!r} must have a support "
-                        "(fixed or guide_normal)", nodes=(node,), **where,
-                    )
+                    raise MissingKey(link_key, code="turning_part_unsupported", nodes=(node,), part=part,
+                                     node_wanted=node, **where)
                 continue
             known_name(link_key, link, link, links, "link", **where)
             if node not in links[link].nodes:
                 ends = " and ".join(repr(end) for end in links[link].nodes)
-                raise NotAllowed(link_key, link, f"that link ends at {ends}, it must end at {node_key} = {node!r}",
-                                 **where)
+                raise NotAllowed(link_key, link, code="link_not_at_node", ends=ends, node_key=node_key,
+                                 node_wanted=node, **where)
         inner, outer = (f"{part}_node" for part in (self.inner, self.outer))
         if getattr(item, inner) == getattr(item, outer):
-            raise NotAllowed(inner, getattr(item, inner), f"must be another node than {outer}", **where)
+            raise NotAllowed(inner, getattr(item, inner), code="same_node", outer=outer, **where)
         inner, outer = (f"{part}_link" for part in (self.inner, self.outer))
         if getattr(item, outer) is not None and getattr(item, outer) == getattr(item, inner):
-            raise NotAllowed(inner, getattr(item, inner), f"must be another link than {outer}", **where)
+            raise NotAllowed(inner, getattr(item, inner), code="same_link", outer=outer, **where)
 
     def may_be_wrong_references(self, items: ItemColumns[ItemType], around: Around) -> np.ndarray:
         nodes, links = ([places.of(items, f"{part}_{what}") for part in self.parts]
@@ -116,34 +114,25 @@ class RoundParts(JointType[ItemType, ArraysType]):
             for part in self.parts:
                 expansion = getattr(joints, f"{part}_thermal_expansion_per_K")
                 for index in np.flatnonzero(1 + expansion * changes <= 0)[:1]:
-                    raise NotAllowed(
-                        f"{part}_thermal_expansion_per_K", float(expansion[index]),
-                        f"the {part} has no radius left at a temperature change of {changes[index]:g} K",
-                        temperature_change_K=float(changes[index]), **self.where(joints.names[index]),
-                    )
+                    raise NotAllowed(f"{part}_thermal_expansion_per_K", float(expansion[index]), code="no_radius_left",
+                                     temperature_change_K=float(changes[index]), part=part, at_K=changes[index],
+                                     **self.where(joints.names[index]))
             for index in np.flatnonzero(~(self.clearance_m(joints, changes) > 0))[:1]:
-                raise NotAllowed(
-                    "radial_clearance_m", float(joints.radial_clearance_m[index]),
-                    f"the expansion of {self.inner} and {self.outer} closes it at a temperature change of "
-                    f"{changes[index]:g} K, it must stay above 0 [m] within the program",
-                    temperature_change_K=float(changes[index]), **self.where(joints.names[index]),
-                )
+                raise NotAllowed("radial_clearance_m", float(joints.radial_clearance_m[index]),
+                                 code="round_clearance_closes", temperature_change_K=float(changes[index]),
+                                 inner=self.inner, outer=self.outer, at_K=changes[index],
+                                 **self.where(joints.names[index]))
         inner, outer = (self.radius_m(joints, part) for part in (self.inner, self.outer))
         for index in np.flatnonzero(~(outer > inner))[:1]:
-            raise NotAllowed(
-                "radial_clearance_m", float(joints.radial_clearance_m[index]),
-                f"too small beside {self.inner}_radius_m = {inner[index]:g} [m], the radii come out equal",
-                **self.where(joints.names[index]),
-            )
+            raise NotAllowed("radial_clearance_m", float(joints.radial_clearance_m[index]),
+                             code="clearance_too_small_for", part=self.inner, radius_m=inner[index],
+                             **self.where(joints.names[index]))
         for index in np.flatnonzero(apart_m > joints.radial_clearance_m)[:1]:
             own, other = (truss.nodes.names[getattr(joints, f"{part}_node")[index]]
                           for part in (self.inner, self.outer))
-            raise NotAllowed(
-                f"{self.inner}_node", own,
-                f"it is {apart_m[index]:.6g} m from {self.outer}_node = {other!r}, "
-                f"the clearance is radial_clearance_m = {joints.radial_clearance_m[index]:g} [m]",
-                **self.where(joints.names[index]),
-            )
+            raise NotAllowed(f"{self.inner}_node", own, code="node_off_clearance", apart_m=apart_m[index],
+                             outer=self.outer, other=other, clearance_m=joints.radial_clearance_m[index],
+                             **self.where(joints.names[index]))
 
     def offset_m(self, truss: ResolvedTruss, joints: ArraysType) -> np.ndarray:
         """Return from the outer to the inner part's centre as drawn [m] (joints, 3)."""

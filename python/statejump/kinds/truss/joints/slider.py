@@ -197,16 +197,13 @@ class SliderType(AlongAxis[Slider, Sliders]):
         super().check_geometry(truss, joints, ranges_K)
         soft, played = np.isfinite(joints.stop_stiffness_N_per_m), joints.play_m > 0
         for index in np.flatnonzero(soft & ~joints.have_stops)[:1]:
-            raise NotAllowed("stop_stiffness_N_per_m", float(joints.stop_stiffness_N_per_m[index]),
-                             "needs a stop: give clearance_minus_m or clearance_plus_m",
+            raise NotAllowed("stop_stiffness_N_per_m", float(joints.stop_stiffness_N_per_m[index]), code="stop_missing",
                              **self.where(joints.names[index]))
         for index in np.flatnonzero(played & (joints.friction_limit_N == 0))[:1]:
-            raise NotAllowed("play_m", float(joints.play_m[index]),
-                             "needs friction, in series with which it is: give friction_coefficient and normal_force_N",
+            raise NotAllowed("play_m", float(joints.play_m[index]), code="slider_play_without_friction",
                              **self.where(joints.names[index]))
         for index in np.flatnonzero(played & (truss.sticking == "partial_slip"))[:1]:
-            raise NotAllowed("play_m", float(joints.play_m[index]),
-                             'must be 0 with reduced.sticking = "partial_slip": no contact with both is known',
+            raise NotAllowed("play_m", float(joints.play_m[index]), code="play_with_partial_slip",
                              **self.where(joints.names[index]))
 
     def engine_arrays(self, truss: ResolvedTruss, joints: Sliders) -> dict[str, Any]:

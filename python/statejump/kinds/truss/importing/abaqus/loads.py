@@ -92,7 +92,7 @@ def _chosen(model: Model, steps: list[Step]) -> int:
     """Return the place of the chosen step: that of --step, else the first static one, else the first."""
     wanted, count = model.deck.options.step or 0, len(steps) - 1
     if wanted > max(count, 1):
-        raise NotAllowed("--step", wanted, f"the deck has {count} step{'s' if count != 1 else ''}")
+        raise NotAllowed("--step", wanted, code="no_such_step", steps=count, plural="s" if count != 1 else "")
     if count == 0:
         return 0
     place: int = wanted or next((at for at, step in enumerate(steps) if at and step.static()), 1)

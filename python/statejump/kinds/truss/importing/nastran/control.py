@@ -112,7 +112,7 @@ def _choose(deck: Deck, control: Control, common: _Subcase, subcases: list[_Subc
     step = deck.options.step
     if step is not None and step not in [one.number for one in subcases] and not (step == 1 and not subcases):
         known = ", ".join(str(one.number) for one in subcases) or "1"
-        raise NotAllowed("--step", step, f"the subcases of the deck are {known}")
+        raise NotAllowed("--step", step, code="no_such_subcase", subcases=known)
     taken = next((one for one in subcases if step in (None, one.number)), common)
     if taken.name and taken.name != "SUBCASE":
         deck.refuse(taken.name, "it combines the results of other subcases", taken.line)

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a test expects of an error: its code and its fields. No test but that of the generated page compares sentences."""
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from math import isclose, isnan
+from typing import Any
+
+import pytest
+
+from statejump.core.errors import StatejumpError
+
+# Values of details are copied from the input or follow from it in a few operations of double precision, each with an
+# error of 1e-16. Their scale does not matter, for the tolerance is relative.
+ROUNDING = 1e-12
+
+
+class Failure:
+    """Code and fields of an error. Equal to every error, and to its JSON, that has them; further fields are free."""
+
+    def __init__(self, code: str, **fields: Any) -> None:
+        self.code, self.fields = code, fields
+        self._found = ""
+
+    def at(self, **more: Any) -> Failure:
+        """Return the same with further fields, as ``file``."""
+        return Failure(self.code, **self.fields, **more)
+
+    def __eq__(self, error: object) -> bool:
+        if isinstance(error, Failure):
+            return (self.code, self.fields) == (error.code, error.fields)
+        if isinstance(error, str):
+            error = json.loads(error)  # one line of --json
+        self._found = f" not {_shown(error)}"
+        if isinstance(error, StatejumpError):
+            return error.code == self.code and all(
+                _same(wanted, error.details[name] if name in error.details else getattr(error, name, None), name)
+                for name, wanted in self.fields.items())
+        if isinstance(error, Mapping):
+            known = {**error, **error.get("details", {})}
+            return known["code"] == self.code and all(
+                _same(json.loads(json.dumps(wanted)), known.get(name), name) for name, wanted in self.fields.items())
+        return False
+
+    def __hash__(self) -> int:
+        return hash(self.code)
+
+    def __repr__(self) -> str:
+        return f"failure({self.code!r}, {self.fields}){self._found}"
+
+
+failure = Failure
+
+
+def _shown(error: object) -> str:
+    if isinstance(error, StatejumpError):
+        return f"{error.code}: {error}, {error.details}"
+    return repr(error)
+
+
+def _same(wanted: Any, found: Any, name: str = "") -> bool:
+    if name == "file":  # which folder it is in differs from run to run
+        return f"/{found}".endswith(f"/{str(wanted).lstrip('/')}")
+    if isinstance(wanted, float) and isinstance(found, (int, float)) and not isinstance(found, bool):
+        return isclose(wanted, found, rel_tol=ROUNDING) or isnan(wanted) and isnan(found)
+    if isinstance(wanted, (list, tuple)) and isinstance(found, (list, tuple)):
+        return len(wanted) == len(found) and all(map(_same, wanted, found))
+    return bool(wanted == found)
+
+
+@contextmanager
+def failing(code: str, kind: type[BaseException] = StatejumpError, **fields: Any) -> Iterator[pytest.ExceptionInfo[Any]]:
+    """Inside of this an error with this code and these fields is raised.
+
+    :param kind: class of the error
+    """
+    with pytest.raises(kind) as caught:
+        yield caught
+    assert caught.value == failure(code, **fields)

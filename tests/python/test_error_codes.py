@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Codes of errors: each is declared once and used, and each error gives every field that its sentence names."""
+from __future__ import annotations
+
+import ast
+import pickle
+import string
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from conftest import REPOSITORY
+from statejump.core import errors
+from statejump.core.error_codes import CODES, Code
+
+PACKAGE = REPOSITORY / "python" / "statejump"
+TREES = [(path, ast.parse(path.read_text(encoding="utf-8"))) for path in sorted(PACKAGE.rglob("*.py"))]
+# Keywords of the classes of errors. What else an error is given is one of its details.
+OWN = {"what", "code", "file", "place", "case", "item", "key", "value", "allowed", "joint", "nodes", "time_s",
+       "temperature_change_K", "cause", "remedy", "beside", "section", "needs", "run", "fault", "loose", "address"}
+
+
+def names_in(declared: Code) -> set[str]:
+    """Return the details that the sentences of a code name."""
+    return {name for text in (declared.what, declared.beside, declared.cause, declared.remedy)
+            for _, name, _, _ in string.Formatter().parse(text) if name is not None}
+
+
+def given() -> Iterator[tuple[str, str, set[str], bool]]:
+    """Yield place, code, details of every error that the package makes, and whether it may have further ones."""
+    for path, tree in TREES:
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Call):
+                pairs = [(word.arg, word.value) for word in node.keywords]
+            elif isinstance(node, ast.Dict):
+                pairs = [(key.value if isinstance(key, ast.Constant) else None, value)
+                         for key, value in zip(node.keys, node.values)]
+            else:
+                continue
+            for name, value in pairs:
+                if name == "code":
+                    found = [one.value for one in ast.walk(value) if isinstance(one, ast.Constant)]
+                    for code in found if isinstance(value, (ast.Constant, ast.IfExp)) else []:
+                        if code in CODES or isinstance(value, ast.Constant):
+                            yield (f"{path.relative_to(PACKAGE)}:{node.lineno}", str(code),
+                                   {str(name) for name, _ in pairs} - OWN - {"None"}, None in dict(pairs) or isinstance(node, ast.Dict))
+
+
+GIVEN = list(given())
+CLASSES = {name for name, found in vars(errors).items()
+           if isinstance(found, type) and issubclass(found, errors.StatejumpError)}
+
+
+def test_every_error_has_a_declared_code_and_its_details() -> None:
+    assert len(GIVEN) > 400
+    wrong = [
+        f"{where}: {code} needs {names_in(CODES[code]) if code in CODES else 'a declaration'}, has {details}"
+        for where, code, details, open_ended in GIVEN
+        if code not in CODES or not (details <= names_in(CODES[code]) if open_ended else names_in(CODES[code]) == details)
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_only_errors_with_a_code_have_details() -> None:
+    for path, tree in TREES:
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Call) and getattr(node.func, "id", None) in CLASSES:
+                words = {word.arg for word in node.keywords} - {None}
+                open_ended = any(word.arg is None for word in node.keywords)
+                assert "code" in words or open_ended or words <= OWN, f"{path.relative_to(PACKAGE)}:{node.lineno}: {words - OWN}"
+
+
+def test_every_declared_code_is_used() -> None:
+    texts = {node.value for path, tree in TREES if path.name != "error_codes.py"
+             for node in ast.walk(tree) if isinstance(node, ast.Constant)}
+    from_engine = {text for path in (REPOSITORY / "engine" / "src" / "failure.cpp",
+                                     REPOSITORY / "geometry" / "include" / "statejump" / "geometry" / "mesh_failure.hpp")
+                   for text in path.read_text(encoding="utf-8").split('"')}
+    used = texts | from_engine | {"out_of_range"}
+    assert not [code for code in CODES if code not in used and code.removeprefix("bore_") not in used]
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_sentences_follow_one_form(code: str) -> None:
+    declared = CODES[code]
+    parts = [part for part in (declared.what, declared.beside, declared.cause, declared.remedy) if part]
+    assert bool(parts) != bool(declared.text), "a code has a sentence or, where each error gives its own, a text"
+    assert all(part == part.strip() and not part.endswith(".") for part in parts)
+    assert code == code.lower() and code.isidentifier()
+
+
+def test_code_and_details_reach_programs(tmp_path: Path) -> None:
+    error = errors.NotAllowed("joint.play_m", 0.1, code="no_radius_left", part="journal", at_K=-1000.0)
+    for one in (error, pickle.loads(pickle.dumps(error))):
+        assert (one.code, one.details) == ("no_radius_left", {"part": "journal", "at_K": -1000.0})
+        assert str(one) == ("joint.play_m = 0.1 is not allowed: the journal has no radius left at a temperature change of "
+                            "-1000 K")
+        assert one.fields()["code"] == "no_radius_left" and one.fields()["details"] == {"part": "journal", "at_K": -1000.0}
+    assert errors.NotAllowed("a", tmp_path).code == "not_allowed"
+    assert errors.StatejumpError(code="several_values", path=tmp_path).fields()["details"] == {"path": str(tmp_path)}
+    with pytest.raises(KeyError):
+        errors.NotAllowed("a", 1, code="no_radius_left")
+    with pytest.raises(KeyError):
+        errors.NotAllowed("a", 1, code="no_such_code")
