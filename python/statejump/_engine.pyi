@@ -367,6 +367,7 @@ class FrictionProblem(metaclass=_pybind11_type):
 
 _Items = Mapping[str, Any]
 
+def truss_elements() -> dict[str, _Fields]: ...
 def truss_joints() -> dict[str, _Fields]: ...
 def iwan_slack_N(
     tangent_stiffness_N_per_m: float, slip_force_N: float, exponent: float, stiffness_ratio: float, elements: int,
@@ -374,9 +375,7 @@ def iwan_slack_N(
 ) -> float: ...
 def truss_path(
     nodes: _Items,
-    links: _Items,
-    springs: _Items,
-    torsion_springs: _Items,
+    elements: Mapping[str, _Items],
     joints: Mapping[str, _Items],
     programs: Sequence[ThermalProgram],
     *,
@@ -392,9 +391,7 @@ def truss_path(
 ) -> _Fields: ...
 def truss_motion(
     nodes: _Items,
-    links: _Items,
-    springs: _Items,
-    torsion_springs: _Items,
+    elements: Mapping[str, _Items],
     joints: Mapping[str, _Items],
     programs: Sequence[ThermalProgram],
     inertia: _Items,

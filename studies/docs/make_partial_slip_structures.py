@@ -60,7 +60,7 @@ def bar(change_K: float, **more: Any) -> dict[str, Any]:
 def constants() -> tuple[float, float, float]:
     """Return stiffness of the bar, of its contact [N/m], and free expansion [m/K]."""
     arrays = solve.engine_items(parse_case(bar(1.0) | {"reduced": {"sticking": "elastic"}}).resolve())
-    links, slider = arrays["links"], arrays["joints"]["slider"]
+    links, slider = arrays["elements"]["links"], arrays["joints"]["slider"]
     length = links["stress_free_length_m"][0]
     return (float(links["axial_stiffness_N"][0] / length), float(slider["tangential_stiffness_N_per_m"][0]),
             float(length * links["thermal_expansion_per_K"][0]))

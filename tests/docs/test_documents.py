@@ -86,7 +86,7 @@ def test_notebook_is_that_of_its_page(page: Path) -> None:
 
 def test_files_that_contributing_lists_exist() -> None:
     text = (REPOSITORY / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    for heading in "Adding a kind", "Adding a law", "Adding a joint":
+    for heading in "Adding a kind", "Adding a law", "Adding an element", "Adding a joint":
         section = text.split(f"## {heading}\n", 1)[1].split("\n## ", 1)[0]
         listed = [name for block in section.split("```\n")[1::2] for name in block.split()]
         assert listed

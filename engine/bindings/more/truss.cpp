@@ -111,33 +111,38 @@ void give_back_memory() {
 #endif
 }
 
-/// Adds the joints of a type, whose table has the arrays that its parameters are named by.
+/// Items of a type of element or joint, whose table has the columns of its parameters.
 template <class Type>
-void add_joints(const Table& table, truss::Model& model) {
-  std::vector<Type> joints(table.size());
-  for (std::size_t i = 0; i < table.size(); ++i) joints[i].name = table.name(i);
+std::vector<Type> items_of(const Table& table) {
+  std::vector<Type> items(table.size());
+  for (std::size_t i = 0; i < table.size(); ++i) items[i].name = table.name(i);
   for (const truss::Parameter<Type>& parameter : Type::parameters()) {
+    const auto width = static_cast<std::size_t>(parameter.width);
+    const auto part = static_cast<std::size_t>(parameter.part);
     const auto fill = [&](auto member) {
-      using Value = std::decay_t<decltype(joints.front().*member)>;
+      using Value = std::decay_t<decltype(items.front().*member)>;
+      const auto copy = [&](const auto& values) {
+        for (std::size_t i = 0; i < table.size(); ++i) {
+          items[i].*member = values.data()[width * i + part];
+        }
+      };
       if constexpr (std::is_same_v<Value, double>) {
-        const auto values = table.numbers(parameter.key);
-        for (std::size_t i = 0; i < table.size(); ++i) joints[i].*member = values.data()[i];
+        copy(table.numbers(parameter.key, parameter.width));
       } else if constexpr (std::is_same_v<Value, int>) {
-        const auto values = table.indices(parameter.key);
-        for (std::size_t i = 0; i < table.size(); ++i) joints[i].*member = values.data()[i];
+        copy(table.indices(parameter.key, parameter.width));
+      } else if constexpr (std::is_same_v<Value, bool>) {
+        copy(table.flags(parameter.key, parameter.width));
       } else {
         const auto values = table.numbers(parameter.key, 3);
-        for (std::size_t i = 0; i < table.size(); ++i) joints[i].*member = row(values, i);
+        for (std::size_t i = 0; i < table.size(); ++i) items[i].*member = row(values, i);
       }
     };
     std::visit(fill, parameter.member);
   }
-  model.joints.reserve(model.joints.size() + joints.size());
-  for (Type& joint : joints) model.joints.emplace_back(std::move(joint));
+  return items;
 }
 
-truss::Model make_model(const py::dict& nodes_, const py::dict& links_, const py::dict& springs_,
-                        const py::dict& torsion_springs_, const py::dict& joints_,
+truss::Model make_model(const py::dict& nodes_, const py::dict& elements_, const py::dict& joints_,
                         std::vector<thermal::Program> programs) {
   truss::Model model;
   model.programs = std::move(programs);
@@ -167,48 +172,17 @@ truss::Model make_model(const py::dict& nodes_, const py::dict& links_, const py
       model.nodes.push_back(std::move(node));
     }
   }
-  {
-    const Table table("links", links_);
-    const auto ends = table.indices("nodes", 2);
-    const auto stiffness = table.numbers("axial_stiffness_N");
-    const auto length = table.numbers("stress_free_length_m");
-    const auto expansion = table.numbers("thermal_expansion_per_K");
-    const auto program = table.indices("program");
-    const auto fraction = table.numbers("temperature_fraction");
-    model.links.reserve(table.size());
-    for (std::size_t i = 0; i < table.size(); ++i) {
-      model.links.push_back({table.name(i), ends.data()[2 * i], ends.data()[2 * i + 1],
-                             stiffness.data()[i], length.data()[i], expansion.data()[i],
-                             program.data()[i], fraction.data()[i]});
-    }
-  }
-  {
-    const Table table("springs", springs_);
-    const auto ends = table.indices("nodes", 2);
-    const auto stiffness = table.numbers("stiffness_N_per_m");
-    const auto length = table.numbers("free_length_m");
-    const auto cable = table.flags("cable");
-    model.springs.reserve(table.size());
-    for (std::size_t i = 0; i < table.size(); ++i) {
-      model.springs.push_back({table.name(i), ends.data()[2 * i], ends.data()[2 * i + 1],
-                               stiffness.data()[i], length.data()[i], cable.data()[i]});
-    }
-  }
-  {
-    const Table table("torsion_springs", torsion_springs_);
-    const auto links = table.indices("links", 2);
-    const auto stiffness = table.numbers("stiffness_N_m_per_rad");
-    const auto bias = table.numbers("bias_rad");
-    const auto axis = table.numbers("axis", 3);
-    model.torsion_springs.reserve(table.size());
-    for (std::size_t i = 0; i < table.size(); ++i) {
-      model.torsion_springs.push_back({table.name(i), links.data()[2 * i], links.data()[2 * i + 1],
-                                       stiffness.data()[i], bias.data()[i], row(axis, i)});
-    }
-  }
+  truss::for_each_element_type([&]<std::size_t k>(std::integral_constant<std::size_t, k>) {
+    using Type = truss::ElementType<k>;
+    if (!elements_.contains(Type::table)) return;
+    const Table table(Type::table, elements_[Type::table].template cast<py::dict>());
+    std::get<k>(model.lists()) = items_of<Type>(table);
+  });
   truss::for_each_joint_type([&]<class Type>(std::type_identity<Type>) {
     if (joints_.contains(Type::kind)) {
-      add_joints<Type>(Table(Type::kind, joints_[Type::kind].template cast<py::dict>()), model);
+      const Table table(Type::kind, joints_[Type::kind].template cast<py::dict>());
+      model.joints.reserve(model.joints.size() + table.size());
+      for (Type& joint : items_of<Type>(table)) model.joints.emplace_back(std::move(joint));
     }
   });
   return model;
@@ -281,8 +255,26 @@ py::dict states_dict(const truss::Model& model, const std::vector<truss::State>&
   d["time_s"] = scalars(states, &State::time);
   d["temperature_change_K"] = scalars(states, &State::temperature_change);
   d["displacement_m"] = stacked(states, &State::displacement, 3);
-  d["axial_force_N"] = stacked(states, &State::axial_force, 1);
-  d["tension_N"] = stacked(states, &State::tension, 1);
+  truss::for_each_element_type([&]<std::size_t k>(std::integral_constant<std::size_t, k>) {
+    using Type = truss::ElementType<k>;
+    const std::size_t count = std::get<k>(model.lists()).size();
+    py::ssize_t offset = 0;
+    for (const truss::Output& output : Type::outputs()) {
+      std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(states.size()),
+                                     static_cast<py::ssize_t>(count)};
+      if (output.width > 1) shape.push_back(output.width);
+      py::array_t<double> column(shape);
+      double* to = column.mutable_data();
+      for (const State& state : states) {
+        const auto all = truss::element_output<Type>(model, state);
+        Eigen::Map<Eigen::MatrixXd>(to, output.width, all.cols()) =
+            all.middleRows(offset, output.width);
+        to += output.width * all.cols();
+      }
+      d[output.key] = column;
+      offset += output.width;
+    }
+  });
   truss::for_each_joint_type([&]<class Type>(std::type_identity<Type>) {
     const OfType these = of_type<Type>(model);
     const std::string kind = Type::kind;
@@ -487,29 +479,45 @@ py::dict path_dict(const truss::Model& model, const truss::Path& path) {
   return result;
 }
 
+/// What Python reads of a type of element or joint.
+template <class Type>
+py::dict type_dict() {
+  py::list parameters;
+  for (const truss::Parameter<Type>& parameter : Type::parameters()) {
+    py::dict one;
+    one["key"] = parameter.key;
+    one["unit"] = parameter.unit;
+    one["source"] = parameter.source;
+    parameters.append(one);
+  }
+  py::list outputs;
+  for (const truss::Output& output : Type::outputs()) outputs.append(output.key);
+  py::dict made;
+  made["parameters"] = parameters;
+  made["outputs"] = outputs;
+  return made;
+}
+
 }  // namespace
 
 void bind_truss(py::module_& module) {
   module.def(
+      "truss_elements",
+      [] {
+        py::dict tables;
+        truss::for_each_element_type([&]<std::size_t k>(std::integral_constant<std::size_t, k>) {
+          tables[truss::ElementType<k>::table] = type_dict<truss::ElementType<k>>();
+        });
+        return tables;
+      },
+      "Types of elements of a truss: table -> parameters (key, unit, source) and keys of outputs.\n"
+      "A key that is listed n times is an array of n columns.");
+  module.def(
       "truss_joints",
       [] {
         py::dict kinds;
-        truss::for_each_joint_type([&]<class Type>(std::type_identity<Type>) {
-          py::list parameters;
-          for (const truss::Parameter<Type>& parameter : Type::parameters()) {
-            py::dict one;
-            one["key"] = parameter.key;
-            one["unit"] = parameter.unit;
-            one["source"] = parameter.source;
-            parameters.append(one);
-          }
-          py::list outputs;
-          for (const truss::Output& output : Type::outputs()) outputs.append(output.key);
-          py::dict kind;
-          kind["parameters"] = parameters;
-          kind["outputs"] = outputs;
-          kinds[Type::kind] = kind;
-        });
+        truss::for_each_joint_type(
+            [&]<class Type>(std::type_identity<Type>) { kinds[Type::kind] = type_dict<Type>(); });
         return kinds;
       },
       "Types of joints of a truss: kind -> parameters (key, unit, source) and keys of outputs.");
@@ -531,14 +539,12 @@ void bind_truss(py::module_& module) {
       "Largest error [N] of a first loading of an Iwan joint in Jenkins elements.");
   module.def(
       "truss_path",
-      [](const py::dict& nodes, const py::dict& links, const py::dict& springs,
-         const py::dict& torsion_springs, const py::dict& joints,
+      [](const py::dict& nodes, const py::dict& elements, const py::dict& joints,
          std::vector<thermal::Program> programs, int increments_per_branch, bool locate_events,
          double event_tolerance, double energy_tolerance, bool cycle_ends_only,
          std::vector<double> problem_times, const std::string& start_friction,
          const py::object& progress, const py::object& trace) {
-        const truss::Model model =
-            make_model(nodes, links, springs, torsion_springs, joints, std::move(programs));
+        const truss::Model model = make_model(nodes, elements, joints, std::move(programs));
         truss::Options options;
         options.start_friction = start_friction_of(start_friction);
         options.increments_per_branch = increments_per_branch;
@@ -557,8 +563,7 @@ void bind_truss(py::module_& module) {
         }
         return path_dict(model, path);
       },
-      py::arg("nodes"), py::arg("links"), py::arg("springs"), py::arg("torsion_springs"),
-      py::arg("joints"), py::arg("programs"), py::kw_only(),
+      py::arg("nodes"), py::arg("elements"), py::arg("joints"), py::arg("programs"), py::kw_only(),
       py::arg("increments_per_branch") = truss::Options().increments_per_branch,
       py::arg("locate_events") = truss::Options().locate_events,
       py::arg("event_tolerance") = truss::Options().event_tolerance,
@@ -569,10 +574,7 @@ void bind_truss(py::module_& module) {
       "Quasi-static path of a truss: exact Coulomb friction at every joint.\n\n"
       "Every kind of item is a dict of arrays, one entry per item, and 'names'. Index -1: ground.\n"
       "nodes: position_m (n, 3), fixed (n, 3), guide_normal (n, 3), force_N (n, 3)\n"
-      "links: nodes (m, 2), axial_stiffness_N, stress_free_length_m, thermal_expansion_per_K,\n"
-      "  program, temperature_fraction\n"
-      "springs: nodes (k, 2), stiffness_N_per_m, free_length_m, cable\n"
-      "torsion_springs: links (t, 2), stiffness_N_m_per_rad, bias_rad, axis (t, 3)\n"
+      "elements: table -> such a dict, with the arrays that truss_elements() lists for it\n"
       "joints: kind -> such a dict, with the arrays that truss_joints() lists for it\n\n"
       "Returns states and cycle_ends (dicts of arrays, first axis the state; axial force positive\n"
       "in compression), events, problems (frictional contact problems of the first steps that end "
@@ -588,15 +590,13 @@ void bind_truss(py::module_& module) {
       "temperature for mechanisms, unloaded joints and failed equilibrium.");
   module.def(
       "truss_motion",
-      [](const py::dict& nodes, const py::dict& links, const py::dict& springs,
-         const py::dict& torsion_springs, const py::dict& joints,
+      [](const py::dict& nodes, const py::dict& elements, const py::dict& joints,
          std::vector<thermal::Program> programs, const py::dict& inertia, long steps,
          long sample_every, double theta, double displacement_tolerance_m, double restitution,
          int watched_node, const py::list& drives, bool start_drawn,
          const std::string& start_friction, const std::string& friction_law,
          const py::object& progress) {
-        const truss::Model model =
-            make_model(nodes, links, springs, torsion_springs, joints, std::move(programs));
+        const truss::Model model = make_model(nodes, elements, joints, std::move(programs));
         const auto numbers = [&](const char* key) { return inertia[key].cast<Eigen::VectorXd>(); };
         const truss::Inertia masses{numbers("link_mass_kg"),
                                     numbers("node_mass_kg"),
@@ -634,9 +634,9 @@ void bind_truss(py::module_& module) {
         }
         return motion_dict(model, motion);
       },
-      py::arg("nodes"), py::arg("links"), py::arg("springs"), py::arg("torsion_springs"),
-      py::arg("joints"), py::arg("programs"), py::arg("inertia"), py::kw_only(), py::arg("steps"),
-      py::arg("sample_every"), py::arg("theta") = 0.5, py::arg("displacement_tolerance_m") = 0.0,
+      py::arg("nodes"), py::arg("elements"), py::arg("joints"), py::arg("programs"),
+      py::arg("inertia"), py::kw_only(), py::arg("steps"), py::arg("sample_every"),
+      py::arg("theta") = 0.5, py::arg("displacement_tolerance_m") = 0.0,
       py::arg("restitution") = 0.0, py::arg("watched_node") = -1, py::arg("drives") = py::list(),
       py::arg("start_drawn") = false, py::arg("start_friction") = "stuck",
       py::arg("friction_law") = "", py::arg("progress") = py::none(),

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "elements/writer.hpp"
 #include "parallel.hpp"
 #include "system.hpp"
 
@@ -69,159 +70,20 @@ void Assembly::record() {
 
 namespace detail {
 
-namespace {
-
-/// Adds forces on nodes and their derivatives, through the nodes' free directions.
-class NodeWriter {
- public:
-  NodeWriter(const std::vector<JointWriter::Place>& places, AssemblyStrand& to)
-      : places_(places), to_(to) {}
-
-  const JointWriter::Place& at(int node) const { return places_[index(node)]; }
-  void force(int node, const Vector3d& value) {
-    const JointWriter::Place& place = at(node);
-    for (int i = 0; i < place.freedoms; ++i) {
-      to_.residual(place.row + i, place.directions->col(i).dot(value));
-    }
-  }
-  /// Derivative of a node's force by another node's displacement: `value(direction of the force,
-  /// direction of the displacement)`.
-  template <class Value>
-  void block(int row_node, int column_node, Value&& value) {
-    const JointWriter::Place& rows = at(row_node);
-    const JointWriter::Place& columns = at(column_node);
-    to_.block(rows.row, rows.freedoms, columns.row, columns.freedoms, value);
-  }
-  /// A vector along the directions in which a node moves.
-  Vector3d seen(int node, const Vector3d& vector) const {
-    return at(node).directions->transpose() * vector;
-  }
-
- private:
-  const std::vector<JointWriter::Place>& places_;
-  AssemblyStrand& to_;
-};
-
-}  // namespace
-
-void System::assemble_bars(const Region& region, const std::vector<double>& changes,
-                           AssemblyStrand& to) const {
-  const Model& model = *model_;
-  NodeWriter nodes(place_, to);
+void System::assemble_elements(const Region& region, const std::vector<double>& changes,
+                               AssemblyStrand& to) const {
+  ElementWriter writer(dofs_, to);
   for (const int node : region.loaded) {
-    const Vector3d& load = model.nodes[index(node)].load;
-    nodes.force(node, -load);
-    to.carries(load.lpNorm<Eigen::Infinity>());
+    const Vector3d& load = model_->nodes[index(node)].load;
+    writer.force(node, -load);
+    writer.carries(load.lpNorm<Eigen::Infinity>());
   }
-
-  const auto moved_between = [&](int first, int second) -> Vector3d {
-    return to.moved().col(second) - to.moved().col(first);
-  };
-  const auto bar = [&](int first, int second, const Vector3d& direction, double length,
-                       const Axial& axial) {
-    nodes.force(first, -axial.tension * direction);
-    nodes.force(second, axial.tension * direction);
-    to.carries(axial.tension);
-    if (to.residual_only()) return;
-    // Along the bar its stiffness, across it that of the tension.
-    const double across = axial.tension / length;
-    const double more = axial.stiffness - across;
-    const auto own = [&](int node, const Vector3d& along) {
-      nodes.block(node, node, [&](int i, int j) {
-        return more * along[i] * along[j] + (i == j ? across : 0.0);
-      });
-    };
-    const JointWriter::Place& one = nodes.at(first);
-    const JointWriter::Place& other = nodes.at(second);
-    // Of the places of a node that is fixed there are none.
-    if (one.freedoms == 0 || other.freedoms == 0) {
-      if (one.freedoms > 0) own(first, nodes.seen(first, direction));
-      if (other.freedoms > 0) own(second, nodes.seen(second, direction));
-      return;
+  const ElementState state(drawn_, to.moved(), changes);
+  each_element_type([&](const auto& elements, const auto& frames, std::size_t type) {
+    for (const int i : region.elements[type]) {
+      elements[index(i)].evaluate(frames[index(i)], state, writer);
     }
-    const Vector3d at_first = nodes.seen(first, direction);
-    const Vector3d at_second =
-        one.directions == other.directions ? at_first : nodes.seen(second, direction);
-    const Matrix3d both = one.directions->transpose() * *other.directions;
-    own(first, at_first);
-    nodes.block(first, second, [&](int i, int j) {
-      return -(more * at_first[i] * at_second[j] + across * both(i, j));
-    });
-    nodes.block(second, first, [&](int i, int j) {
-      return -(more * at_second[i] * at_first[j] + across * both(j, i));
-    });
-    own(second, at_second);
-  };
-  for (const int i : region.links) {
-    const Link& link = model.links[index(i)];
-    const Lengths length = lengths_between(link.first, link.second, to.moved());
-    const double change = link.temperature_fraction * changes[index(link.program)];
-    bar(link.first, link.second, length.along / length.now, length.now,
-        link_axial(link, length.growth, length.drawn, change));
-  }
-  for (const int i : region.springs) {
-    const AxialSpring& spring = model.springs[index(i)];
-    const Lengths length = lengths_between(spring.first, spring.second, to.moved());
-    const Axial axial = spring_axial(spring, length);
-    if (spring.cable) to.piece(axial.stiffness > 0.0 ? 0 : 1);
-    bar(spring.first, spring.second, length.along / length.now, length.now, axial);
-  }
-
-  for (const int i : region.torsion_springs) {
-    const TorsionSpring& spring = model.torsion_springs[index(i)];
-    const Matrix32& plane = torsion_plane_[index(i)];
-    std::array<int, 2> links{spring.first_link, spring.second_link};
-    // The angle runs from the first link to the second; that of a single link from the ground.
-    std::array<double, 2> sign{-1.0, 1.0};
-    if (spring.second_link < 0) sign[0] = 1.0;
-    double angle = 0.0;
-    std::array<Vector2d, 2> now;
-    for (std::size_t k = 0; k < 2; ++k) {
-      if (links[k] < 0) continue;
-      const Link& link = model.links[index(links[k])];
-      const Vector2d before = plane.transpose() * (drawn(link.second) - drawn(link.first));
-      const Vector2d moved = plane.transpose() * moved_between(link.first, link.second);
-      now[k] = before + moved;
-      angle += sign[k] * turn_by(before, moved);
-    }
-    const double moment = spring.stiffness * (angle - spring.free_angle);
-    // The angle by the places of the ends: that of the second of a link as turn, of the first
-    // against.
-    struct End {
-      std::size_t link;
-      int node;
-      Vector3d turns;    ///< Derivative of the angle along the node's directions [rad/m].
-      Vector3d outward;  ///< Direction of the link over its length, along the same [1/m].
-    };
-    std::array<End, 4> ends;
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < 2; ++k) {
-      if (links[k] < 0) continue;
-      const Link& link = model.links[index(links[k])];
-      const double squared = now[k].squaredNorm();
-      const Vector3d turns = plane * (sign[k] / squared * turned_left(now[k]));
-      nodes.force(link.second, moment * turns);
-      nodes.force(link.first, -moment * turns);
-      to.carries(moment * turns.norm());
-      if (to.residual_only()) continue;
-      const Vector3d outward = plane * (now[k] / squared);
-      ends[count++] = {k, link.second, nodes.seen(link.second, turns),
-                       nodes.seen(link.second, outward)};
-      ends[count++] = {k, link.first, -nodes.seen(link.first, turns),
-                       -nodes.seen(link.first, outward)};
-    }
-    for (std::size_t a = 0; a < count; ++a) {
-      const End& by = ends[a];
-      for (std::size_t b = 0; b < count; ++b) {
-        const End& of = ends[b];
-        const double bends = by.link == of.link ? moment : 0.0;
-        nodes.block(by.node, of.node, [&](int m, int n) {
-          return spring.stiffness * by.turns[m] * of.turns[n] -
-                 bends * (by.outward[m] * of.turns[n] + by.turns[m] * of.outward[n]);
-        });
-      }
-    }
-  }
+  });
 }
 
 template <class Write>
@@ -249,10 +111,10 @@ void System::assemble(Parts parts, const VectorXd& z, double time, const StepSta
   displacements(z, to.moved);
   const std::vector<double> changes = temperature_changes(time);
   const auto write = [&](const Region& region, AssemblyStrand& strand) {
-    if (parts != Parts::joints) assemble_bars(region, changes, strand);
-    if (parts == Parts::bars) return;
+    if (parts != Parts::joints) assemble_elements(region, changes, strand);
+    if (parts == Parts::elements) return;
     for (const int i : region.joints) {
-      JointWriter to_joint = writer(i, strand);
+      JointWriter to_joint = joint_writer(i, strand);
       Trial at = trial(i, z, to.moved, time, start, joints, opening);
       at.in_motion = parts == Parts::joints;
       const JointStatus status = statuses[index(i)];
@@ -269,7 +131,7 @@ void System::evaluate_joint(int joint, const VectorXd& z, double time, const Ste
   to.entries.clear();
   to.residual.segment(force_row(joint), force_count(joint)).setZero();
   AssemblyStrand strand(to, 0);
-  JointWriter to_joint = writer(joint, strand);
+  JointWriter to_joint = joint_writer(joint, strand);
   const Trial at = trial(joint, z, time, start, model, opening);
   std::visit([&](const auto& one) { one.evaluate(at, status, to_joint); },
              model_->joints[index(joint)]);
@@ -283,24 +145,17 @@ VectorXd System::heating(const VectorXd& z, double time, const StepStart& start,
   displacements(z, to.moved);
   const std::vector<double> changes = temperature_changes(time);
   const auto write = [&](const Region& region, AssemblyStrand& strand) {
-    NodeWriter nodes(place_, strand);
-    for (const int i : region.links) {
-      const Link& link = model.links[index(i)];
-      const double growth = link.stress_free_length * link.thermal_expansion *
-                            link.temperature_fraction * program_rates[index(link.program)];
-      if (growth == 0.0) continue;
-      // N = E A (L/l_T − 1) by l_T.
-      const Lengths length = lengths_between(link.first, link.second, to.moved);
-      const double change = link.temperature_fraction * changes[index(link.program)];
-      const double free = thermal::length(link.stress_free_length, link.thermal_expansion, change);
-      const Vector3d tension = -link.axial_stiffness * growth / (free * free) * length.along;
-      nodes.force(link.first, -tension);
-      nodes.force(link.second, tension);
-    }
+    ElementWriter writer(dofs_, strand);
+    const ElementState state(drawn_, to.moved, changes);
+    each_element_type([&](const auto& elements, const auto& frames, std::size_t type) {
+      for (const int i : region.elements[type]) {
+        elements[index(i)].thermal_rate(frames[index(i)], state, program_rates, writer);
+      }
+    });
     for (const int i : region.joints) {
       const JointFrame& frame = frames_[index(i)];
       if (frame.program < 0) continue;
-      JointWriter to_joint = writer(i, strand);
+      JointWriter to_joint = joint_writer(i, strand);
       const Trial at = trial(i, z, to.moved, time, start, JointModel::friction, 1.0);
       const double rate = frame.temperature_fraction * program_rates[index(frame.program)];
       std::visit([&](const auto& one) { one.warm(at, statuses[index(i)], rate, to_joint); },
@@ -321,11 +176,10 @@ VectorXd System::slide_rates(const VectorXd& z, double time, const StepStart& st
     // The joint alone: the unknowns of its nodes, then its forces.
     constexpr int forces_from = 3 * most_joint_nodes;
     const JointFrame& frame = frames_[index(i)];
-    std::array<JointWriter::Place, most_joint_nodes> places;
+    std::array<NodeDofs, most_joint_nodes> places;
     VectorXd own_rate = VectorXd::Zero(forces_from + most_joint_forces);
     for (int k = 0; k < most_joint_nodes; ++k) {
-      const int node = frame.nodes[index(k)];
-      const JointWriter::Place& place = node < 0 ? place_.back() : place_[index(node)];
+      const NodeDofs& place = dofs_.at(frame.nodes[index(k)]);
       places[index(k)] = {3 * k, place.freedoms, place.directions};
       own_rate.segment(3 * k, place.freedoms) = rate.segment(place.row, place.freedoms);
     }
@@ -356,11 +210,10 @@ VectorXd System::slide_rates(const VectorXd& z, double time, const StepStart& st
   return rates;
 }
 
-JointWriter System::writer(int joint, AssemblyStrand& to) const {
+JointWriter System::joint_writer(int joint, AssemblyStrand& to) const {
   JointWriter made(to);
   for (std::size_t k = 0; k < most_joint_nodes; ++k) {
-    const int node = frames_[index(joint)].nodes[k];
-    made.places[k] = node < 0 ? place_.back() : place_[index(node)];
+    made.places[k] = dofs_.at(frames_[index(joint)].nodes[k]);
   }
   made.first_force = force_row_[index(joint)];
   return made;
@@ -372,8 +225,8 @@ void System::evaluate(const VectorXd& z, double time, const StepStart& start,
   assemble(Parts::all, z, time, start, statuses, joints, opening, to);
 }
 
-void System::evaluate_bars(const VectorXd& z, double time, Assembly& to) const {
-  assemble(Parts::bars, z, time, {}, {}, JointModel::friction, 1.0, to);
+void System::evaluate_elements(const VectorXd& z, double time, Assembly& to) const {
+  assemble(Parts::elements, z, time, {}, {}, JointModel::friction, 1.0, to);
 }
 
 void System::evaluate_joints(const VectorXd& z, double time, const StepStart& start,

@@ -8,6 +8,7 @@
 
 #include "hermite.hpp"
 #include "system.hpp"
+#include "thermal_step.hpp"
 
 namespace statejump::truss::detail {
 
@@ -17,73 +18,6 @@ namespace {
 /// as starting a thread.
 constexpr std::size_t parts_at_once = 5000;
 
-/// Abscissae and weights on (0, 1) of the quadrature of order 8.
-constexpr std::array<std::pair<double, double>, 4> gauss_legendre{
-    {{0.069431844202973712, 0.17392742256872693},
-     {0.33000947820757187, 0.32607257743127307},
-     {0.66999052179242813, 0.32607257743127307},
-     {0.93056815579702629, 0.17392742256872693}}};
-
-/// Angle between two links from the drawn shape, or of one from the ground [rad].
-double torsion_angle(const Model& model, const TorsionSpring& spring, const Matrix32& plane,
-                     const Eigen::Matrix3Xd& displacement) {
-  const auto turned = [&](int i) {
-    const Link& link = model.links[index(i)];
-    const Vector2d drawn = plane.transpose() * (model.nodes[index(link.second)].position -
-                                                model.nodes[index(link.first)].position);
-    const Vector2d moved =
-        plane.transpose() * (displacement.col(link.second) - displacement.col(link.first));
-    return turn_by(drawn, moved);
-  };
-  const double first = turned(spring.first_link);
-  return spring.second_link < 0 ? first : turned(spring.second_link) - first;
-}
-
-/// Where in a step the work of a program's temperature is asked: what the program says there.
-struct Quadrature {
-  struct Point {
-    double share;
-    double temperature_change;  ///< [K]
-    double warmed;              ///< Weight, a change of the temperature [K].
-  };
-  std::array<Point, gauss_legendre.size()> points{};
-  std::size_t count = 0;
-};
-
-/// By the trapezoidal rule of a straight way, else of fourth order.
-std::vector<Quadrature> quadratures(const Way& way, const Model& model) {
-  std::vector<Quadrature> made;
-  for (const thermal::Program& program : model.programs) {
-    Quadrature of;
-    const auto add = [&](double share, double when, double warmed) {
-      of.points[of.count++] = {share, program.temperature_change(when), warmed};
-    };
-    if (way.is_straight()) {
-      const double warmed =
-          program.temperature_change(way.to_time) - program.temperature_change(way.from_time);
-      add(0.0, way.from_time, 0.5 * warmed);
-      add(1.0, way.to_time, 0.5 * warmed);
-    } else {
-      for (const auto& [share, weight] : gauss_legendre) {
-        const double when = way.from_time + share * way.step();
-        add(share, when, weight * way.step() * program.temperature_rate(when));
-      }
-    }
-    made.push_back(of);
-  }
-  return made;
-}
-
-/// Integral of a function of share and temperature of a step by the temperature of a program [K].
-template <class Function>
-double along(const Quadrature& of, Function&& function) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < of.count; ++k) {
-    sum += of.points[k].warmed * function(of.points[k].share, of.points[k].temperature_change);
-  }
-  return sum;
-}
-
 }  // namespace
 
 void System::describe(const VectorXd& z, double time, const StepStart& now, State& state) const {
@@ -91,8 +25,7 @@ void System::describe(const VectorXd& z, double time, const StepStart& now, Stat
   const auto size = [](const auto& list) { return static_cast<Eigen::Index>(list.size()); };
   state.time = time;
   state.temperature_change = model.temperature_change(0, 1.0, time);
-  state.axial_force.resize(size(model.links));
-  state.tension.resize(size(model.springs));
+  state.element_output.resize(element_outputs_);
   state.joint_output.resize(outputs_);
   state.joint_status = now.statuses;
   displacements(z, state.displacement);
@@ -110,28 +43,18 @@ void System::describe(const VectorXd& z, double time, const StepStart& now, Stat
     });
     state.elastic_energy = std::accumulate(energies.begin(), energies.end(), state.elastic_energy);
   };
-  const auto axial_energy = [](const Axial& force) {
-    return force.stiffness > 0.0 ? 0.5 * force.tension * force.tension / force.stiffness : 0.0;
-  };
   const std::vector<double> changes = temperature_changes(time);
-  add_energies(model.links, parts_at_once, [&](std::size_t i, const Link& link) {
-    const Lengths length = lengths_between(link.first, link.second, moved);
-    const double change = link.temperature_fraction * changes[index(link.program)];
-    const Axial force = link_axial(link, length.growth, length.drawn, change);
-    state.axial_force[static_cast<Eigen::Index>(i)] = -force.tension;
-    return axial_energy(force);
-  });
-  add_energies(model.springs, parts_at_once, [&](std::size_t i, const AxialSpring& spring) {
-    const Axial force = spring_axial(spring, lengths_between(spring.first, spring.second, moved));
-    state.tension[static_cast<Eigen::Index>(i)] = force.tension;
-    return axial_energy(force);
-  });
-  add_energies(model.torsion_springs, parts_at_once,
-               [&](std::size_t i, const TorsionSpring& spring) {
-                 const double wound =
-                     torsion_angle(model, spring, torsion_plane_[i], moved) - spring.free_angle;
-                 return 0.5 * spring.stiffness * wound * wound;
-               });
+  const ElementState at_elements(drawn_, moved, changes);
+  double* outputs_of_type = state.element_output.data();
+  each_element_type(
+      [&]<class Type>(const std::vector<Type>& elements, const auto& frames, std::size_t) {
+        const std::size_t width = output_width<Type>();
+        add_energies(elements, parts_at_once, [&](std::size_t i, const auto& one) {
+          one.describe(frames[i], at_elements, outputs_of_type + i * width);
+          return one.energy(frames[i], at_elements);
+        });
+        outputs_of_type += elements.size() * width;
+      });
   add_energies(model.joints, joints_at_once, [&](std::size_t i, const Joint& joint) {
     const int which = static_cast<int>(i);
     const Trial at = trial(which, z, moved, time, now, JointModel::friction, 1.0);
@@ -147,10 +70,17 @@ void System::describe(const VectorXd& z, double time, const StepStart& now, Stat
 
 VectorXd System::beyond_edges(const VectorXd& z, double time, const StepStart& now) const {
   std::vector<double> found;
-  for (const AxialSpring& spring : model_->springs) {
-    if (!spring.cable) continue;
-    found.push_back(spring_stretch(spring, lengths_between(spring.first, spring.second, z)));
-  }
+  Eigen::Matrix3Xd moved;
+  if (has_edges_) displacements(z, moved);
+  const std::vector<double> changes = temperature_changes(time);
+  const ElementState state(drawn_, moved, changes);
+  each_element_type([&](const auto& elements, const auto& frames, std::size_t) {
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      if constexpr (requires { elements[i].beyond_edges(frames[i], state); }) {
+        if (elements[i].has_edge()) found.push_back(elements[i].beyond_edges(frames[i], state));
+      }
+    }
+  });
   for (int i = 0; i < static_cast<int>(model_->joints.size()); ++i) {
     std::visit(
         [&](const auto& one) {
@@ -225,42 +155,21 @@ void System::account(const Way& way, const std::optional<Halves>& halves, const 
     dissipated = by_halves + (by_halves - dissipated) / 3.0;
   }
   state.joint_dissipation += dissipated;
-  state.thermal_work += work_on_links(way) + work_on_joints(way, start);
+  state.thermal_work += work_on_elements(way) + work_on_joints(way, start);
 }
 
-double System::work_on_links(const Way& way) const {
-  const Model& model = *model_;
-  const std::vector<Quadrature> asked = quadratures(way, model);
-  const auto growth_rate = [&](const Link& link, const Lengths& length, const VectorXd& moving) {
-    return way.step() *
-           length.along.dot(displacement(link.second, moving) - displacement(link.first, moving)) /
-           length.now;
-  };
-  VectorXd work = VectorXd::Zero(static_cast<Eigen::Index>(model.links.size()));
-  each_in_parallel(model.links.size(), parts_at_once, [&](std::size_t i) {
-    const Link& link = model.links[i];
-    const double expansion =
-        link.stress_free_length * link.thermal_expansion * link.temperature_fraction;
-    if (expansion == 0.0) return;
-    const Lengths first = lengths_between(link.first, link.second, way.from);
-    const Lengths last = lengths_between(link.first, link.second, way.to);
-    // ∂V/∂l_T = −N − N²/(2 E A)
-    const auto by_length = [&](double growth, double warmer) {
-      const double tension =
-          link_axial(link, growth, last.drawn, link.temperature_fraction * warmer).tension;
-      return -tension * (1.0 + 0.5 * tension / link.axial_stiffness);
-    };
-    Cubic growth{first.growth, last.growth, 0.0, 0.0};
-    if (!way.is_straight()) {
-      growth.first_rate = growth_rate(link, first, *way.from_rate);
-      growth.last_rate = growth_rate(link, last, *way.to_rate);
-    }
-    work[static_cast<Eigen::Index>(i)] =
-        expansion * along(asked[index(link.program)], [&](double share, double warmer) {
-          return by_length(growth.at(share), warmer);
-        });
+double System::work_on_elements(const Way& way) const {
+  const std::vector<Quadrature> rules = quadratures(way, *model_);
+  const ThermalStep step{way, drawn_, dofs_, rules};
+  double sum = 0.0;
+  each_element_type([&](const auto& elements, const auto& frames, std::size_t) {
+    VectorXd work(static_cast<Eigen::Index>(elements.size()));
+    each_in_parallel(elements.size(), parts_at_once, [&](std::size_t i) {
+      work[static_cast<Eigen::Index>(i)] = elements[i].thermal_work(frames[i], step);
+    });
+    sum = std::accumulate(work.begin(), work.end(), sum);
   });
-  return std::accumulate(work.begin(), work.end(), 0.0);
+  return sum;
 }
 
 double System::work_on_joints(const Way& way, const StepStart& start) const {
@@ -278,7 +187,7 @@ double System::work_on_joints(const Way& way, const StepStart& start) const {
             };
             // A contact whose clearance grows gives way: ∂V/∂c = −N.
             const auto add = [&](auto&& joint_at) {
-              work[i] = -growth * along(asked[index(frame.program)], [&](double share, double) {
+              work[i] = -growth * asked[index(frame.program)].along([&](double share, double) {
                 return one.contact_force(joint_at(share));
               });
             };

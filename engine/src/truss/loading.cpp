@@ -25,21 +25,8 @@ constexpr double proximal_share = 1e-6;
 
 /// The truss with a fraction of its loads and misfits: with none it is free of stress as drawn.
 Model loaded(Model model, double fraction) {
-  const auto drawn = [&](const auto& part) {
-    return (model.nodes[index(part.second)].position - model.nodes[index(part.first)].position)
-        .norm();
-  };
-  const auto towards = [fraction](double from, double to) { return from + fraction * (to - from); };
+  scale_misfits(model, fraction);
   for (Node& node : model.nodes) node.load *= fraction;
-  for (Link& link : model.links) {
-    link.stress_free_length = towards(drawn(link), link.stress_free_length);
-  }
-  for (AxialSpring& spring : model.springs) {
-    // A slack cable has no force to begin with.
-    if (spring.cable && spring.free_length > drawn(spring)) continue;
-    spring.free_length = towards(drawn(spring), spring.free_length);
-  }
-  for (TorsionSpring& spring : model.torsion_springs) spring.free_angle *= fraction;
   return model;
 }
 

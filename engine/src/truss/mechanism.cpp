@@ -117,20 +117,6 @@ std::pair<FoundModes, bool> free_modes(const System& system, const VectorXd& z, 
   return {modes_between(system, lowest_modes(shifted, factors, most_modes), -least, least), pushed};
 }
 
-/// The truss with parts that carry no force as drawn; slack cables stay slack.
-Model without_stress(Model model) {
-  const auto drawn = [&](const auto& part) {
-    return (model.nodes[index(part.second)].position - model.nodes[index(part.first)].position)
-        .norm();
-  };
-  for (Link& link : model.links) link.stress_free_length = drawn(link);
-  for (AxialSpring& spring : model.springs) {
-    if (!spring.cable || spring.free_length < drawn(spring)) spring.free_length = drawn(spring);
-  }
-  for (TorsionSpring& spring : model.torsion_springs) spring.free_angle = 0.0;
-  return model;
-}
-
 }  // namespace
 
 FoundModes mechanism(const System& system, const VectorXd& z, double time, const Statuses& statuses,
@@ -139,8 +125,9 @@ FoundModes mechanism(const System& system, const VectorXd& z, double time, const
   const auto [found, pushed] = free_modes(system, z, time, statuses, joints);
   if (found || !pushed || !z.isZero()) return found;
   // Forces of the drawn shape may push a mechanism along its free mode; without them it is one.
-  const Model slack = without_stress(system.model());
-  return free_modes(System(slack), z, time, statuses, joints).first;
+  Model unstressed = system.model();
+  scale_misfits(unstressed, 0.0);
+  return free_modes(System(unstressed), z, time, statuses, joints).first;
 }
 
 FoundModes buckling(const System& system, const VectorXd& z, double time, const Statuses& statuses,

@@ -62,13 +62,13 @@ bool allows(Allowed allowed, double value) {
   }
 }
 
-/// What the table of its parameters says, then what the type itself does.
+/// Checks the ranges in the table of parameters of an element or a joint.
 template <class Type>
-void check_joint(const Type& joint, const Model& model) {
-  const std::string item = named(Type::kind, joint.name);
+void check_parameters(const Type& one, const Model& model) {
+  const std::string item = named(Type::kind, one.name);
   for (const Parameter<Type>& parameter : Type::parameters()) {
     const auto check_member = [&](auto member) {
-      const auto& value = joint.*member;
+      const auto& value = one.*member;
       using Value = std::decay_t<decltype(value)>;
       if constexpr (std::is_same_v<Value, double>) {
         check(allows(parameter.allowed, value), item, parameter.words, value,
@@ -91,21 +91,19 @@ void check_joint(const Type& joint, const Model& model) {
                                   : parameter.allowed == Allowed::program ? model.programs.size()
                                                                           : model.links.size();
         check_index(value, count, item, parameter.words);
-      } else {
+      } else if constexpr (std::is_same_v<Value, Eigen::Vector3d>) {
         check_axis(item, value);
       }
     };
     std::visit(check_member, parameter.member);
   }
-  joint.validate(model);
 }
 
-/// Smallest and largest ΔT of a program [K].
-Eigen::Vector2d range_of(const thermal::Program& program) {
-  Eigen::Vector2d range(0.0, 0.0);
+TemperatureRange range_of(const thermal::Program& program) {
+  TemperatureRange range;
   for (const auto& branch : thermal::monotone_branches(program)) {
-    range[0] = std::min({range[0], branch.start, branch.end});
-    range[1] = std::max({range[1], branch.start, branch.end});
+    range.lowest = std::min({range.lowest, branch.start, branch.end});
+    range.highest = std::max({range.highest, branch.start, branch.end});
   }
   return range;
 }
@@ -114,7 +112,7 @@ Eigen::Vector2d range_of(const thermal::Program& program) {
 
 void Model::validate() const {
   kernel::require(!programs.empty(), "number of programs", 0, ">= 1");
-  std::vector<Eigen::Vector2d> ranges;
+  std::vector<TemperatureRange> ranges;
   for (const auto& program : programs) {
     program.validate();
     const double first = programs.front().duration();
@@ -136,58 +134,33 @@ void Model::validate() const {
       }
     }
   }
-  const auto check_ends = [&](const std::string& item, int first, int second) {
-    check_index(first, nodes.size(), item, "first node");
-    check_index(second, nodes.size(), item, "second node");
-    const double length = (nodes[static_cast<std::size_t>(second)].position -
-                           nodes[static_cast<std::size_t>(first)].position)
-                              .norm();
-    check(length > 0.0, item, "length", length, "> 0 m: its nodes are at different places");
-  };
-  for (const Link& link : links) {
-    const std::string item = named("link", link.name);
-    check_ends(item, link.first, link.second);
-    check_index(link.program, programs.size(), item, "program");
-    check(std::isfinite(link.axial_stiffness) && link.axial_stiffness > 0, item, "axial_stiffness",
-          link.axial_stiffness, "finite, > 0 N");
-    check(std::isfinite(link.stress_free_length) && link.stress_free_length > 0, item,
-          "stress_free_length", link.stress_free_length, "finite, > 0 m");
-    check(std::isfinite(link.temperature_fraction), item, "temperature_fraction",
-          link.temperature_fraction, "finite");
-    const Eigen::Vector2d& range = ranges[static_cast<std::size_t>(link.program)];
-    const double per_kelvin = link.thermal_expansion * link.temperature_fraction;
-    const double strain = std::min(per_kelvin * range[0], per_kelvin * range[1]);
-    check(std::isfinite(strain) && strain > -1, item, "thermal_expansion", link.thermal_expansion,
-          "finite and such that a length is left [1/K]");
-  }
-  for (const AxialSpring& spring : springs) {
-    const std::string item = named("spring", spring.name);
-    check_ends(item, spring.first, spring.second);
-    check(std::isfinite(spring.stiffness) && spring.stiffness >= 0, item, "stiffness",
-          spring.stiffness, "finite, >= 0 N/m");
-    check(std::isfinite(spring.free_length), item, "free_length", spring.free_length, "finite [m]");
-  }
-  for (const TorsionSpring& spring : torsion_springs) {
-    const std::string item = named("torsion spring", spring.name);
-    check_index(spring.first_link, links.size(), item, "first link");
-    if (spring.second_link != -1) {
-      check_index(spring.second_link, links.size(), item, "second link");
-      check(spring.second_link != spring.first_link, item, "second link", spring.second_link,
-            "another than the first");
+  const auto check_elements = [&](const auto& elements) {
+    for (const auto& one : elements) {
+      check_parameters(one, *this);
+      one.validate(*this, ranges);
     }
-    check(std::isfinite(spring.stiffness) && spring.stiffness >= 0, item, "stiffness",
-          spring.stiffness, "finite, >= 0 N m/rad");
-    check(std::isfinite(spring.free_angle), item, "free_angle", spring.free_angle, "finite [rad]");
-    check_axis(item, spring.axis);
-  }
+  };
+  std::apply([&](const auto&... all) { (check_elements(all), ...); }, lists());
   for (const Joint& joint : joints) {
-    std::visit([this](const auto& one) { check_joint(one, *this); }, joint);
+    std::visit(
+        [this](const auto& one) {
+          check_parameters(one, *this);
+          one.validate(*this);
+        },
+        joint);
   }
 }
 
 double Model::lowest_strain(int program, double per_kelvin) const {
-  const Eigen::Vector2d range = range_of(programs[static_cast<std::size_t>(program)]);
-  return std::min(per_kelvin * range[0], per_kelvin * range[1]);
+  const TemperatureRange range = range_of(programs[static_cast<std::size_t>(program)]);
+  return std::min(per_kelvin * range.lowest, per_kelvin * range.highest);
+}
+
+void scale_misfits(Model& model, double fraction) {
+  const auto scale = [&](auto& elements) {
+    for (auto& one : elements) one.scale_misfit(model, fraction);
+  };
+  std::apply([&](auto&... lists) { (scale(lists), ...); }, model.lists());
 }
 
 }  // namespace statejump::truss

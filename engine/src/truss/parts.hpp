@@ -27,23 +27,6 @@ inline std::size_t index(int i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Force and energy of a straight part at one length.
-struct Axial {
-  double tension;
-  double stiffness;
-};
-
-inline Axial link_axial(const Link& link, double elongation_from_drawn, double drawn_length,
-                        double change) {
-  const double l0 = link.stress_free_length;
-  // From differences: the rounding of a length would cost E A times 1e-16.
-  const double stretch =
-      elongation_from_drawn + (drawn_length - l0) - l0 * link.thermal_expansion * change;
-  const double stiffness =
-      link.axial_stiffness / thermal::length(l0, link.thermal_expansion, change);
-  return {stiffness * stretch, stiffness};
-}
-
 /// Vector drawn + moved, its length and that length's growth, without the difference of two
 /// lengths.
 struct Lengths {
@@ -58,18 +41,6 @@ inline Lengths lengths(const Vector3d& drawn, const Vector3d& moved) {
   const double before = drawn.norm();
   const double now = along.norm();
   return {along, before, now, moved.dot(2.0 * drawn + moved) / (before + now)};
-}
-
-/// A stiff spring would make noise of the rounding of its length: what is drawn is fixed, only the
-/// growth moves.
-inline double spring_stretch(const AxialSpring& spring, const Lengths& length) {
-  return (length.drawn - spring.free_length) + length.growth;
-}
-
-inline Axial spring_axial(const AxialSpring& spring, const Lengths& length) {
-  const double stretch = spring_stretch(spring, length);
-  if (spring.cable && stretch < 0.0) return {0.0, 0.0};
-  return {spring.stiffness * stretch, spring.stiffness};
 }
 
 /// Gradient and Hessian of the angle of an in-plane vector.

@@ -18,34 +18,20 @@ constexpr std::size_t least_parts = 2000;
 /// Regions at most: enough to share them out evenly, few enough to have little between them.
 constexpr std::size_t most_regions = 64;
 
-/// The nodes that move of every part: of links, springs, torsion springs, joints, in this order.
-Lists moving_nodes(const Model& model, const std::vector<JointFrame>& frames) {
+/// The nodes that move of every part: of the elements type by type, then of the joints.
+Lists moving_nodes(const DofMap& dofs, const ElementFrames& elements,
+                   const std::vector<JointFrame>& joints) {
   Lists made;
-  const auto add = [&](int node) {
-    if (node >= 0 && model.nodes[index(node)].freedoms > 0) made.push_back(node);
-  };
-  for (const Link& link : model.links) {
-    add(link.first);
-    add(link.second);
-    made.end_list();
-  }
-  for (const AxialSpring& spring : model.springs) {
-    add(spring.first);
-    add(spring.second);
-    made.end_list();
-  }
-  for (const TorsionSpring& spring : model.torsion_springs) {
-    for (const int link : {spring.first_link, spring.second_link}) {
-      if (link < 0) continue;
-      add(model.links[index(link)].first);
-      add(model.links[index(link)].second);
+  const auto add = [&](const auto& frames) {
+    for (const auto& frame : frames) {
+      for (const int node : frame.nodes) {
+        if (dofs.at(node).freedoms + dofs.at(node).rotations > 0) made.push_back(node);
+      }
+      made.end_list();
     }
-    made.end_list();
-  }
-  for (const JointFrame& frame : frames) {
-    for (const int node : frame.nodes) add(node);
-    made.end_list();
-  }
+  };
+  std::apply([&](const auto&... lists) { (add(lists), ...); }, elements);
+  add(joints);
   return made;
 }
 
@@ -66,8 +52,9 @@ std::vector<int> cut(const Lists& nodes_of, std::size_t nodes, std::size_t regio
 
 }  // namespace
 
-Regions regions_of(const Model& model, const std::vector<JointFrame>& frames) {
-  const Lists nodes_of = moving_nodes(model, frames);
+Regions regions_of(const Model& model, const DofMap& dofs, const ElementFrames& elements,
+                   const std::vector<JointFrame>& joints) {
+  const Lists nodes_of = moving_nodes(dofs, elements, joints);
   const std::size_t count = std::min(most_regions, nodes_of.size() / least_parts);
   Regions made;
   std::vector<int> region_of_node(model.nodes.size(), -1);
@@ -79,7 +66,7 @@ Regions regions_of(const Model& model, const std::vector<JointFrame>& frames) {
     return which < 0 ? made.between : made.apart[index(which)];
   };
   std::size_t part = 0;
-  const auto share_out = [&](std::size_t parts, std::vector<int> Region::*list) {
+  const auto share_out = [&](std::size_t parts, auto&& list_of) {
     for (std::size_t i = 0; i < parts; ++i, ++part) {
       int of = -1;
       bool inside = true;
@@ -88,13 +75,14 @@ Regions regions_of(const Model& model, const std::vector<JointFrame>& frames) {
         inside = inside && (of < 0 || its == of);
         of = its;
       }
-      (region(inside ? of : -1).*list).push_back(static_cast<int>(i));
+      list_of(region(inside ? of : -1)).push_back(static_cast<int>(i));
     }
   };
-  share_out(model.links.size(), &Region::links);
-  share_out(model.springs.size(), &Region::springs);
-  share_out(model.torsion_springs.size(), &Region::torsion_springs);
-  share_out(frames.size(), &Region::joints);
+  for_each_element_type([&]<std::size_t k>(std::integral_constant<std::size_t, k>) {
+    share_out(std::get<k>(elements).size(),
+              [](Region& at) -> std::vector<int>& { return at.elements[k]; });
+  });
+  share_out(joints.size(), [](Region& at) -> std::vector<int>& { return at.joints; });
   for (std::size_t n = 0; n < model.nodes.size(); ++n) {
     if (model.nodes[n].load.isZero(0.0)) continue;
     region(region_of_node[n]).loaded.push_back(static_cast<int>(n));

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <vector>
 
+#include "dof_map.hpp"
 #include "statejump/truss/joints/interface.hpp"
 #include "statejump/truss/model.hpp"
 
@@ -10,10 +12,8 @@ namespace statejump::truss::detail {
 
 /// Parts of a truss, by their indices in the model, each list in ascending order.
 struct Region {
-  std::vector<int> loaded;  ///< Nodes with a load.
-  std::vector<int> links;
-  std::vector<int> springs;
-  std::vector<int> torsion_springs;
+  std::vector<int> loaded;                               ///< Nodes with a load.
+  std::array<std::vector<int>, element_types> elements;  ///< Of each type.
   std::vector<int> joints;
 };
 
@@ -26,7 +26,7 @@ struct Regions {
   Region between;
 };
 
-/// @param frames of the joints
-Regions regions_of(const Model& model, const std::vector<JointFrame>& frames);
+Regions regions_of(const Model& model, const DofMap& dofs, const ElementFrames& elements,
+                   const std::vector<JointFrame>& joints);
 
 }  // namespace statejump::truss::detail

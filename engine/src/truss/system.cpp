@@ -8,24 +8,23 @@
 
 namespace statejump::truss::detail {
 
-namespace {
+ElementFrames frames_of_elements(const Model& model) {
+  ElementFrames made;
+  for_each_element_type([&]<std::size_t k>(std::integral_constant<std::size_t, k>) {
+    const auto& elements = std::get<k>(model.lists());
+    auto& frames = std::get<k>(made);
+    frames.reserve(elements.size());
+    for (const auto& one : elements) frames.push_back(one.frame(model));
+  });
+  return made;
+}
 
-/// Copying as many displacements takes some ten times as long as starting a thread.
-constexpr std::size_t nodes_at_once = 50000;
-
-}  // namespace
-
-System::System(const Model& model) : model_(&model) {
+System::System(const Model& model)
+    : model_(&model), dofs_(model), element_frames_(frames_of_elements(model)) {
   drawn_.reserve(model.nodes.size());
-  place_.reserve(model.nodes.size() + 1);
-  for (const Node& node : model.nodes) {
-    drawn_.push_back(node.position);
-    place_.push_back({unknowns_, node.freedoms, &node.free_directions.matrix()});
-    unknowns_ += node.freedoms;
-  }
-  place_.emplace_back();
+  for (const Node& node : model.nodes) drawn_.push_back(node.position);
   frames_.reserve(model.joints.size());
-  displacements_ = unknowns_;
+  displacements_ = unknowns_ = dofs_.dofs();
   Eigen::AlignedBox3d box;
   for (const Node& node : model.nodes) box.extend(node.position);
   size_ = box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
@@ -46,21 +45,19 @@ System::System(const Model& model) : model_(&model) {
     force_row_.push_back(unknowns_);
     unknowns_ += frames_.back().forces;
   }
-  for (const TorsionSpring& spring : model.torsion_springs) {
-    torsion_plane_.push_back(plane_of(spring.axis));
-  }
-  for (const Link& link : model.links) {
-    stiffness_scale_ = std::max(stiffness_scale_, link.axial_stiffness / link.stress_free_length);
-  }
-  for (const AxialSpring& spring : model.springs) {
-    stiffness_scale_ = std::max(stiffness_scale_, spring.stiffness);
-  }
-  path_scale_ = prescribed_displacement();
-  regions_ = regions_of(model, frames_);
+  each_element_type([&]<class Type>(const std::vector<Type>& elements, const auto&, std::size_t) {
+    element_outputs_ += static_cast<Eigen::Index>(elements.size() * output_width<Type>());
+    if constexpr (requires(const Type& one) { one.has_edge(); }) {
+      has_edges_ = has_edges_ || std::any_of(elements.begin(), elements.end(),
+                                             [](const Type& one) { return one.has_edge(); });
+    }
+  });
+  find_scales();
+  regions_ = regions_of(model, dofs_, element_frames_, frames_);
   pattern_ = recorded(Parts::all);
 }
 
-double System::prescribed_displacement() const {
+void System::find_scales() {
   const Model& model = *model_;
   std::vector<double> hottest;  // largest |ΔT| of each program [K]
   for (int i = 0; i < static_cast<int>(model.programs.size()); ++i) {
@@ -68,25 +65,18 @@ double System::prescribed_displacement() const {
   }
   double strain = 0.0;
   double force = 0.0;
-  const auto drawn_length = [&](const auto& part) {
-    return (drawn(part.second) - drawn(part.first)).norm();
-  };
-  for (const Link& link : model.links) {
-    strain = std::max(strain, std::abs(link.thermal_expansion * link.temperature_fraction) *
-                                  hottest[index(link.program)]);
-    const double misfit = std::abs(drawn_length(link) - link.stress_free_length);
-    force = std::max(force, link.axial_stiffness / link.stress_free_length * misfit);
-  }
-  for (const AxialSpring& spring : model.springs) {
-    force = std::max(force, spring.stiffness * std::abs(drawn_length(spring) - spring.free_length));
-  }
-  for (const TorsionSpring& spring : model.torsion_springs) {
-    const double arm = drawn_length(model.links[index(spring.first_link)]);
-    force = std::max(force, spring.stiffness * std::abs(spring.free_angle) / arm);
-  }
+  each_element_type([&](const auto& elements, const auto& frames, std::size_t) {
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      const ElementScale scale = elements[i].scale(frames[i], drawn_);
+      stiffness_scale_ = std::max(stiffness_scale_, scale.stiffness);
+      force = std::max(force, scale.force);
+      if (scale.program < 0) continue;
+      strain = std::max(strain, scale.strain_per_kelvin * hottest[index(scale.program)]);
+    }
+  });
   for (const Node& node : model.nodes) force = std::max(force, node.load.norm());
   const double by_force = stiffness_scale_ > 0.0 ? force / stiffness_scale_ : 0.0;
-  return std::max(strain * size_, by_force);
+  path_scale_ = std::max(strain * size_, by_force);
 }
 
 double System::reach(const VectorXd& z) const {
@@ -97,41 +87,6 @@ double System::reach(const VectorXd& z) const {
 
 double System::force_rounding(const VectorXd& z) const {
   return 64.0 * std::numeric_limits<double>::epsilon() * stiffness_scale_ * reach(z);
-}
-
-Vector3d System::displacement(int node, const VectorXd& z) const {
-  const JointWriter::Place& at = place_[index(node)];
-  const double* along = z.data() + at.row;
-  switch (at.freedoms) {
-    case 3:
-      return along[0] * at.directions->col(0) + along[1] * at.directions->col(1) +
-             along[2] * at.directions->col(2);
-    case 2:
-      return along[0] * at.directions->col(0) + along[1] * at.directions->col(1);
-    case 1:
-      return along[0] * at.directions->col(0);
-    default:
-      return Vector3d::Zero();
-  }
-}
-
-void System::displacements(const VectorXd& z, Eigen::Matrix3Xd& moved) const {
-  moved.resize(3, static_cast<Eigen::Index>(model_->nodes.size()));
-  each_in_parallel(model_->nodes.size(), nodes_at_once, [&](std::size_t i) {
-    moved.col(static_cast<Eigen::Index>(i)) = displacement(static_cast<int>(i), z);
-  });
-}
-
-Lengths System::lengths_between(int from, int to, const VectorXd& z) const {
-  return lengths(drawn(to) - drawn(from), displacement(to, z) - displacement(from, z));
-}
-
-int System::node_of(int displacement) const {
-  const auto nodes = place_.end() - 1;
-  const auto after =
-      std::upper_bound(place_.begin(), nodes, displacement,
-                       [](int row, const JointWriter::Place& place) { return row < place.row; });
-  return static_cast<int>(after - place_.begin()) - 1;
 }
 
 namespace {
@@ -334,7 +289,7 @@ double System::slack_work(const VectorXd& z, double time, const StepStart& start
 
 void System::apply(int joint, const Seat& seat, VectorXd& z) const {
   const JointFrame& frame = frames_[index(joint)];
-  const JointWriter::Place& place = place_[index(frame.nodes[0])];
+  const NodeDofs& place = dofs_.at(frame.nodes[0]);
   for (int i = 0; i < place.freedoms; ++i) {
     z[place.row + i] += place.directions->col(i).dot(seat.moved);
   }

@@ -10,11 +10,13 @@
 #include <optional>
 #include <vector>
 
+#include "dof_map.hpp"
 #include "joints/writer.hpp"
 #include "parallel.hpp"
 #include "parts.hpp"
 #include "regions.hpp"
 #include "statejump/truss/path.hpp"
+#include "way.hpp"
 
 namespace statejump::truss::detail {
 
@@ -80,24 +82,11 @@ struct Rounding {
   double force = 0.0;
 };
 
-/// Way of the unknowns in a step: straight, or a cubic where the rates at both ends are known.
-struct Way {
-  const VectorXd& from;
-  double from_time;
-  const VectorXd& to;
-  double to_time;
-  const VectorXd* from_rate = nullptr;  ///< None or empty: not known.
-  const VectorXd* to_rate = nullptr;
+/// The frames of all elements of a model.
+ElementFrames frames_of_elements(const Model& model);
 
-  bool is_straight() const {
-    return from_rate == nullptr || to_rate == nullptr || from_rate->size() == 0 ||
-           to_rate->size() == 0;
-  }
-  double step() const { return to_time - from_time; }
-};
-
-/// Equations of a truss: layout of the unknowns, residual, Jacobian, inequalities. Joints are asked
-/// for their part; which types there are is not known here.
+/// Equations of a truss: layout of the unknowns, residual, Jacobian, inequalities. Elements and
+/// joints contribute by their contracts; the types are not known here.
 ///
 /// Unknowns z: free displacements of the nodes [m], then the forces of the joints [N]. Rows stand
 /// in the same order.
@@ -108,15 +97,23 @@ class System {
 
   int unknowns() const { return unknowns_; }
   int displacements() const { return displacements_; }
-  int first_displacement(int node) const { return place_[index(node)].row; }
+  int first_displacement(int node) const { return dofs_.at(node).row; }
   const Model& model() const { return *model_; }
+  const DofMap& dofs() const { return dofs_; }
+  /// Calls `use(elements, frames, k)` for every type k of element.
+  template <class Use>
+  void each_element_type(Use&& use) const {
+    for_each_element_type([&]<std::size_t k>(std::integral_constant<std::size_t, k>) {
+      use(std::get<k>(model_->lists()), std::get<k>(element_frames_), k);
+    });
+  }
 
   /// Residual and rows of a joint alone, each entry of the Jacobian listed.
   void evaluate_joint(int joint, const VectorXd& z, double time, const StepStart& start,
                       JointStatus status, JointModel model, double opening, Assembly& to) const;
 
-  /// Which parts of a truss an evaluation asks.
-  enum class Parts : unsigned char { all, bars, joints };
+  /// Which parts of a truss are evaluated.
+  enum class Parts : unsigned char { all, elements, joints };
 
   /// Place for residual and Jacobian of these parts, whose pattern never changes.
   Assembly assembly(Parts parts = Parts::all) const {
@@ -127,8 +124,8 @@ class System {
   /// @param opening share of the clearances that is open (start)
   void evaluate(const VectorXd& z, double time, const StepStart& start, const Statuses& statuses,
                 JointModel joints, double opening, Assembly& to) const;
-  /// The same of links, springs, torsion springs and loads alone.
-  void evaluate_bars(const VectorXd& z, double time, Assembly& to) const;
+  /// The same of elements and loads alone.
+  void evaluate_elements(const VectorXd& z, double time, Assembly& to) const;
   /// The same of the joints alone, as they are with friction in motion.
   void evaluate_joints(const VectorXd& z, double time, const StepStart& start,
                        const Statuses& statuses, Assembly& to) const;
@@ -217,8 +214,8 @@ class System {
   /// order; without they are of second
   void account(const Way& way, const std::optional<Halves>& halves, const StepStart& start,
                const StepStart& after, const VectorXd& slips, State& state) const;
-  /// The temperature's work on links of a step [J].
-  double work_on_links(const Way& way) const;
+  /// The temperature's work on elements of a step [J].
+  double work_on_elements(const Way& way) const;
 
   /// Displacements, forces and energies at z; dissipation and thermal work are left alone.
   /// @param now the state at z as the start of the next step
@@ -242,9 +239,11 @@ class System {
   Trial trial(int joint, const VectorXd& z, const Eigen::Matrix3Xd& moved, double time,
               const StepStart& start, JointModel joints, double opening) const;
 
-  Vector3d displacement(int node, const VectorXd& z) const;
+  Vector3d displacement(int node, const VectorXd& z) const { return dofs_.displacement(node, z); }
   /// Displacements of all nodes, for who asks many joints at one state [m].
-  void displacements(const VectorXd& z, Eigen::Matrix3Xd& moved) const;
+  void displacements(const VectorXd& z, Eigen::Matrix3Xd& moved) const {
+    dofs_.displacements(z, moved);
+  }
   Eigen::Matrix3Xd displacements(const VectorXd& z) const {
     Eigen::Matrix3Xd moved;
     displacements(z, moved);
@@ -300,7 +299,7 @@ class System {
   double slide_rounding(int joint, const VectorXd& z, double time, const StepStart& start,
                         const Rounding& by) const;
   /// Node of a free displacement.
-  int node_of(int displacement) const;
+  int node_of(int displacement) const { return dofs_.node_of(displacement); }
   const JointFrame& frame(int joint) const { return frames_[index(joint)]; }
   /// First unknown of a joint's forces.
   int force_row(int joint) const { return force_row_[index(joint)]; }
@@ -344,17 +343,12 @@ class System {
   template <class Write>
   void write_regions(Assembly& to, Write&& write) const;
   /// @param changes of the programs [K]
-  void assemble_bars(const Region& region, const std::vector<double>& changes,
-                     AssemblyStrand& to) const;
+  void assemble_elements(const Region& region, const std::vector<double>& changes,
+                         AssemblyStrand& to) const;
   Assembly recorded(Parts parts) const;
-  double prescribed_displacement() const;
-  Lengths lengths_between(int from, int to, const VectorXd& z) const;
-  Lengths lengths_between(int from, int to, const Eigen::Matrix3Xd& moved) const {
-    return lengths(drawn(to) - drawn(from), moved.col(to) - moved.col(from));
-  }
-  JointWriter writer(int joint, AssemblyStrand& to) const;
-  /// Place of a node at ΔT = 0 [m].
-  const Vector3d& drawn(int node) const { return drawn_[index(node)]; }
+  /// Finds stiffness_scale() and path_scale().
+  void find_scales();
+  JointWriter joint_writer(int joint, AssemblyStrand& to) const;
   JointStatus decide(int joint, Trial& at, JointStatus status, const Rounding& rounding) const;
   /// Of all programs [K].
   std::vector<double> temperature_changes(double time) const {
@@ -382,14 +376,16 @@ class System {
   double stiffness_scale_ = 0.0;
   double size_ = 0.0;
   double path_scale_ = 0.0;
-  std::vector<Vector3d> drawn_;            // of each node; the model's lie far apart in memory
-  std::vector<JointWriter::Place> place_;  // of each node, then that of the ground
+  std::vector<Vector3d> drawn_;  // of each node; the model's lie far apart in memory
+  DofMap dofs_;
   std::vector<JointFrame> frames_;
   std::vector<int> force_row_;      // first force of each joint
   std::vector<int> history_begin_;  // of each joint
   std::vector<int> output_begin_;   // of each joint
   std::vector<int> rolling_;        // joints whose slides are integrals along the way
-  std::vector<Matrix32> torsion_plane_;
+  ElementFrames element_frames_;
+  Eigen::Index element_outputs_ = 0;
+  bool has_edges_ = false;  // of an element
   Regions regions_;
   Assembly pattern_{0};  // of all parts, which others copy
 };

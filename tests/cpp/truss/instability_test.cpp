@@ -112,7 +112,7 @@ Model arches(int count) {
       node.position.z() = i;
       model.nodes.push_back(node);
     }
-    for (Link link : one.links) {
+    for (Bar link : one.links) {
       link.first += first;
       link.second += first;
       model.links.push_back(link);

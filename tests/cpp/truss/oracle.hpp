@@ -165,14 +165,14 @@ class MinimisingTruss {
         }
       }
     };
-    for (const Link& link : model_->links) {
+    for (const Bar& link : model_->links) {
       const double now =
           link.stress_free_length *
           (1.0 + link.thermal_expansion *
                      model_->temperature_change(link.program, link.temperature_fraction, time));
       bar(link.first, link.second, link.axial_stiffness / now, now);
     }
-    for (const AxialSpring& spring : model_->springs) {
+    for (const Spring& spring : model_->springs) {
       bar(spring.first, spring.second, spring.stiffness, spring.free_length);
     }
     return {gradient, hessian};

@@ -71,7 +71,7 @@ Model random_truss(unsigned seed, int sliders) {
     return static_cast<int>(model.nodes.size()) - 1;
   };
   const auto add_link = [&](int first, int second) {
-    Link link;
+    Bar link;
     link.name = named("L", model.links.size());
     link.first = first;
     link.second = second;
@@ -151,7 +151,7 @@ Shuffled shuffled(const Model& model, unsigned seed) {
     made.model.nodes[std::size_t(made.node_of[n])] = model.nodes[n];
   }
   for (std::size_t l = 0; l < model.links.size(); ++l) {
-    Link& link = made.model.links[std::size_t(link_of[l])] = model.links[l];
+    Bar& link = made.model.links[std::size_t(link_of[l])] = model.links[l];
     link.first = made.node_of[std::size_t(link.first)];
     link.second = made.node_of[std::size_t(link.second)];
     // A bar has no direction.

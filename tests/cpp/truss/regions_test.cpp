@@ -22,7 +22,6 @@ namespace {
 using detail::index;
 using detail::Region;
 using detail::Regions;
-using detail::regions_of;
 
 /// Rows of bars, each bar's far end on a block that slides on the ground.
 /// @param order numbers of the nodes of all rows, one row after the other
@@ -55,12 +54,17 @@ std::vector<int> counted(int count) {
   return order;
 }
 
-std::vector<JointFrame> frames_of(const Model& model) {
-  std::vector<JointFrame> frames;
+Regions regions_of(const Model& model) {
+  std::vector<JointFrame> joints;
   for (const Joint& joint : model.joints) {
-    frames.push_back(std::visit([&](const auto& one) { return one.frame(model); }, joint));
+    joints.push_back(std::visit([&](const auto& one) { return one.frame(model); }, joint));
   }
-  return frames;
+  const detail::DofMap dofs(model);
+  return detail::regions_of(model, dofs, detail::frames_of_elements(model), joints);
+}
+
+const std::vector<int>& bars_of(const Region& region) {
+  return region.elements[element_type_index<Bar>()];
 }
 
 /// As the variable of the environment says, while it lives.
@@ -90,7 +94,7 @@ TEST(Regions, ShareNoNodeThatMovesHoweverNodesAreNumbered) {
   std::shuffle(order.begin(), order.end(), std::mt19937(1));
   Model model = rows_of_bars(1, bars, order);
   model.nodes[index(order[bars])].load = {1.0, 0.0, 0.0};
-  const Regions found = regions_of(model, frames_of(model));
+  const Regions found = regions_of(model);
   ASSERT_GT(found.apart.size(), 1u);
   std::map<int, std::size_t> region_of_node;
   const auto claim = [&](int node, std::size_t region) {
@@ -98,36 +102,36 @@ TEST(Regions, ShareNoNodeThatMovesHoweverNodesAreNumbered) {
     const auto [at, is_new] = region_of_node.try_emplace(node, region);
     EXPECT_EQ(at->second, region) << "node " << node;
   };
-  std::size_t links = found.between.links.size();
+  std::size_t links = bars_of(found.between).size();
   std::size_t joints = found.between.joints.size();
   std::size_t loaded = found.between.loaded.size();
   for (std::size_t k = 0; k < found.apart.size(); ++k) {
     const Region& region = found.apart[k];
-    for (const int i : region.links) {
+    for (const int i : bars_of(region)) {
       claim(model.links[index(i)].first, k);
       claim(model.links[index(i)].second, k);
     }
     for (const int i : region.joints) claim(std::get<Slider>(model.joints[index(i)]).first, k);
-    EXPECT_TRUE(std::is_sorted(region.links.begin(), region.links.end()));
-    links += region.links.size();
+    EXPECT_TRUE(std::is_sorted(bars_of(region).begin(), bars_of(region).end()));
+    links += bars_of(region).size();
     joints += region.joints.size();
     loaded += region.loaded.size();
     // Evenly shared out: a part here or there is in no region.
-    EXPECT_NEAR(static_cast<double>(region.links.size() + region.joints.size()),
+    EXPECT_NEAR(static_cast<double>(bars_of(region).size() + region.joints.size()),
                 2.0 * bars / static_cast<double>(found.apart.size()), 3.0);
   }
   EXPECT_EQ(links, index(bars));
   EXPECT_EQ(joints, index(bars));
   EXPECT_EQ(loaded, 1u);
   // The search goes both ways along the row: it is cut between two bars, or twice.
-  EXPECT_LE(found.between.links.size(), 2 * (found.apart.size() - 1));
+  EXPECT_LE(bars_of(found.between).size(), 2 * (found.apart.size() - 1));
 }
 
 TEST(Regions, OfASmallTrussThereAreNone) {
   const Model model = rows_of_bars(1, 100, counted(101));
-  const Regions found = regions_of(model, frames_of(model));
+  const Regions found = regions_of(model);
   EXPECT_TRUE(found.apart.empty());
-  EXPECT_EQ(found.between.links, counted(100));
+  EXPECT_EQ(bars_of(found.between), counted(100));
   EXPECT_EQ(found.between.joints, counted(100));
 }
 
@@ -136,8 +140,8 @@ TEST(Regions, EquationsAreThoseOfTheWhole) {
   constexpr int rows = 8, bars = 700;
   const Model one = rows_of_bars(1, bars, counted(bars + 1));
   const Model all = rows_of_bars(rows, bars, counted(rows * (bars + 1)));
-  ASSERT_TRUE(regions_of(one, frames_of(one)).apart.empty());
-  ASSERT_GT(regions_of(all, frames_of(all)).apart.size(), 1u);
+  ASSERT_TRUE(regions_of(one).apart.empty());
+  ASSERT_GT(regions_of(all).apart.size(), 1u);
   const detail::System small(one), large(all);
   const auto evaluated = [](const detail::System& system, const Eigen::VectorXd& z) {
     const detail::Statuses statuses = system.all_stick();
@@ -177,7 +181,7 @@ TEST(Regions, EquationsAreThoseOfTheWhole) {
 TEST(Regions, PathsHaveTheSameBitsWithAnyNumberOfThreads) {
   constexpr int rows = 500, bars = 5;
   const Model model = rows_of_bars(rows, bars, counted(rows * (bars + 1)));
-  ASSERT_GT(regions_of(model, frames_of(model)).apart.size(), 1u);
+  ASSERT_GT(regions_of(model).apart.size(), 1u);
   Options options;
   options.increments_per_branch = 4;
   options.locate_events = false;

@@ -89,7 +89,7 @@ TEST(Truss, SliderBetweenTwoNodesHoldsAcrossItsAxis) {
   slider(model).second = 2;
   const Path path = solve(model);
   const State& end = path.states.back();
-  EXPECT_NEAR(end.axial_force[1], 63.0, 0.05);  // 0.05: the bars tilt by 1e-4
+  EXPECT_NEAR(element_output<Bar>(model, end)(0, 1), 63.0, 0.05);  // 0.05: the bars tilt by 1e-4
   EXPECT_NEAR(end.displacement(1, 1), end.displacement(1, 2), 1e-15);
   EXPECT_NEAR(std::abs(number(model, end, "slider_force_N")), 30.0, 1e-9);
 }
@@ -550,7 +550,7 @@ TEST(Truss, JointThatNothingLoadsIsSlack) {
   model.torsion_springs.clear();
   model.springs.clear();
   // Stress-free lengths as drawn: no pin force.
-  for (Link& link : model.links) {
+  for (Bar& link : model.links) {
     link.stress_free_length = (model.nodes[static_cast<std::size_t>(link.second)].position -
                                model.nodes[static_cast<std::size_t>(link.first)].position)
                                   .norm();
@@ -564,7 +564,7 @@ TEST(Truss, JointThatNothingLoadsIsSlack) {
   EXPECT_EQ(note.joints[0].kind, "revolute");
   EXPECT_EQ(note.joints[0].name, "joint");
   // Nothing is carried but rounding of what the stiffest link would.
-  EXPECT_LT(path.states.back().axial_force.cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_LT(element_output<Bar>(model, path.states.back()).cwiseAbs().maxCoeff(), 1e-6);
 }
 
 /// The bar with a second one beside it that follows another program.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "statejump/thermal/program.hpp"
+#include "statejump/truss/element.hpp"
 #include "statejump/truss/joint.hpp"
 
 namespace statejump::truss {
@@ -35,7 +36,7 @@ class Directions {
   std::shared_ptr<const Eigen::Matrix3d> columns_;
 };
 
-/// Point where links end.
+/// Point where elements end.
 struct Node {
   std::string name;                                    ///< For messages.
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< Drawn shape, ΔT = 0 [m].
@@ -44,45 +45,9 @@ struct Node {
   Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< Dead load [N].
 };
 
-/// Uniform straight bar between two nodes, free to turn at both: N = (E A/l_T) (L − l_T).
-struct Link {
-  std::string name;
-  int first = 0;                    ///< Node.
-  int second = 0;                   ///< Node.
-  double axial_stiffness = 0.0;     ///< E A [N], > 0.
-  double stress_free_length = 0.0;  ///< l0 at ΔT = 0 [m], > 0.
-  double thermal_expansion = 0.0;   ///< α [1/K].
-  int program = 0;                  ///< Temperature program.
-  double temperature_fraction = 1;  ///< The link's ΔT over that of its program [-].
-};
-
-/// Spring between two nodes, tension k (L − free_length); a cable does not push.
-struct AxialSpring {
-  std::string name;
-  int first = 0;
-  int second = 0;
-  double stiffness = 0.0;    ///< [N/m], >= 0.
-  double free_length = 0.0;  ///< [m]; negative for a preload that no length of it relieves.
-  bool cable = false;
-};
-
-/// Torsion spring, moment K (α − α0) on the angle α from one link to another about a fixed axis,
-/// measured from the drawn shape. Without a second link: from the ground.
-struct TorsionSpring {
-  std::string name;
-  int first_link = 0;
-  int second_link = -1;     ///< −1: ground; the angle is then that of the first link.
-  double stiffness = 0.0;   ///< K [N m/rad], >= 0.
-  double free_angle = 0.0;  ///< α0 [rad] beyond the drawn shape.
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
-};
-
-/// Truss of bars with springs, frictional joints and loads, for quasi-static paths.
-struct Model {
+/// Structure of elements, frictional joints and loads, for quasi-static paths.
+struct Model : Elements {
   std::vector<Node> nodes;
-  std::vector<Link> links;
-  std::vector<AxialSpring> springs;
-  std::vector<TorsionSpring> torsion_springs;
   std::vector<Joint> joints;
   std::vector<thermal::Program> programs;  ///< At least one; all of one duration.
 
@@ -103,5 +68,8 @@ struct Model {
     return fraction * programs[static_cast<std::size_t>(program)].temperature_change(t);
   }
 };
+
+/// Multiplies the stress of all elements in the reference configuration by a fraction.
+void scale_misfits(Model& model, double fraction);
 
 }  // namespace statejump::truss

@@ -33,6 +33,11 @@ struct Inertia {
   Eigen::VectorXd link_moment = {};
 };
 
+/// Number of an item in a list of Inertia.
+inline double inertia_of(const Eigen::VectorXd& list, std::size_t i) {
+  return list.size() == 0 ? 0.0 : list[static_cast<Eigen::Index>(i)];
+}
+
 /// A link whose turning is prescribed: its angular velocity about z, linear between rows, the first
 /// and last row beyond them. It begins at the drawn angle; a couple on its two nodes turns it.
 struct Drive {

@@ -55,13 +55,12 @@ struct Event {
   JointStatus after;
 };
 
-/// Equilibrium at one time. Axial force of links: compression positive; tension of springs.
+/// Equilibrium at one time.
 struct State {
   double time = 0.0;                ///< [s]
   double temperature_change = 0.0;  ///< ΔT of the first program [K].
   Eigen::Matrix3Xd displacement;    ///< Of each node from the drawn shape [m].
-  Eigen::VectorXd axial_force;      ///< Of each link [N], compression positive.
-  Eigen::VectorXd tension;          ///< Of each spring [N].
+  Eigen::VectorXd element_output;   ///< Outputs of all elements; see element_output().
   Eigen::VectorXd joint_output;     ///< What the types of joints have at every state; see output().
   std::vector<JointStatus> joint_status;
   Eigen::VectorXd joint_dissipation;  ///< Heat of friction of each joint since the start [J].
@@ -89,6 +88,19 @@ struct Note {
   std::vector<FailureJoint> joints;  ///< Those that it is about.
   double value = 0.0;                ///< See NoteKind.
 };
+
+/// Outputs of the elements of a type at a state, in the order of outputs(), a column for each.
+template <Element Type>
+Eigen::Map<const Eigen::MatrixXd> element_output(const Model& model, const State& state) {
+  const double* begin = state.element_output.data();
+  std::size_t count = 0;
+  for_each_element_type([&]<std::size_t k>(std::integral_constant<std::size_t, k>) {
+    const std::size_t size = std::get<k>(model.lists()).size();
+    if constexpr (k < element_type_index<Type>()) begin += size * output_width<ElementType<k>>();
+    if constexpr (k == element_type_index<Type>()) count = size;
+  });
+  return {begin, static_cast<Eigen::Index>(output_width<Type>()), static_cast<Eigen::Index>(count)};
+}
 
 /// What a type of joint has at a state, by the key that its outputs() give it: one number or three.
 /// @throws std::out_of_range if the joint has no such output

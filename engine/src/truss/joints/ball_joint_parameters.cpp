@@ -57,7 +57,7 @@ void BallJoint::validate(const Model& model) const {
   check(ball_node != socket_node, "socket node", socket_node, "another than the ball's");
   const auto check_link = [&](int link, int node, const char* field) {
     if (link == -1) return;
-    const Link& part = model.links[index(link)];
+    const Bar& part = model.links[index(link)];
     check(part.first == node || part.second == node, field, link,
           "a link that ends at the joint's node");
   };
@@ -78,7 +78,7 @@ JointFrame BallJoint::frame(const Model& model) const {
   JointFrame frame;
   const auto far_end = [&](int link, int node) {
     if (link < 0) return -1;
-    const Link& part = model.links[index(link)];
+    const Bar& part = model.links[index(link)];
     return part.first == node ? part.second : part.first;
   };
   frame.nodes = {ball_node, socket_node, far_end(ball_link, ball_node),

@@ -113,11 +113,11 @@ void LatchHinge::validate(const Model&) const {
 
 JointFrame LatchHinge::frame(const Model& model) const {
   JointFrame frame;
-  const Link& first = model.links[index(first_link)];
+  const Bar& first = model.links[index(first_link)];
   frame.nodes = {first.first, first.second, -1, -1};
   frame.node_count = 2;
   if (second_link >= 0) {
-    const Link& second = model.links[index(second_link)];
+    const Bar& second = model.links[index(second_link)];
     frame.nodes = {first.first, first.second, second.first, second.second};
     frame.node_count = 4;
   }

@@ -351,7 +351,7 @@ void ClearanceRevolute::validate(const Model& model) const {
   check(journal_node != bearing_node, "bearing node", bearing_node, "another than the journal's");
   const auto check_link = [&](int link, int node, const char* field) {
     if (link == -1) return;
-    const Link& part = model.links[index(link)];
+    const Bar& part = model.links[index(link)];
     check(part.first == node || part.second == node, field, link,
           "a link that ends at the joint's node");
   };
@@ -378,7 +378,7 @@ JointFrame ClearanceRevolute::frame(const Model& model) const {
   JointFrame frame;
   const auto far_end = [&](int link, int node) {
     if (link < 0) return -1;
-    const Link& part = model.links[index(link)];
+    const Bar& part = model.links[index(link)];
     return part.first == node ? part.second : part.first;
   };
   frame.nodes = {journal_node, bearing_node, far_end(journal_link, journal_node),

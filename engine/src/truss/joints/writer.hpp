@@ -13,6 +13,7 @@
 
 #include "linear/sparse_factor.hpp"
 #include "statejump/truss/joints/interface.hpp"
+#include "truss/dof_map.hpp"
 
 namespace statejump::truss {
 
@@ -199,18 +200,12 @@ class JointWriter {
  public:
   explicit JointWriter(AssemblyStrand& strand) : to_(&strand) {}
 
-  /// Place of one of the joint's nodes in the truss.
-  struct Place {
-    int row = 0;
-    int freedoms = 0;
-    const Eigen::Matrix3d* directions = nullptr;
-  };
-  std::array<Place, most_joint_nodes> places;
+  std::array<NodeDofs, most_joint_nodes> places;
   int first_force = 0;
 
   /// Force [N] that a node has to carry.
   void force(std::size_t node, const Eigen::Vector3d& value) {
-    const Place& at = places[node];
+    const NodeDofs& at = places[node];
     for (int i = 0; i < at.freedoms; ++i) {
       to_->residual(at.row + i, at.directions->col(i).dot(value));
     }
@@ -219,8 +214,8 @@ class JointWriter {
   /// Derivative of a node's force by another node's displacement [N/m].
   void block(std::size_t by_node, std::size_t of_node, const Eigen::Matrix3d& value) {
     if (to_->residual_only()) return;
-    const Place& rows = places[by_node];
-    const Place& columns = places[of_node];
+    const NodeDofs& rows = places[by_node];
+    const NodeDofs& columns = places[of_node];
     Eigen::Matrix3d image;
     for (int j = 0; j < columns.freedoms; ++j) image.col(j) = value * columns.directions->col(j);
     to_->block(rows.row, rows.freedoms, columns.row, columns.freedoms,
@@ -229,14 +224,14 @@ class JointWriter {
   /// Derivative of a row by a node's displacement.
   void row(int row, std::size_t node, const Eigen::Vector3d& gradient) {
     if (to_->residual_only()) return;
-    const Place& at = places[node];
+    const NodeDofs& at = places[node];
     to_->block(first_force + row, 1, at.row, at.freedoms,
                [&](int, int j) { return at.directions->col(j).dot(gradient); });
   }
   /// Derivative of a node's force by one of the joint's.
   void column(std::size_t node, int force, const Eigen::Vector3d& gradient) {
     if (to_->residual_only()) return;
-    const Place& at = places[node];
+    const NodeDofs& at = places[node];
     to_->block(at.row, at.freedoms, first_force + force, 1,
                [&](int i, int) { return at.directions->col(i).dot(gradient); });
   }
@@ -280,7 +275,7 @@ class PlanarWriter {
  public:
   PlanarWriter(JointWriter& to, const Eigen::Matrix<double, 3, 2>& plane) : to_(&to) {
     for (std::size_t k = 0; k < seen_.size(); ++k) {
-      const JointWriter::Place& at = to.places[k];
+      const NodeDofs& at = to.places[k];
       for (int i = 0; i < at.freedoms; ++i) {
         seen_[k].col(i) = plane.transpose() * at.directions->col(i);
       }
@@ -288,31 +283,31 @@ class PlanarWriter {
   }
 
   void force(std::size_t node, const Eigen::Vector2d& value) {
-    const JointWriter::Place& at = to_->places[node];
+    const NodeDofs& at = to_->places[node];
     for (int i = 0; i < at.freedoms; ++i) {
       to_->to_->residual(at.row + i, seen_[node].col(i).dot(value));
     }
   }
   void block(std::size_t by_node, std::size_t of_node, const Eigen::Matrix2d& value) {
-    const JointWriter::Place& rows = to_->places[by_node];
-    const JointWriter::Place& columns = to_->places[of_node];
+    const NodeDofs& rows = to_->places[by_node];
+    const NodeDofs& columns = to_->places[of_node];
     Directions image;
     for (int j = 0; j < columns.freedoms; ++j) image.col(j) = value * seen_[of_node].col(j);
     to_->to_->block(rows.row, rows.freedoms, columns.row, columns.freedoms,
                     [&](int i, int j) { return seen_[by_node].col(i).dot(image.col(j)); });
   }
   void no_block(std::size_t by_node, std::size_t of_node) {
-    const JointWriter::Place& rows = to_->places[by_node];
-    const JointWriter::Place& columns = to_->places[of_node];
+    const NodeDofs& rows = to_->places[by_node];
+    const NodeDofs& columns = to_->places[of_node];
     to_->to_->zeros(rows.row, rows.freedoms, columns.row, columns.freedoms);
   }
   void row(int row, std::size_t node, const Eigen::Vector2d& gradient) {
-    const JointWriter::Place& at = to_->places[node];
+    const NodeDofs& at = to_->places[node];
     to_->to_->block(to_->first_force + row, 1, at.row, at.freedoms,
                     [&](int, int j) { return seen_[node].col(j).dot(gradient); });
   }
   void column(std::size_t node, int force, const Eigen::Vector2d& gradient) {
-    const JointWriter::Place& at = to_->places[node];
+    const NodeDofs& at = to_->places[node];
     to_->to_->block(at.row, at.freedoms, to_->first_force + force, 1,
                     [&](int i, int) { return seen_[node].col(i).dot(gradient); });
   }

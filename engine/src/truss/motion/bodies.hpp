@@ -16,14 +16,14 @@ class Bodies {
   Bodies(const System& system, const Inertia& inertia);
 
   const Eigen::SparseMatrix<double>& mass() const { return mass_; }
-  bool damped() const { return damped_; }
+  bool damped() const { return !dashpots_.empty(); }
   const VectorXd& joint_damping() const { return joint_damping_; }
 
   /// What the dashpots know of a step [s].
   struct Step {
     double from;
     double to;
-    std::vector<double> growth_rate = {};  ///< Of the stress-free length of every strut [m/s].
+    std::vector<double> growth_rate = {};  ///< Of the stress-free length of every dashpot [m/s].
   };
   Step step(double from, double to) const;
   /// Forces of the dashpots on the free displacements [N]; stress-free lengths grow evenly over
@@ -49,13 +49,6 @@ class Bodies {
   Eigen::Matrix3Xd of_nodes(const VectorXd& free) const { return system_->displacements(free); }
 
  private:
-  struct Strut {  // link or spring with a dashpot
-    int first;
-    int second;
-    double axial;
-    double turning;
-    const Link* link;  // whose stress-free length grows; null: none
-  };
   struct Rate {
     Vector3d direction;
     double length;
@@ -63,19 +56,12 @@ class Bodies {
     Vector3d across;     // [m/s]
   };
   /// Of places and velocities of all nodes.
-  Rate rate(const Strut& strut, const Eigen::Matrix3Xd& moved, const Eigen::Matrix3Xd& velocity,
+  Rate rate(const Dashpot& dashpot, const Eigen::Matrix3Xd& moved, const Eigen::Matrix3Xd& velocity,
             double growth_rate) const;
-  template <class Add>
-  void spread(int row_node, int column_node, const Matrix3d& value, Add&& add) const;
-  /// Of a part that resists a difference of two nodes' motions.
-  template <class Add>
-  void spread_between(int first, int second, const Matrix3d& value, Add&& add) const;
 
   const System* system_;
-  std::vector<int> row_;  // first free displacement of each node
-  std::vector<Strut> struts_;
+  std::vector<Dashpot> dashpots_;
   Eigen::SparseMatrix<double> mass_;
-  bool damped_ = false;
   VectorXd joint_damping_;
 };
 

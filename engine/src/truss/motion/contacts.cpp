@@ -132,7 +132,7 @@ Contact& Contacts::add_rubbing(int joint, int column, double bound, double stiff
 
 void Contacts::add(int joint, int first_column, const LatchHinge& hinge) {
   const Model& model = system_->model();
-  const Link& link = model.links[index(hinge.first_link)];
+  const Bar& link = model.links[index(hinge.first_link)];
   // On this radius its moment is a force, as in its rows.
   const double radius =
       (model.nodes[index(link.second)].position - model.nodes[index(link.first)].position).norm();

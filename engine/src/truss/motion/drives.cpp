@@ -53,7 +53,7 @@ Drives::Drives(const System& system, const std::vector<Drive>& drives)
 
 Vector2d Drives::along(const Drive& drive, const VectorXd& q) const {
   const Model& model = system_->model();
-  const Link& link = model.links[index(drive.link)];
+  const Bar& link = model.links[index(drive.link)];
   return (model.nodes[index(link.second)].position - model.nodes[index(link.first)].position +
           system_->displacement(link.second, q) - system_->displacement(link.first, q))
       .head<2>();
@@ -72,7 +72,7 @@ std::vector<Eigen::Triplet<double>> Drives::directions(const VectorXd& q, double
     const double angle = drawn_angle(drive) + drive.turned_at(to);
     const Vector3d across =
         Vector3d(-std::sin(angle), std::cos(angle), 0.0) / along(drive, q).norm();
-    const Link& link = model.links[index(drive.link)];
+    const Bar& link = model.links[index(drive.link)];
     for (const auto& [end, sign] : {std::pair{link.second, 1.0}, std::pair{link.first, -1.0}}) {
       const Node& node = model.nodes[index(end)];
       for (int i = 0; i < node.freedoms; ++i) {

@@ -114,7 +114,7 @@ class Run {
 VectorXd Run::elastic_force(const VectorXd& q, double time) {
   VectorXd z = VectorXd::Zero(system_.unknowns());
   z.head(q.size()) = q;
-  system_.evaluate_bars(z, time, forces_);
+  system_.evaluate_elements(z, time, forces_);
   return -forces_.residual.head(q.size());
 }
 
@@ -166,7 +166,7 @@ void Run::advance(double to) {
   VectorXd end = from;
   from.head(q.size()) = q_;
   end.head(q.size()) = q;
-  thermal_work_ += system_.work_on_links({from, time_, end, to});
+  thermal_work_ += system_.work_on_elements({from, time_, end, to});
   commit({q, v, to, h, way});
   q_ = q;
   v_ = v;

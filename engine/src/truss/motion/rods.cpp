@@ -17,11 +17,8 @@ struct Rods::State {
 
 Rods::Rods(const System& system, const Inertia& inertia) {
   const Model& model = system.model();
-  const auto number = [](const Eigen::VectorXd& of, std::size_t i) {
-    return of.size() == 0 ? 0.0 : of[static_cast<Eigen::Index>(i)];
-  };
   for (std::size_t i = 0; i < model.links.size(); ++i) {
-    const Link& link = model.links[i];
+    const Bar& link = model.links[i];
     Rod rod;
     for (const auto& [end, sign] : {std::pair{link.second, 1.0}, std::pair{link.first, -1.0}}) {
       const Node& node = model.nodes[index(end)];
@@ -37,8 +34,8 @@ Rods::Rods(const System& system, const Inertia& inertia) {
     rod.axial_stiffness = link.axial_stiffness;
     rod.expansion = link.thermal_expansion * link.temperature_fraction;
     rod.program = index(link.program);
-    rod.axial_damping = number(inertia.link_damping, i);
-    rod.turning_damping = number(inertia.pin_damping, i);
+    rod.axial_damping = inertia_of(inertia.link_damping, i);
+    rod.turning_damping = inertia_of(inertia.pin_damping, i);
     rods_.push_back(rod);
   }
 }

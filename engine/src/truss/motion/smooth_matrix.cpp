@@ -7,7 +7,7 @@ namespace statejump::truss::detail {
 
 void SmoothStepper::make_pattern(const Eigen::SparseMatrix<double>& damping) {
   const Eigen::Index n = q_.size();
-  system_->evaluate_bars(z_, time_, bars_);
+  system_->evaluate_elements(z_, time_, bars_);
   std::vector<Eigen::Triplet<double>> entries;
   const auto add = [&](Eigen::Index row, Eigen::Index column, double) {
     entries.emplace_back(row, column, 0.0);
@@ -51,7 +51,7 @@ void SmoothStepper::make_pattern(const Eigen::SparseMatrix<double>& damping) {
 void SmoothStepper::renew_tangents() {
   const Eigen::Index n = q_.size();
   z_.head(n) = q_;
-  system_->evaluate_bars(z_, time_, bars_);
+  system_->evaluate_elements(z_, time_, bars_);
   stiffness_entries_.setZero();
   auto to = stiffness_places_.begin();
   each_entry(bars_.jacobian(), n,

@@ -33,7 +33,7 @@ constexpr double early = 1e-6;
 std::unique_ptr<SmoothStepper> SmoothStepper::of(const System& system, const Bodies& bodies,
                                                  const Inertia& inertia,
                                                  const MotionOptions& options, int stages) {
-  if (!system.model().springs.empty() || !system.model().torsion_springs.empty()) return {};
+  if (element_count(system.model()) != system.model().links.size()) return {};
   const Contacts contacts(system, bodies.joint_damping());
   if (!contacts.holds().empty() || !options.drives.empty() || contacts.slip_in_part()) return {};
   std::optional<std::vector<Rubbing>> found = rubbings(system, contacts);
@@ -53,7 +53,7 @@ SmoothStepper::SmoothStepper(const System& system, const Bodies& bodies, const I
       radau_(stages),
       contacts_(system, bodies.joint_damping()),
       rubbings_(std::move(rubbings)),
-      bars_(system.assembly(System::Parts::bars)),
+      bars_(system.assembly(System::Parts::elements)),
       rods_(system, inertia),
       pair_factors_(radau_.pairs.size()),
       z_(VectorXd::Zero(system.unknowns())) {

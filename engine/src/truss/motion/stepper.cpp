@@ -24,7 +24,7 @@ Stepper::Stepper(const System& system, const Bodies& bodies, const MotionOptions
       contacts_(system, bodies.joint_damping()),
       joints_(system.assembly(System::Parts::joints)),
       springs_(system.assembly(System::Parts::joints)),
-      bars_(system.assembly(System::Parts::bars)),
+      bars_(system.assembly(System::Parts::elements)),
       forces_(Assembly::without_jacobian(system.unknowns())),
       drives_(system, options.drives),
       drive_moment_(VectorXd::Zero(drives_.count())) {
@@ -60,7 +60,7 @@ VectorXd Stepper::elastic_force(const VectorXd& q, double time) {
   VectorXd z = VectorXd::Zero(system_->unknowns());
   z.head(q.size()) = q;
   // Of joints only what does not come by a contact, of which r has all.
-  system_->evaluate_bars(z, time, forces_);
+  system_->evaluate_elements(z, time, forces_);
   VectorXd found = -forces_.residual.head(q.size());
   if (!contacts_.have_springs()) return found;
   evaluate_springs(q, time);
@@ -96,7 +96,7 @@ void Stepper::fill_bodies(const Trial& step, RefilledMatrix& to) {
   };
   VectorXd middle = VectorXd::Zero(system_->unknowns());
   middle.head(n) = step.q_middle;
-  system_->evaluate_bars(middle, step.to, bars_);
+  system_->evaluate_elements(middle, step.to, bars_);
   add_block(bodies_->mass(), 1.0);
   add_block(bars_.jacobian(), by_place);
   if (step.is_definite) {
@@ -386,7 +386,7 @@ void Stepper::book(const Trial& step, const Local& local) {
   contacts_.write(z, statuses);
   StepStart after = system_->commit(z, step.to, statuses, origin_);
   contacts_.tell_rings(after);
-  account_.thermal_work += system_->work_on_links({z_, time_, z, step.to});
+  account_.thermal_work += system_->work_on_elements({z_, time_, z, step.to});
   note_branches();
   contacts_.remember_clearances();
   internal_ = internal_after_;

@@ -59,7 +59,7 @@ class Links:
     yield_strength_Pa: np.ndarray  # inf: none is given
 
     @property
-    def rigidity_N(self) -> np.ndarray:
+    def axial_stiffness_N(self) -> np.ndarray:
         """E A of each [N]."""
         found: np.ndarray = self.young_modulus_Pa * self.cross_section_area_m2
         return found

@@ -149,7 +149,7 @@ def _run(
     return Run(model, history, energy, links, contacts, Events(happened),
                {**_jumps(case, *(dense or (time, items["displacement_m"]))), **summary}, names(case), lambda: case,
                warnings=(*case.thermal_notes, *case.implausible, *plausibility.axial_strains(
-                   truss.links.names, items["axial_force_N"], truss.links.rigidity_N), *warnings), **more)
+                   truss.links.names, items["axial_force_N"], truss.links.axial_stiffness_N), *warnings), **more)
 
 
 def _jumps(case: TrussCase, time_s: np.ndarray, displacement_m: np.ndarray) -> dict[str, float]:

@@ -132,15 +132,17 @@ def _joints(truss: ResolvedTruss, joint: JointType[Any, Any]) -> dict[str, Any]:
     return _table(joints, *(key for key in keys if key not in made), **made)
 
 
+def _elements(truss: ResolvedTruss, table: str) -> dict[str, Any]:
+    """Return the elements of a type with the arrays that the engine lists for it."""
+    keys = dict.fromkeys(parameter["key"] for parameter in _engine.truss_elements()[table]["parameters"])
+    return _table(getattr(truss, table), *keys)
+
+
 def engine_items(truss: ResolvedTruss) -> dict[str, Any]:
     """Return the truss as the engine's tables and temperature programs."""
     return {
         "nodes": _table(truss.nodes, "position_m", "fixed", "guide_normal", "force_N"),
-        "links": _table(truss.links, "nodes", "stress_free_length_m", "thermal_expansion_per_K", "program",
-                        "temperature_fraction",
-                        axial_stiffness_N=truss.links.young_modulus_Pa * truss.links.cross_section_area_m2),
-        "springs": _table(truss.springs, "nodes", "stiffness_N_per_m", "free_length_m", "cable"),
-        "torsion_springs": _table(truss.torsion_springs, "links", "stiffness_N_m_per_rad", "bias_rad", "axis"),
+        "elements": {table: _elements(truss, table) for table in _engine.truss_elements()},
         "joints": {joint.section: _joints(truss, joint) for joint in JOINTS},
         "programs": engine_programs(truss),
     }

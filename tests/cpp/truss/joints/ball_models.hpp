@@ -69,7 +69,7 @@ inline Model tripod() {
                  {"B-top", 1, 3, 2e5, 0.4387, 2.4e-5, 1, 1.0},
                  {"C-top", 2, 3, 2e5, 0.4387, 2.4e-5, 0, -0.4},
                  {"D-ball", 5, 4, 2e5, 0.4242640687119285, 2.4e-5, 1, 0.5}};
-  for (Link& link : model.links) {
+  for (Bar& link : model.links) {
     link.stress_free_length = (model.nodes[static_cast<std::size_t>(link.second)].position -
                                model.nodes[static_cast<std::size_t>(link.first)].position)
                                   .norm();

@@ -57,7 +57,7 @@ Apart apart(const Model& model) {
   const auto links = static_cast<Eigen::Index>(model.links.size());
   Inertia inertia{Eigen::VectorXd::Constant(links, 0.1), {}, Eigen::VectorXd(links), {}, {}};
   for (Eigen::Index i = 0; i < links; ++i) {
-    const Link& link = model.links[static_cast<std::size_t>(i)];
+    const Bar& link = model.links[static_cast<std::size_t>(i)];
     inertia.link_damping[i] = std::sqrt(link.axial_stiffness * link.stress_free_length * 0.1 / 3.0);
   }
   MotionOptions options;

@@ -7,7 +7,8 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <variant>
+
+#include "statejump/truss/parameter.hpp"
 
 namespace statejump::truss {
 
@@ -36,40 +37,6 @@ constexpr bool is_slip(JointStatus status) {
 /// What stands in for joints with play on the way to the first state: bilateral pins and
 /// frictionless contacts find the start, friction is the path.
 enum class JointModel : unsigned char { pins, frictionless, friction };
-
-/// What a parameter may be.
-enum class Allowed : unsigned char {
-  finite,
-  positive,              ///< Finite, > 0.
-  not_negative,          ///< Finite, >= 0.
-  positive_or_infinite,  ///< > 0; infinity: rigid.
-  distance_or_infinite,  ///< >= 0; infinity: none.
-  direction,             ///< Unit vector.
-  node,                  ///< Index of a node.
-  node_or_ground,        ///< Index of a node, −1: the ground.
-  link_or_none,          ///< Index of a link, −1: none.
-  link,                  ///< Index of a link.
-  program,               ///< Index of a temperature program.
-  flag,                  ///< 0: no, 1: yes.
-  count                  ///< Whole number >= 1.
-};
-
-/// One parameter of a type of joint: what tables, checks, bindings and messages know of it.
-template <class Type>
-struct Parameter {
-  const char* key;    ///< In tables, with its unit.
-  const char* words;  ///< In messages.
-  const char* unit;
-  Allowed allowed;
-  const char* source;  ///< What gives it.
-  std::variant<double Type::*, int Type::*, Eigen::Vector3d Type::*> member;
-};
-
-/// A number, or a vector of three, that a joint has at every state.
-struct Output {
-  const char* key;  ///< With its unit.
-  int width;
-};
 
 /// A joint as a contact of a frictional contact problem: which of its rows, on the branch `stick`,
 /// are gap and slide.

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <vector>
+
+#include "truss/dof_map.hpp"
+#include "truss/joints/writer.hpp"
+
+namespace statejump::truss {
+
+/// Adds the forces of elements on nodes and their derivatives, by the nodes' dofs. Node −1 is the
+/// ground, which takes any force.
+class ElementWriter {
+ public:
+  ElementWriter(const detail::DofMap& dofs, AssemblyStrand& to) : dofs_(&dofs), to_(&to) {}
+
+  const NodeDofs& at(int node) const { return dofs_->at(node); }
+  bool residual_only() const { return to_->residual_only(); }
+  /// Force [N] that a node has to carry.
+  void force(int node, const Eigen::Vector3d& value) {
+    const NodeDofs& dofs = at(node);
+    for (int i = 0; i < dofs.freedoms; ++i) {
+      to_->residual(dofs.row + i, dofs.directions->col(i).dot(value));
+    }
+  }
+  /// Derivative of a node's force by another node's displacement: `value(direction of the force,
+  /// direction of the displacement)`.
+  template <class Value>
+  void block(int row_node, int column_node, Value&& value) {
+    const NodeDofs& rows = at(row_node);
+    const NodeDofs& columns = at(column_node);
+    to_->block(rows.row, rows.freedoms, columns.row, columns.freedoms, value);
+  }
+  /// A vector along the directions in which a node moves.
+  Eigen::Vector3d seen(int node, const Eigen::Vector3d& vector) const {
+    return at(node).directions->transpose() * vector;
+  }
+  /// A force that rounding and balance are measured by [N].
+  void carries(double force) { to_->carries(force); }
+  /// Of a piecewise linear law: which piece is active.
+  void piece(std::size_t which) { to_->piece(which); }
+
+ private:
+  const detail::DofMap* dofs_;
+  AssemblyStrand* to_;
+};
+
+/// Lists the entries of a matrix of translations.
+class MatrixWriter {
+ public:
+  MatrixWriter(const detail::DofMap& dofs, std::vector<Eigen::Triplet<double>>& to)
+      : dofs_(&dofs), to_(&to) {}
+
+  /// Adds the derivative of a node's force by the motion of another node.
+  void block(int row_node, int column_node, const Eigen::Matrix3d& value) {
+    const NodeDofs& rows = dofs_->at(row_node);
+    const NodeDofs& columns = dofs_->at(column_node);
+    for (int j = 0; j < columns.freedoms; ++j) {
+      const Eigen::Vector3d image = value * columns.directions->col(j);
+      for (int i = 0; i < rows.freedoms; ++i) {
+        to_->emplace_back(rows.row + i, columns.row + j, rows.directions->col(i).dot(image));
+      }
+    }
+  }
+  /// Adds what resists the relative motion of two nodes.
+  void between(int first, int second, const Eigen::Matrix3d& value) {
+    block(first, first, value);
+    block(second, second, value);
+    block(first, second, -value);
+    block(second, first, -value);
+  }
+
+ private:
+  const detail::DofMap* dofs_;
+  std::vector<Eigen::Triplet<double>>* to_;
+};
+
+}  // namespace statejump::truss

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "dof_map.hpp"
+#include "parts.hpp"
+#include "way.hpp"
+
+namespace statejump::truss::detail {
+
+/// Points of a step at which the work of a program's temperature is integrated.
+struct Quadrature {
+  struct Point {
+    double share;
+    double temperature_change;  ///< [K]
+    double warmed;              ///< Weight, a change of the temperature [K].
+  };
+  std::array<Point, 4> points{};
+  std::size_t count = 0;
+
+  /// Integral of `function(share, temperature)` of a step over the temperature [K].
+  template <class Function>
+  double along(Function&& function) const {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < count; ++k) {
+      sum += points[k].warmed * function(points[k].share, points[k].temperature_change);
+    }
+    return sum;
+  }
+};
+
+/// Of every program: the trapezoidal rule of a straight way, else a rule of fourth order.
+std::vector<Quadrature> quadratures(const Way& way, const Model& model);
+
+/// A step in which elements integrate the work of the temperature.
+struct ThermalStep {
+  const Way& way;
+  const std::vector<Vector3d>& drawn;  ///< Positions of the nodes at ΔT = 0 [m].
+  const DofMap& dofs;
+  const std::vector<Quadrature>& quadratures;  ///< Of every program.
+
+  Vector3d moved_between(int from, int to, const VectorXd& z) const {
+    return dofs.displacement(to, z) - dofs.displacement(from, z);
+  }
+  Lengths lengths_between(int from, int to, const VectorXd& z) const {
+    return lengths(drawn[index(to)] - drawn[index(from)], moved_between(from, to, z));
+  }
+};
+
+}  // namespace statejump::truss::detail

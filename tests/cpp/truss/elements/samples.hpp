@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A model with elements of one type for the tests that every type passes. A new type adds its own.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+#include <type_traits>
+
+#include "../parts.hpp"
+#include "statejump/truss/motion.hpp"
+
+namespace statejump::truss::testing {
+
+/// Four nodes in space: free, free in a tilted plane, on a tilted line, fixed.
+inline Model four_nodes() {
+  Model model;
+  model.programs = {triangle(80.0, 2.0), triangle(-50.0, 2.0)};
+  model.nodes = {node("A", {0.1, -0.2, 0.3}, 3), node("B", {1.2, 0.3, -0.1}, 2),
+                 node("C", {0.4, 1.1, 0.5}, 1), node("D", {-0.6, 0.5, 0.9}, 0)};
+  const Eigen::Quaterniond tilted = Eigen::Quaterniond(0.8, 0.3, -0.4, 0.2).normalized();
+  for (const std::size_t tilts : {1u, 2u}) {
+    model.nodes[tilts].free_directions = Eigen::Matrix3d(tilted.toRotationMatrix());
+  }
+  return model;
+}
+
+inline Model sample(std::type_identity<Bar>) {
+  Model model = four_nodes();
+  model.links = {{"AB", 0, 1, 3e5, 1.22, 2e-5, 0, 1.0},
+                 {"BC", 1, 2, 2e5, 1.31, -3e-5, 1, 0.5},
+                 {"CD", 2, 3, 1e5, 1.30, 0.0, 0, 1.0}};
+  return model;
+}
+
+inline Model sample(std::type_identity<Spring>) {
+  Model model = four_nodes();
+  model.springs = {{"AB", 0, 1, 3e3, 0.9, false},
+                   {"preloaded", 1, 2, 2e3, -0.4, false},
+                   {"taut", 2, 0, 1e3, 0.7, true},
+                   {"slack", 2, 3, 1e3, 3.0, true}};
+  return model;
+}
+
+inline Model sample(std::type_identity<TorsionSpring>) {
+  Model model = four_nodes();
+  model.links = {{"AB", 0, 1, 3e5, 1.22, 0.0, 0, 1.0},
+                 {"AC", 0, 2, 2e5, 1.31, 0.0, 0, 1.0},
+                 {"DC", 3, 2, 1e5, 1.30, 0.0, 0, 1.0}};
+  const Eigen::Vector3d axis = Eigen::Vector3d(0.2, -0.3, 0.9).normalized();
+  model.torsion_springs = {{"two bars", 0, 1, 40.0, 0.2, axis},
+                           {"apart", 2, 0, 30.0, -0.1, axis},
+                           {"ground", 1, -1, 20.0, 0.3, Eigen::Vector3d::UnitZ()}};
+  return model;
+}
+
+/// What the elements of the samples need to move.
+inline Inertia sample_inertia() {
+  Inertia made;
+  made.link_mass = Eigen::Vector3d(1.0, 2.0, 4.0);
+  made.link_moment = Eigen::Vector3d(0.1, 0.3, 0.2);
+  made.link_centre.resize(2, 3);
+  made.link_centre << 0.5, 0.4, 0.7, 0.0, 0.1, -0.2;
+  return made;
+}
+
+/// Mass of all elements of a sample [kg].
+inline double sample_mass(std::type_identity<Bar>) {
+  return 7.0;
+}
+inline double sample_mass(std::type_identity<Spring>) {
+  return 0.0;
+}
+inline double sample_mass(std::type_identity<TorsionSpring>) {
+  return 0.0;
+}
+
+}  // namespace statejump::truss::testing
