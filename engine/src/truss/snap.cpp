@@ -42,7 +42,7 @@ double all_plays(const Model& model, double size) {
         joint);
   }
   double shortest = size;
-  for (const Link& link : model.links) {
+  for (const Bar& link : model.links) {
     const double length =
         (model.nodes[index(link.second)].position - model.nodes[index(link.first)].position).norm();
     if (length > 0.0) shortest = std::min(shortest, length);

@@ -315,12 +315,12 @@ TYPED_TEST(ElementContract, WritesTheSameEntriesAtEveryState) {
     return found;
   };
   for (std::size_t i = 0; i < this->elements().size(); ++i) {
-    const auto drawn = places(this->evaluated(i, VectorXd::Zero(this->dofs.dofs()), {0.0, 0.0}));
+    const auto reference = places(this->evaluated(i, VectorXd::Zero(this->dofs.dofs()), {0.0, 0.0}));
     // Ten times as far: cables become taut and slack.
     const auto far = places(this->evaluated(i, 10.0 * this->displaced(), this->changes()));
-    EXPECT_EQ(drawn, far);
+    EXPECT_EQ(reference, far);
     const auto near = places(this->evaluated(i, -10.0 * this->displaced(), this->changes()));
-    EXPECT_EQ(drawn, near);
+    EXPECT_EQ(reference, near);
   }
 }
 
