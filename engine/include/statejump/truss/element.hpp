@@ -48,10 +48,13 @@ constexpr void for_each_element_type(Use&& use) {
   (std::make_index_sequence<element_types>());
 }
 
+/// Lists of frames for lists of elements; only its type is used.
+template <class... Lists>
+std::tuple<std::vector<typename std::decay_t<Lists>::value_type::Frame>...> frames_of(
+    const std::tuple<Lists...>& lists);
+
 /// The frames of all elements, a list of each type.
-using ElementFrames = decltype([]<std::size_t... k>(std::index_sequence<k...>) {
-  return std::tuple<std::vector<typename ElementType<k>::Frame>...>();
-}(std::make_index_sequence<element_types>()));
+using ElementFrames = decltype(frames_of(std::declval<ElementLists>()));
 
 /// How many numbers an element of a type has at every state.
 template <Element Type>
