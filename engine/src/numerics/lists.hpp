@@ -30,8 +30,8 @@ class Lists {
     std::partial_sum(begins.begin(), begins.end(), begins.begin());
     std::vector<int> lists(numbers_.size());
     std::vector<std::size_t> next(begins.begin(), begins.end() - 1);
-    for (std::size_t list = 0; list < size();
-         ++list) {  // NOLINT(build/include_what_you_use): a number
+    // NOLINTNEXTLINE(build/include_what_you_use): a number
+    for (std::size_t list = 0; list < size(); ++list) {
       for (const int* number = begin(list); number != end(list); ++number) {
         lists[next[static_cast<std::size_t>(*number)]++] = static_cast<int>(list);
       }

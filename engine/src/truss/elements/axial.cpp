@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "axial.hpp"
 
+#include <string>
+
 #include "statejump/kernel/require.hpp"
 
 namespace statejump::truss::detail {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 #include "statejump/truss/elements/bar.hpp"
 #include "truss/elements/writer.hpp"
