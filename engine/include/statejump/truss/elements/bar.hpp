@@ -38,6 +38,7 @@ struct Bar {
   double energy(const Frame& frame, const ElementState& state) const;
   void describe(const Frame& frame, const ElementState& state, double* outputs) const;
   double thermal_work(const Frame& frame, const detail::ThermalStep& step) const;
+  /// Writes its mass matrix [kg].
   void mass(const Frame& frame, const Inertia& inertia, std::size_t i, MatrixWriter& writer) const;
   Dashpot dashpot(const Frame& frame, const Inertia& inertia, std::size_t i) const;
 };

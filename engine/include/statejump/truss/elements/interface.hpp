@@ -45,6 +45,7 @@ class ElementState {
   Eigen::Vector3d moved_between(int from, int to) const {
     return moved_->col(to) - moved_->col(from);
   }
+  /// Temperature change of a program [K].
   double temperature_change(int program) const {
     return (*changes_)[static_cast<std::size_t>(program)];
   }
@@ -86,11 +87,12 @@ struct Dashpot {
 /// | `validate()` | rules beyond the ranges of single parameters |
 /// | `scale()` | see ElementScale |
 /// | `scale_misfit()` | multiplies its stress in the reference configuration by a fraction |
-/// | `evaluate()` | forces on its nodes [N], with all derivatives; the same entries at every state
-/// | | `thermal_rate()` | rates of these forces where nothing moves [N/s] | | `energy()` | elastic
-/// energy [J]; its gradient is the force | | `thermal_work()` | work of the temperature in a step
-/// [J] | | `mass()` | writes its mass matrix [kg], constant in space | | `dashpot()` | its dashpot
-/// in motion; of coefficients 0: none |
+/// | `evaluate()` | forces on its nodes [N] and derivatives; the same entries at every state |
+/// | `thermal_rate()` | rates of these forces where nothing moves [N/s] |
+/// | `energy()` | elastic energy [J]; its gradient is the force |
+/// | `thermal_work()` | work of the temperature in a step [J] |
+/// | `mass()` | writes its mass matrix [kg], constant in space |
+/// | `dashpot()` | its dashpot in motion; coefficients of 0: none |
 ///
 /// Optional: `beyond_edges()` returns how far the element is beyond the edge at which its stiffness
 /// jumps [m]; `has_edge()` returns whether there is one.

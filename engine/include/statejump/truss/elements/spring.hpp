@@ -36,6 +36,7 @@ struct Spring {
   double energy(const Frame& frame, const ElementState& state) const;
   void describe(const Frame& frame, const ElementState& state, double* outputs) const;
   double thermal_work(const Frame&, const detail::ThermalStep&) const { return 0.0; }
+  /// It has no mass.
   void mass(const Frame&, const Inertia&, std::size_t, MatrixWriter&) const {}
   Dashpot dashpot(const Frame& frame, const Inertia& inertia, std::size_t i) const;
   /// Whether it is a cable, which becomes slack.

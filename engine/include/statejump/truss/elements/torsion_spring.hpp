@@ -39,6 +39,7 @@ struct TorsionSpring {
   double energy(const Frame& frame, const ElementState& state) const;
   void describe(const Frame&, const ElementState&, double*) const {}
   double thermal_work(const Frame&, const detail::ThermalStep&) const { return 0.0; }
+  /// It has no mass.
   void mass(const Frame&, const Inertia&, std::size_t, MatrixWriter&) const {}
   Dashpot dashpot(const Frame&, const Inertia&, std::size_t) const { return {}; }
 };
