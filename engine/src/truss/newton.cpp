@@ -325,14 +325,10 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   const auto leaves_ahead = [&](const Violations& found) {
     if (!looking) return false;
     std::vector<int> leaving;
-    const double dashpots =
-        std::max(start.dashpot_force, system_->dashpot_force(z, time, start, statuses));
-    const auto is_idle = [&](int i) {
-      return system_->is_idle(i, first_z, dashpots) && system_->is_idle(i, z, dashpots);
-    };
+    const double idle_force = system_->idle_force(z, time, start, statuses);
     for (const int i : found.joints) {
       const bool is_event = system_->is_event(i, statuses[index(i)], found.corrected[index(i)]);
-      if (is_event && !is_idle(i)) leaving.push_back(i);
+      if (is_event && !system_->is_idle(i, first_z, z, idle_force)) leaving.push_back(i);
     }
     if (leaving.empty()) return false;
     const Violation first =

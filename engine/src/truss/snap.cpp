@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "rate_sets.hpp"
+#include "truss/elements/axial.hpp"
 #include "walker.hpp"
 
 namespace statejump::truss::detail {
@@ -14,9 +15,8 @@ namespace {
 
 /// Steps in which a snap comes to rest, or is none.
 constexpr int most_snap_steps = 200;
-/// Levels by which dashpots become softer after a step, and stiffer where there is none: the steps
-/// become as long as those of a path along which the stiffness is negative can be.
-constexpr double softer = 0.25;
+/// Levels by which dashpots become stiffer where there is no step: the steps become as long as
+/// those of a path along which the stiffness is negative can be.
 constexpr double stiffer = 0.5;
 /// Level of dashpots as stiff as the stiffest element, and one at which hardly anything moves.
 constexpr double first_level = 4.0;
@@ -43,8 +43,7 @@ double all_plays(const Model& model, double size) {
   }
   double shortest = size;
   for (const Bar& link : model.links) {
-    const double length =
-        (model.nodes[index(link.second)].position - model.nodes[index(link.first)].position).norm();
+    const double length = drawn_length(model, link.first, link.second);
     if (length > 0.0) shortest = std::min(shortest, length);
   }
   return shortest > 0.0 ? sum * size / shortest : sum;
@@ -87,7 +86,7 @@ bool Walker::come_to_rest(const std::function<std::optional<double>(double level
     slower = level == 0.0 && *moved <= last ? slower + 1 : 0;
     if (slower >= most_slower) return true;
     last = *moved;
-    level = std::max(0.0, level - softer);
+    level = std::max(0.0, level - Walker::softer);
   }
   return false;
 }

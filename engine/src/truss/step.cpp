@@ -18,8 +18,6 @@ namespace {
 
 /// Of what is left of the energy that a path may lose the share that a step may.
 constexpr double share_of_an_event = 0.02;
-/// Levels by which dashpots of slack joints become softer after a step.
-constexpr double softer = 0.25;
 /// Steps before one is tried that is longer than those that balance: a tenth of the work at most.
 constexpr int most_held_steps = 10;
 
@@ -183,11 +181,8 @@ StepEnd Walker::step_to(double target, double tolerance) {
     ++path.solves;
     return StepEnd::event_inside;
   }
-  const double dashpots =
-      std::max(begin.dashpot_force, system.dashpot_force(trial, target, begin, trial_statuses));
-  const auto is_idle = [&](int i) {
-    return system.is_idle(i, z, dashpots) && system.is_idle(i, trial, dashpots);
-  };
+  const double idle_force = system.idle_force(trial, target, begin, trial_statuses);
+  const auto is_idle = [&](int i) { return system.is_idle(i, z, trial, idle_force); };
   // Whether it matters when in the step a joint changed its status.
   const auto matters = [&](int i) {
     const JointStatus before = origin.statuses[index(i)];

@@ -270,11 +270,13 @@ double System::dashpot_force(const VectorXd& z, double time, const StepStart& st
   return sum;
 }
 
-bool System::is_idle(int joint, const VectorXd& z, double force) const {
+bool System::is_idle(int joint, const VectorXd& from, const VectorXd& to, double force) const {
   const bool has_play =
       std::visit([](const auto& one) { return one.has_play(); }, model_->joints[index(joint)]);
-  return has_play &&
-         z.segment(force_row(joint), force_count(joint)).lpNorm<Eigen::Infinity>() <= force;
+  const auto carries_more = [&](const VectorXd& z) {
+    return z.segment(force_row(joint), force_count(joint)).lpNorm<Eigen::Infinity>() > force;
+  };
+  return has_play && !carries_more(from) && !carries_more(to);
 }
 
 double System::slack_work(const VectorXd& z, double time, const StepStart& start,

@@ -313,9 +313,15 @@ class System {
   /// Forces of the dashpots of slack elements in a step, all taken as positive and added up [N].
   double dashpot_force(const VectorXd& z, double time, const StepStart& start,
                        const Statuses& statuses) const;
-  /// Whether a joint with play carries no more than `force`. If that is what dashpots carry,
-  /// nothing depends on when the joint changes its status: without dashpots it would carry nothing.
-  bool is_idle(int joint, const VectorXd& z, double force) const;
+  /// The larger of the forces of these dashpots in a step and in the one before [N].
+  double idle_force(const VectorXd& z, double time, const StepStart& start,
+                    const Statuses& statuses) const {
+    return std::max(start.dashpot_force, dashpot_force(z, time, start, statuses));
+  }
+  /// Whether a joint with play carries no more than `force` at both ends of a step. If that is its
+  /// idle_force(), nothing depends on when the joint changes its status: without dashpots it would
+  /// carry nothing.
+  bool is_idle(int joint, const VectorXd& from, const VectorXd& to, double force) const;
   /// Whether a joint slips at its rim while it sticks.
   bool slips_smoothly() const { return slips_smoothly_; }
   /// Slide of a step less what friction bends, of a joint that rolls; nothing is owed to it [m].

@@ -74,6 +74,8 @@ struct Walker {
   /// Whether the last answer of note_slack() was that there are slack elements.
   bool is_loose = false;
   double slack_level = 0.0;  ///< Of these dashpots, see System::slack_stiffness().
+  /// Levels by which dashpots become softer after a step.
+  static constexpr double softer = 0.25;
   /// Joints that changed in the last step and carry no more than dashpots do, see
   /// System::is_idle().
   std::set<int> idle_changes = {};
