@@ -206,7 +206,7 @@ struct SparseFactor::Factors {
     Order(const Order&) = delete;
     Order& operator=(const Order&) = delete;
 
-    // KLU takes its arrays without const but writes to none of them.
+    // See Arrays.
     int* columns() const { return const_cast<int*>(pattern->columns.data()); }
     int* rows() const { return const_cast<int*>(pattern->rows.data()); }
 
@@ -214,6 +214,37 @@ struct SparseFactor::Factors {
     HalvedOrder halves;
     klu_symbolic* symbolic = nullptr;
   };
+
+  /// A matrix as KLU takes it. It has no const, but writes to none of it.
+  struct Arrays {
+    int* columns;
+    int* rows;
+    double* values;
+  };
+
+  /// A matrix in an order; nothing: it has none.
+  std::optional<Arrays> ordered(const Matrix& matrix) {
+    if (size >= HalvedOrder::least_columns) {
+      const Arrays all{const_cast<int*>(matrix.outerIndexPtr()),
+                       const_cast<int*>(matrix.innerIndexPtr()),
+                       const_cast<double*>(matrix.valuePtr())};
+      if (order == nullptr) {
+        order = std::make_shared<const Order>(size, all.columns, all.rows, common);
+      }
+      if (order->symbolic != nullptr) return all;
+    } else {
+      if (order == nullptr || !order->pattern->take(matrix, entries)) {
+        klu_free_numeric(&numeric, &common);
+        Pattern pattern(matrix);
+        pattern.take(matrix, entries);
+        order = std::make_shared<const Order>(size, std::move(pattern), Ordering::amd, common);
+      }
+      if (order->symbolic != nullptr)
+        return Arrays{order->columns(), order->rows(), entries.data()};
+    }
+    order = nullptr;
+    return std::nullopt;
+  }
 
   klu_common common{};
   std::shared_ptr<const Order> order;    ///< Shared and only read.
@@ -232,34 +263,12 @@ bool SparseFactor::factorize(const Matrix& matrix, double most_growth) {
   Factors& f = *factors_;
   f.size = static_cast<int>(matrix.rows());
   if (f.size == 0) return true;  // KLU takes no empty matrix
-  if (f.size >= HalvedOrder::least_columns) {
-    int* columns = const_cast<int*>(matrix.outerIndexPtr());
-    int* rows = const_cast<int*>(matrix.innerIndexPtr());
-    double* values = const_cast<double*>(matrix.valuePtr());
-    if (f.order == nullptr) {
-      auto made = std::make_shared<const Factors::Order>(f.size, columns, rows, f.common);
-      if (made->symbolic == nullptr) return false;
-      f.order = std::move(made);
-    }
-    if (f.keeps_pivots(columns, rows, values, matrix, most_growth)) return true;
-    return f.choose_pivots(columns, rows, values) && f.has_pivots(matrix, 1.0);
-  }
-  if (f.order == nullptr || !f.order->pattern->take(matrix, f.entries)) {
-    klu_free_numeric(&f.numeric, &f.common);
-    Factors::Pattern pattern(matrix);
-    pattern.take(matrix, f.entries);
-    f.order = std::make_shared<const Factors::Order>(f.size, std::move(pattern),
-                                                     Factors::Ordering::amd, f.common);
-    if (f.order->symbolic == nullptr) {
-      f.order = nullptr;
-      return false;
-    }
-  }
-  int* columns = f.order->columns();
-  int* rows = f.order->rows();
-  if (f.keeps_pivots(columns, rows, f.entries.data(), matrix, most_growth)) return true;
-  return f.choose_pivots(columns, rows, f.entries.data()) && f.choose_order(f.entries.data()) &&
-         f.has_pivots(matrix, 1.0);
+  const std::optional<Factors::Arrays> of = f.ordered(matrix);
+  if (!of) return false;
+  if (f.keeps_pivots(of->columns, of->rows, of->values, matrix, most_growth)) return true;
+  if (!f.choose_pivots(of->columns, of->rows, of->values)) return false;
+  if (f.order->pattern && !f.choose_order(of->values)) return false;
+  return f.has_pivots(matrix, 1.0);
 }
 
 void SparseFactor::order_like(const SparseFactor& other) {
