@@ -8,12 +8,12 @@
 
 #include "bodies.hpp"
 #include "contacts.hpp"
+#include "energy_account.hpp"
 #include "linear/complex_factor.hpp"
 #include "linear/sparse_factor.hpp"
 #include "radau.hpp"
 #include "rods.hpp"
 #include "rubbing.hpp"
-#include "stepper.hpp"
 
 namespace statejump::truss::detail {
 
@@ -52,7 +52,7 @@ class SmoothStepper {
   double time() const { return time_; }
   const VectorXd& velocity() const { return v_; }
   const Statuses& statuses() const { return statuses_; }
-  const Account& account() const { return account_; }
+  const EnergyAccount& account() const { return account_; }
   double kinetic_energy() const { return 0.5 * v_.dot(bodies_->mass() * v_); }
   /// The state where it is, of which joints take note.
   void describe(State& state);
@@ -145,7 +145,7 @@ class SmoothStepper {
   VectorXd now_;
   StepStart origin_;
   Statuses statuses_;
-  Account account_;
+  EnergyAccount account_;
   long factorizations_ = 0;
 };
 

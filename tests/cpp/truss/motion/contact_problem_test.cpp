@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "truss/motion/stepper.hpp"
+#include "truss/motion/contact_problem.hpp"
 
 namespace statejump::truss::detail {
 namespace {

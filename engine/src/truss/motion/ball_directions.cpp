@@ -1,39 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the friction of balls points at the end of a step.
+#include "ball_directions.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include "stepper.hpp"
 
 namespace statejump::truss::detail {
 
 namespace {
 
-/// A step turns friction by little, and what is left of a turn falls with its square.
-constexpr int most_turns = 50;
-/// Share of the bound that friction may have across its direction: its size is then off by half the
-/// square of it, which is where a contact is told to slip.
+/// A step rotates friction by little, and the error of a rotation falls with its square.
+constexpr int most_rotations = 50;
+/// Fraction of the bound that friction may have across its direction: its size is then off by half
+/// the square of it, which is where a contact is told to slip.
 constexpr double aside = 1e-4;
 /// The same for what a changed stiffness makes of it while it sticks.
 constexpr double stiffened = 1e-8;
 
 }  // namespace
 
-/// With the pull p that friction would have if it stuck, times the compliance C, friction at the
-/// end of the step is p min(1/C, μ λ_n/|p|). Along p that is Coulomb's law on a line, and its
-/// tangent across p is min(1/C, μ λ_n/|p|) itself: so the contact beside gets the inverse as
-/// compliance, and both together make a step of Newton's method for the direction. A rigid contact
-/// that slides has the way of the step as p, one that sticks its reaction.
-bool Stepper::turn_balls(const Trial& step, int turns, const Local& local) {
-  bool settled = turns > 0;
+bool direct_balls(const System& system, const TimeStep& step, int rotations,
+                  const StepContacts& local, Contacts& contacts, ContactStatuses& statuses) {
+  bool settled = rotations > 0;
   const Contact* last = nullptr;
   for (std::size_t at = 0; at < local.contacts.size(); ++at) {
     Contact& contact = *local.contacts[at];
     if (contact.ball < 0 || contact.beside) continue;
-    BallFriction& cone = contacts_.balls()[index(contact.ball)];
+    BallFriction& cone = contacts.balls()[index(contact.ball)];
     Contact& beside = *local.contacts[at + 1];
     const auto i = static_cast<Eigen::Index>(at);
-    const auto speed = [&](Eigen::Index row) { return local.directions.col(row).dot(step.v); };
+    const auto speed = [&](Eigen::Index row) { return local.speed(step, row); };
     const double bound = contact.friction_coefficient * local.impulses[2 * i] / step.h;
     const double given = std::max(2.0 * bound, 0.0);
     const Vector2d friction(-local.impulses[2 * i + 1] / step.h,
@@ -42,13 +37,13 @@ bool Stepper::turn_balls(const Trial& step, int turns, const Local& local) {
     const auto set = [&](double force, double compliance) {
       beside.given_force = force;
       beside.tangential_stiffness = compliance > 0.0 ? 1.0 / compliance : Contact::infinite;
-      branches_[cone.place + 1] = branch(beside);
+      statuses[cone.place + 1] = status_of(beside);
     };
     if (contact.slips_in_part) {
-      // The contact problem has friction within what is given; on branches there is only the law.
-      if (turns > 0 && friction.norm() < beside.given_force) continue;
+      // The contact problem has friction within what is given; on statuses there is only the law.
+      if (rotations > 0 && friction.norm() < beside.given_force) continue;
       beside.given_force = std::max(given, 2.0 * friction.norm());
-      if (turns > 0 && bound > 0.0) settled = false;
+      if (rotations > 0 && bound > 0.0) settled = false;
       last = &contact;
       continue;
     }
@@ -58,8 +53,8 @@ bool Stepper::turn_balls(const Trial& step, int turns, const Local& local) {
       if (!settled) last = &contact;
       continue;
     }
-    const double compliance = contact.tangential_compliance(elastic_normal(step, local, i));
-    const Contact::Along law = contact.along(elastic_normal(step, local, i), step.h);
+    const double compliance = contact.tangential_compliance(local.elastic_normal(step, i));
+    const Contact::Along law = contact.along(local.elastic_normal(step, i), step.h);
     const double was = beside.tangential_compliance(given);
     beside.compliance = std::min(contact.compliance, compliance);
     Vector2d pull(step.h * speed(2 * i + 1), step.h * speed(2 * i + 3));
@@ -96,10 +91,10 @@ bool Stepper::turn_balls(const Trial& step, int turns, const Local& local) {
     settled = false;
     last = &contact;
     cone.point(cone.along * pull[0] + cone.across() * pull[1]);
-    contacts_.direct(cone);
+    contacts.direct(cone);
   }
-  if (settled || contacts_.balls().empty()) return !settled;
-  if (turns == most_turns) fail(FailureKind::not_converged, step.to, last);
+  if (settled || contacts.balls().empty()) return !settled;
+  if (rotations == most_rotations) fail_step(system, FailureKind::not_converged, step.to, last);
   return true;
 }
 

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "statejump/complementarity/solve.hpp"
+#include "step_matrix.hpp"
+
+namespace statejump::truss::detail {
+
+/// Solves steps whose statuses are not found, by their frictional contact problem.
+///
+/// Newton's method on the bodies: at an iterate, velocities without impulses are v_free, those of
+/// the contacts u = W r + Hᵀ v_free with the Delassus matrix W = Hᵀ A⁻¹ H. Signorini's condition
+/// and Coulomb's law on u and r are a complementarity problem, whose methods need no statuses;
+/// elastic contacts add their compliances to W. A is factored once, at the middle of the step.
+class ContactProblem {
+ public:
+  /// All arguments must outlive it.
+  ContactProblem(StepForces& forces, StepMatrix& matrix, const MotionOptions& options)
+      : forces_(forces), matrix_(matrix), options_(options) {}
+
+  /// Solves the step. @throws Failure if it has no solution that is found
+  void solve(TimeStep& step, StepContacts& contacts);
+
+  long iterations() const { return iterations_; }
+  double largest_merit() const { return largest_merit_; }
+
+ private:
+  /// Solves the contact problem of an iterate. @param free velocities without impulses
+  void solve_contacts(const TimeStep& step, const VectorXd& free, bool first,
+                      StepContacts& contacts);
+
+  StepForces& forces_;
+  StepMatrix& matrix_;
+  const MotionOptions& options_;
+  long iterations_ = 0;
+  double largest_merit_ = 0.0;
+};
+
+/// The contact of a planar problem whose law is violated most [unit of u], W_nn times what its
+/// impulses lack; −1 without contacts.
+Eigen::Index worst_contact(const complementarity::Problem& problem, const VectorXd& impulses);
+
+}  // namespace statejump::truss::detail

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+
+namespace statejump::truss::detail {
+
+/// Energies since the start of a motion that its state does not contain [J].
+struct EnergyAccount {
+  double thermal_work = 0.0;
+  double damping = 0.0;      ///< Heat of all dashpots.
+  double impact = 0.0;       ///< Heat of all contacts across their surfaces.
+  Eigen::VectorXd friction;  ///< Heat of every joint.
+  double negative = 0.0;     ///< Sum of the heats of contacts that were below zero in a step.
+  double drives = 0.0;       ///< Work of the drives.
+};
+
+}  // namespace statejump::truss::detail

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "linear/sparse_factor.hpp"
+#include "refilled_matrix.hpp"
+#include "step_contacts.hpp"
+#include "velocity_constraints.hpp"
+
+namespace statejump::truss::detail {
+
+/// Factors of the equations of a step with every active contact on a status, of this step or an
+/// earlier one of the same length.
+struct StatusFactors {
+  double h = 0.0;
+  std::vector<int> active;  ///< Numbers of the active contacts.
+  ContactStatuses statuses;
+  double scale = 1.0;    ///< Of the velocity constraints.
+  bool outdated = true;  ///< Not yet made, or to be made again: they converge slowly.
+  linear::SparseFactor factor;
+};
+
+/// The linear system of a step, and its factors.
+///
+/// A correction of v changes f by its derivatives, q by h θ times it: so bodies have the matrix
+/// M + h θ C + (h θ)² K at the middle of the step. The velocity constraints B border it, and every
+/// active contact by two rows more, its ContactRow or, on another status, r = 0 or
+/// r_t = ∓ μ r_n. A contact's impulses are unknowns on every status, so that the pattern is the
+/// same on all of them. What does not depend on contacts is filled once for a step.
+///
+/// Where statuses are not found, bodies are factored alone, for the Delassus matrix of the contact
+/// problem.
+class StepMatrix {
+ public:
+  /// All arguments must outlive it.
+  StepMatrix(StepForces& forces, const std::vector<Drive>& drives);
+
+  /// Factors for a length of step and statuses; kept ones if there are.
+  StatusFactors& factors_for(double h, const StepContacts& contacts,
+                             const ContactStatuses& statuses);
+  /// Factors the matrix at an iterate. False: it is singular.
+  bool factorize(StatusFactors& of, const TimeStep& step, const StepContacts& contacts);
+  /// Fills the matrix of a step with its contacts on these statuses at an iterate.
+  void assemble(const ContactStatuses& statuses, const TimeStep& step,
+                const StepContacts& contacts);
+  /// Changes the entries of one contact to its status at an iterate.
+  void update_entries(ContactStatus status, const TimeStep& step, const StepContacts& contacts,
+                      Eigen::Index i);
+  /// As assembled last. Rows: momentum, constraints, then two of each active contact.
+  const Eigen::SparseMatrix<double>& matrix() const { return matrix_.matrix(); }
+  double scale() const { return scale_; }  ///< Of its constraints and contacts.
+
+  /// Factors the bodies alone, for solve_bodies(). @throws Failure if that is singular, or a push
+  /// would speed a contact up against it
+  Delassus delassus(const TimeStep& step, const StepContacts& contacts);
+  VectorXd solve_bodies(const VectorXd& right) { return bodies_factor_.solve(right); }
+
+  const VelocityConstraints& constraints() const { return constraints_; }
+  /// Scales the constraints as in factors that are kept.
+  void scale_constraints(const TimeStep& step, double scale) { constraints_.set(step, scale); }
+  long factorizations() const { return factorizations_; }
+
+ private:
+  /// Fills M + h θ C + (h θ)² K and the constraints; also sets these.
+  void fill_bodies(const TimeStep& step, RefilledMatrix& to);
+  /// Calls `visit(row, column, value)` for the entries of a contact, on all statuses at the same
+  /// positions in one order.
+  template <class Visit>
+  void each_contact_entry(ContactStatus status, const TimeStep& step, const StepContacts& contacts,
+                          Eigen::Index i, Visit&& visit) const;
+
+  StepForces& forces_;
+  VelocityConstraints constraints_;
+  RefilledMatrix matrix_;
+  long step_number_ = -1;  ///< TimeStep::number of its bodies.
+  double scale_ = 1.0;
+  std::vector<std::size_t> contact_entries_;          ///< The first one of every active contact.
+  std::vector<std::unique_ptr<StatusFactors>> kept_;  ///< The last ones used, the latest first.
+  RefilledMatrix bodies_matrix_;
+  linear::SparseFactor bodies_factor_;
+  long factorizations_ = 0;
+};
+
+}  // namespace statejump::truss::detail

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "bodies.hpp"
+#include "contacts.hpp"
+#include "statejump/failure.hpp"
+#include "truss/system.hpp"
+
+namespace statejump::truss::detail {
+
+/// Status of a contact in a step: open, or closed and held along its surface, or sliding on it.
+enum class ContactStatus : unsigned char { open, stick, slip_plus, slip_minus };
+using ContactStatuses = std::vector<ContactStatus>;
+
+/// A truss between two steps. What contacts remember is in Contact.
+struct MotionState {
+  double time = 0.0;         ///< [s]
+  VectorXd q;                ///< Free displacements [m].
+  VectorXd v;                ///< Their velocities [m/s].
+  VectorXd z;                ///< q and the forces of the joints.
+  StepStart origin;          ///< Statuses and history of the joints.
+  VectorXd force;            ///< Forces without dashpots and contacts at (q, time) [N].
+  ContactStatuses contacts;  ///< Of all contacts in the last step.
+};
+
+/// A step that is being solved: M (v − v_from) = h (θ f + (1 − θ) f0) + H r, q = q_from + h (θ v +
+/// (1 − θ) v0). A step of Moreau and Jean begins where the last one ended. A step of backward
+/// differentiation has θ = 1; the last two steps give its beginning, and its h is a fraction of its
+/// length.
+struct TimeStep {
+  long number = 0;
+  double h = 0.0;       ///< [s]; impulses are h times the forces at the end.
+  double to = 0.0;      ///< Time at its end [s].
+  double length = 0.0;  ///< [s]
+  double theta = 1.0;
+  bool differentiates = false;  ///< Whether the last two steps give its beginning.
+  /// Whether its matrix leaves out what compression takes from the stiffness. Where a step begins
+  /// a slack element is as compressed as its temperature makes it; where it ends it carries
+  /// nothing, and only its mass resists a rotation.
+  bool is_definite = false;
+  Bodies::Step span = {};
+  VectorXd q_from;
+  VectorXd v_from;
+  VectorXd q_middle;
+  VectorXd force_before;  ///< f0 [N]
+  VectorXd q;
+  VectorXd v;
+  VectorXd held = {};  ///< Impulses of the velocity constraints, along their scaled columns.
+
+  /// Mean of a force over the step, by which it works. In a step of backward differentiation a
+  /// force that grew from zero has half its size in the mean; a force at its bound has all of it
+  /// while the contact slides.
+  double mean(double before, double after, bool slides) const {
+    return differentiates && !slides ? 0.5 * (before + after) : after;
+  }
+};
+
+/// An elastic contact is on its law to this fraction of its force: its problem is solved to 1e-10
+/// of the largest velocity in it, which a stiff contact turns into much more of a force.
+constexpr double on_law = 1e-6;
+
+/// Fraction of a contact's own force or of the largest speed by which it may miss an inequality, as
+/// the contact problem's tolerance allows.
+constexpr double allowance = 1e-10;
+
+/// Throws Failure for a step without a solution. @param contact that caused it, or null
+[[noreturn]] void fail_step(const System& system, FailureKind kind, double time,
+                            const Contact* contact);
+
+}  // namespace statejump::truss::detail
