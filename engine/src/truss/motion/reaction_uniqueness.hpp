@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "statejump/truss/motion.hpp"
 #include "step_matrix.hpp"

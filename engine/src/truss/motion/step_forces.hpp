@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <utility>
+
 #include "bodies.hpp"
 #include "contacts.hpp"
 #include "linear/sparse_factor.hpp"

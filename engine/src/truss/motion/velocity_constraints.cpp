@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "velocity_constraints.hpp"
 
+#include <vector>
+
 namespace statejump::truss::detail {
 
 VelocityConstraints::VelocityConstraints(const StepForces& forces, const std::vector<Drive>& drives)
