@@ -9,7 +9,7 @@ configure = { test -e $(BUILD)/build.ninja || cmake --preset demo -B $(BUILD); }
             cmake $(foreach part,$(1),-DSTATEJUMP_BUILD_$(part)=ON) $(BUILD) >/dev/null
 compile = cmake --build $(BUILD) --parallel $(JOBS)
 
-.PHONY: demo build test quick bench package docs sanitize sanitize-threads sanitize-yade format clean
+.PHONY: demo build test check quick bench package docs sanitize sanitize-threads sanitize-yade format clean
 demo:
 	./scripts/setup.sh run build
 	$(call configure)
@@ -25,7 +25,14 @@ test:
 	./scripts/setup.sh run build page test docs
 	$(call configure,REPORT TESTS)
 	$(compile)
-	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS)
+	ctest --test-dir $(BUILD) -LE '^check$$' --output-on-failure --parallel $(JOBS)
+
+# Slow checks of the sources, of the tests themselves, and of damaged files and killed processes.
+check:
+	./scripts/setup.sh run build page test docs
+	$(call configure,REPORT TESTS)
+	$(compile)
+	ctest --test-dir $(BUILD) -L '^check$$' --output-on-failure --parallel $(JOBS) --no-tests=error
 
 # Both models and their tests of some seconds each.
 quick:
@@ -55,7 +62,7 @@ sanitize:
 	./scripts/setup.sh build test
 	cmake --preset sanitize
 	cmake --build build-sanitize --parallel $(JOBS)
-	ctest --test-dir build-sanitize --output-on-failure --parallel $(JOBS)
+	ctest --test-dir build-sanitize -LE '^check$$' --output-on-failure --parallel $(JOBS)
 
 sanitize-threads sanitize-yade:
 	./scripts/setup.sh run build test

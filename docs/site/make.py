@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Builds the documentation: documents of the repository, executed notebooks, generated references.
+"""Builds the documentation: documents of the repository, their notebooks, generated references.
 
     /usr/bin/python3 docs/site/make.py --build build
 
-writes build/docs/html. The test adds ``--samples 40 --to FOLDER``: each campaign of a tutorial then
-has 40 samples, and the site of users stays as it is.
+writes build/docs/html. The test adds ``--to FOLDER``, so that the site of users stays as it is. Tutorials show the
+outputs that their notebooks in docs/tutorials hold; notebooks.py runs them.
 
 References: C++ headers by Doxygen, YADE classes by importing the plugin, Python by autodoc, keys of case files from the
 schemas, commands from themselves. A warning is an error; so are a link that leads nowhere, a page that the way through
@@ -95,18 +95,13 @@ def python_pages(build: Path) -> dict[str, str]:
     return made
 
 
-def tutorial_pages(source: Path, build: Path, samples: int | None) -> None:
-    """Replace the tutorials among the staged documents by their executed notebooks.
-
-    :param samples: of each campaign; None: as many as the page says
-    """
+def tutorial_pages(source: Path) -> None:
+    """Replace the tutorials among the staged documents by their notebooks with outputs."""
     for path in notebooks.tutorials():
         target = source / path.relative_to(REPOSITORY)
         # The staged text, not the repository's: its links are those of the site.
         text = target.read_text(encoding="utf-8")
-        if samples is not None:
-            text = re.sub(r"(statejump montecarlo .* --samples) \d+", rf"\g<1> {samples}", text)
-        made = notebooks.executed(notebooks.notebook(text), build)
+        made = notebooks.with_outputs(notebooks.notebook(text), path.with_suffix(".ipynb"))
         target.with_suffix(".ipynb").write_text(notebooks.stored(made), encoding="utf-8")
         first, _, rest = notebooks.page(made, path.stem, target.parent).partition("\n")
         note = f"Download this page as an executed {{download}}`Jupyter notebook <{path.stem}.ipynb>`."
@@ -142,7 +137,6 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=Path, default=REPOSITORY / "build")
     parser.add_argument("--to", type=Path, help="folder of the site; default: docs in the build tree")
-    parser.add_argument("--samples", type=int, help="of each campaign of a tutorial; default: as its page says")
     arguments = parser.parse_args()
     build = arguments.build.resolve()
     os.environ["PYTHONPATH"] = str(build / "python")
@@ -162,7 +156,7 @@ def main() -> None:
     wrong += command_pages.unlisted((REPOSITORY / "docs" / "reference" / "commands.md").read_text(encoding="utf-8"))
     if wrong:
         sys.exit("\n".join(wrong))
-    tutorial_pages(source, build, arguments.samples)
+    tutorial_pages(source)
 
     members = doxygen(folder)
     subprocess.run(

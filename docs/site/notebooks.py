@@ -4,6 +4,7 @@
 
     /usr/bin/python3 docs/site/notebooks.py                      writes docs/tutorials/NAME.ipynb, without outputs
     /usr/bin/python3 docs/site/notebooks.py --run build NAME...  with outputs, and the last figure as NAME.png
+    /usr/bin/python3 docs/site/notebooks.py --check build NAME   runs it, writes nothing; campaigns have 40 samples
 
 A notebook whose cells did not change keeps its outputs. Blocks of a tutorial:
 
@@ -38,6 +39,7 @@ BLOCK = re.compile(r"^```([a-z+]*)(?: file=(\S+))?\n(.*?)^```$\n?", re.MULTILINE
 YADES_GREETING = re.compile(
     "Welcome to Yade|Using python version|TCP python prompt|XMLRPC info provider|Running script")
 RUN_FOLDER = re.compile(r"/\S*/statejump-notebook-\w+/(run|jupyter)/")
+SAMPLES = re.compile(r"(statejump montecarlo .* --samples) \d+")
 TIMEOUT_S = 1200  # of a cell; the longest, a thousand masts, takes two minutes on two idle cores
 
 
@@ -238,6 +240,20 @@ def shared(made: NotebookNode) -> NotebookNode:
     return made
 
 
+def with_outputs(made: NotebookNode, stored_file: Path) -> NotebookNode:
+    """Return a notebook with the outputs of a stored one.
+
+    :raises SystemExit: the cells differ
+    """
+    kept = [cell for cell in nbformat.read(stored_file, as_version=4).cells if cell.cell_type == "code"]
+    cells = [cell for cell in made.cells if cell.cell_type == "code"]
+    if [cell.source for cell in kept] != [cell.source for cell in cells]:
+        raise SystemExit(f"{stored_file.name}: not the notebook of its page; run docs/site/notebooks.py --run BUILD")
+    for cell, before in zip(cells, kept):
+        cell.outputs, cell.execution_count = before.outputs, before.execution_count
+    return made
+
+
 def last_figure(made: NotebookNode) -> bytes | None:
     """Return the last figure of an executed notebook as PNG."""
     figures = [output.data["image/png"] for cell in made.cells if cell.cell_type == "code" for output in cell.outputs
@@ -263,13 +279,18 @@ def write(source: Path, build: Path | None) -> None:
 
 
 def main() -> None:
-    """Write the notebooks beside their pages."""
+    """Write the notebooks beside their pages, or run them."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--run", type=Path, metavar="BUILD", help="build tree whose package executes the notebooks")
+    parser.add_argument("--check", type=Path, metavar="BUILD", help="run and write nothing; campaigns have 40 samples")
     parser.add_argument("names", nargs="*", help="tutorials; all if none is given")
     given = parser.parse_args()
     for source in tutorials():
-        if not given.names or source.stem in given.names:
+        if given.names and source.stem not in given.names:
+            continue
+        if given.check:
+            executed(notebook(SAMPLES.sub(r"\g<1> 40", source.read_text(encoding="utf-8"))), given.check)
+        else:
             write(source, given.run)
 
 

@@ -133,38 +133,53 @@ def test_same_number_in_yade(yade: str, folder: Path) -> None:
     assert "cubic" in seen["doc"] and "F = E*/R1 delta^3" in seen["doc"]
 
 
-NAN = '''#include <cmath>
+# Which of its wrong answers the law gives is decided when it runs, so that it is compiled once.
+WRONG = '''#include <cmath>
+#include <cstdlib>
+#include <string>
 #include "statejump/kernel/laws/normal.hpp"
 using namespace statejump::kernel::laws;
 struct UserLaw {
-  static constexpr LawInfo info{"NAME", "F", "the tests", "any", Trait::holds_static_load, {}};
+  static constexpr LawInfo info{"wrong", "F", "the tests", "any", Trait::holds_static_load, {}};
   static double largest_depth(const NormalGeometry&) { return 1.0; }
   NormalState operator()(double depth, const NormalGeometry&, const NormalMaterial&) const {
     if (depth <= 0.0) return {0.0, 0.0, 0.0, 0.0};
-    BODY
+    const char* const asked = std::getenv("WRONG_ANSWER");
+    const std::string answer = asked ? asked : "";
+    if (answer == "throws") throw std::runtime_error("no idea");
+    if (answer == "throws_a_number") throw 42;
+    return {answer == "pulls" ? -1.0 : std::nan(""), 1.0, 0.0, 0.0};
   }
 };
 '''
 
 
-@pytest.mark.parametrize("name, body, complaint", [
-    ("no_number", "return {std::nan(\"\"), 1.0, 0.0, 0.0};", "returned force = nan"),
-    ("pulls", "return {-1.0, 1.0, 0.0, 0.0};", "returned force = -1"),
-    ("throws", "throw std::runtime_error(\"no idea\");", "no idea"),
-    ("throws_a_number", "throw 42;", "an exception that is no std::exception"),
+@pytest.fixture(scope="module")
+def wrong_law(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A compiled law whose answers are wrong, in a folder of its own."""
+    made = tmp_path_factory.mktemp("wrong")
+    header = made / "wrong.hpp"
+    header.write_text(WRONG)
+    return build.build(header, made)
+
+
+@pytest.mark.parametrize("answer, complaint", [
+    ("no_number", "returned force = nan"),
+    ("pulls", "returned force = -1"),
+    ("throws", "no idea"),
+    ("throws_a_number", "an exception that is no std::exception"),
 ])
-def test_wrong_answers_name_law_joint_and_time(yade: str, tmp_path: Path, name: str, body: str, complaint: str) -> None:
-    header = tmp_path / "wrong.hpp"
-    header.write_text(NAN.replace("NAME", name).replace("BODY", body))
-    written = build.build(header, tmp_path)
-    done = rib(tmp_path, "umbrella_damped.toml", {"joint.normal_law": name})
+def test_wrong_answers_name_law_joint_and_time(yade: str, monkeypatch: pytest.MonkeyPatch, wrong_law: Path, answer: str,
+                                               complaint: str) -> None:
+    monkeypatch.setenv("WRONG_ANSWER", answer)
+    done = rib(wrong_law.parent, "umbrella_damped.toml", {"joint.normal_law": "wrong"})
     last = done.stderr.strip().splitlines()[-1]
-    assert done.returncode == 1 and f"{name} ({written}): {complaint}" in last
+    assert done.returncode == 1 and f"wrong ({wrong_law}): {complaint}" in last
     assert re.search(r"t = [\d.e-]+ s", last), last
     script = Path(__file__).resolve().parents[1] / "yade" / "scripts" / "user_law.py"
-    done = ended([yade, "-n", "-x", script, name], STATEJUMP_LAWS=str(tmp_path),
+    done = ended([yade, "-n", "-x", script, "wrong"], STATEJUMP_LAWS=str(wrong_law.parent),
                  PYTHONPATH=os.pathsep.join([str(BUILT), str(script.parent)]))
-    assert f"{name} ({written}): {complaint} (contact of bodies 0 and 1, time 0 s" in done.stdout, done.stderr
+    assert f"wrong ({wrong_law}): {complaint} (contact of bodies 0 and 1, time 0 s" in done.stdout, done.stderr
 
 
 def mistake(statejump, *arguments: object, **environment: str) -> str:
