@@ -124,6 +124,7 @@ class References:
     """What names of a case stand for. References must be right: ``checks`` sees to it when a case is read."""
 
     dimension: int
+    position_m: np.ndarray  # (n, 3) of the nodes
     node: Places
     link: Places
     program: Places  # of [[program]], one less than their index: 0 is the common one

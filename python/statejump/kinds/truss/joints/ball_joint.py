@@ -11,7 +11,7 @@ import numpy as np
 
 from statejump.core.errors import NotAllowed
 from statejump.kinds.truss.arrays import References, columns, having, indices, names
-from statejump.kinds.truss.joints.protocol import BLACK, Contacts, JointColumn, Sampled, Symbol
+from statejump.kinds.truss.joints.protocol import BLACK, Contacts, ItemColumn, Sampled, Symbol
 from statejump.kinds.truss.joints.round_parts import RoundParts
 from statejump.kinds.truss.joints.words import ALUMINIUM, USER, count, scaled, spread
 from statejump.schema.fields import CHOICE, choice, definition, parameter, text
@@ -75,10 +75,10 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
 
     section = "ball_joint"
     Item = BallJoint
-    columns: ClassVar[tuple[JointColumn, ...]] = (
-        JointColumn("ball_eccentricity_m", "ball minus socket centre", vector=True),
-        JointColumn("ball_normal_force_N"),
-        JointColumn("ball_friction_force_N", "on the ball", vector=True),
+    columns: ClassVar[tuple[ItemColumn, ...]] = (
+        ItemColumn("ball_eccentricity_m", "ball minus socket centre", vector=True),
+        ItemColumn("ball_normal_force_N"),
+        ItemColumn("ball_friction_force_N", "on the ball", vector=True),
     )
     varied = ("friction_coefficient", "radial_clearance_m", "ball_radius_m", "young_modulus_Pa")
     inner, outer = "ball", "socket"

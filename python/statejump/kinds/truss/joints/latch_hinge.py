@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from statejump.kinds.truss.arrays import GROUND, References, columns, names, pairs
-from statejump.kinds.truss.joints.protocol import JointColumn, JointType, Symbol, Torsion
+from statejump.kinds.truss.joints.protocol import ItemColumn, JointType, Symbol, Torsion
 from statejump.kinds.truss.joints.words import USER, count, scaled, spread
 from statejump.kinds.truss.references import (
     Around, axis_of_rotation, known_links, turned_links, wrong_axes, wrong_ends,
@@ -64,9 +64,9 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
     section = "latch_hinge"
     turns = True
     Item = LatchHinge
-    columns: ClassVar[tuple[JointColumn, ...]] = (
-        JointColumn("hinge_rotation_rad", "from the drawn shape"),
-        JointColumn("hinge_moment_N_m", "against the rotation: preload, stiffness beyond the play, friction"),
+    columns: ClassVar[tuple[ItemColumn, ...]] = (
+        ItemColumn("hinge_rotation_rad", "from the drawn shape"),
+        ItemColumn("hinge_moment_N_m", "against the rotation: preload, stiffness beyond the play, friction"),
     )
     varied = ("deadband_rad", "stiffness_N_m_per_rad", "friction_moment_N_m", "preload_moment_N_m")
 

@@ -33,8 +33,8 @@ IMPACT = 2 ** (1 / 3)
 
 
 @dataclass(frozen=True)
-class JointColumn:
-    """A column that both models have of every joint of a type, under the name that the engine's output has."""
+class ItemColumn:
+    """A column of every joint or element of a type, under the name of the engine's output."""
 
     name: str  # with its unit
     note: str = ""
@@ -110,7 +110,7 @@ class JointType(Generic[ItemType, ArraysType]):
 
     section: ClassVar[str]
     Item: ClassVar[type[Item]]
-    columns: ClassVar[tuple[JointColumn, ...]] = ()  # the first says where it is: a slide, an offset, a rotation
+    columns: ClassVar[tuple[ItemColumn, ...]] = ()  # the first says where it is: a slide, an offset, a rotation
     varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that a jump may follow
     has_temperature: ClassVar[bool] = False  # its items have a program and a temperature_fraction
     has_contacts: ClassVar[bool] = False  # two surfaces touch: it has rows among the contacts of a result

@@ -11,7 +11,7 @@ import numpy as np
 
 from statejump.core.errors import NotAllowed
 from statejump.kinds.truss.arrays import References, columns, having, indices, names
-from statejump.kinds.truss.joints.protocol import BLACK, Contacts, JointColumn, Sampled, Symbol
+from statejump.kinds.truss.joints.protocol import BLACK, Contacts, ItemColumn, Sampled, Symbol
 from statejump.kinds.truss.joints.round_parts import RoundParts
 from statejump.kinds.truss.joints.words import ALUMINIUM, USER, count, scaled, spread
 from statejump.kinds.truss.references import axis_of_rotation, wrong_axes
@@ -77,10 +77,10 @@ class RevoluteType(RoundParts[Revolute, Revolutes]):
 
     section = "revolute"
     Item = Revolute
-    columns: ClassVar[tuple[JointColumn, ...]] = (
-        JointColumn("eccentricity_m", "journal minus bearing centre", vector=True),
-        JointColumn("normal_force_N"),
-        JointColumn("friction_force_N", "on the journal, clockwise about the axis"),
+    columns: ClassVar[tuple[ItemColumn, ...]] = (
+        ItemColumn("eccentricity_m", "journal minus bearing centre", vector=True),
+        ItemColumn("normal_force_N"),
+        ItemColumn("friction_force_N", "on the journal, clockwise about the axis"),
     )
     varied = ("friction_coefficient", "radial_clearance_m", "journal_radius_m")
     inner, outer = "journal", "bearing"
