@@ -15,7 +15,7 @@ import numpy as np
 
 from statejump.core.case import Case
 from statejump.core.errors import StatejumpError
-from statejump.kinds.truss.arrays import References, distances
+from statejump.kinds.truss.arrays import References, arrays_of, distances
 from statejump.kinds.truss.joints.protocol import ItemColumn, Symbol, Torsion
 from statejump.kinds.truss.references import Around, known_nodes, wrong_ends
 from statejump.schema.item_tables import ItemColumns
@@ -53,6 +53,7 @@ class ElementType(Generic[ItemType, ArraysType]):
 
     section: ClassVar[str]
     Item: ClassVar[type[Item]]
+    Arrays: ClassVar[type[Any]]  # dataclass: names, and a field of the name of each key that models use
     columns: ClassVar[tuple[ItemColumn, ...]] = ()
     listed_if_none: ClassVar[bool] = False  # results list its items even if a truss has none
     varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that a jump may follow
@@ -92,9 +93,13 @@ class ElementType(Generic[ItemType, ArraysType]):
         return np.full(len(items), False)
 
     def resolve(self, items: Sequence[ItemType], known: References) -> ArraysType:
-        """Return the elements as a dataclass of arrays, those of the engine among them: ``names`` and one array per
-        number."""
-        raise NotImplementedError
+        """Return the elements as arrays: the keys of their items, but for those of :meth:`derived`."""
+        made: ArraysType = arrays_of(self.Arrays, self.Item, items, known, **self.derived(items, known))
+        return made
+
+    def derived(self, items: Sequence[ItemType], known: References) -> dict[str, Any]:
+        """Return the arrays whose values are not those of a key as it is given."""
+        return {}
 
     def check_geometry(self, truss: ResolvedTruss, elements: ArraysType) -> None:
         """Raise an error for wrong positions, directions and lengths."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from statejump.core.errors import NotAllowed
-from statejump.kinds.truss.arrays import References, column, distances, given_or, names, pairs, said, values
+from statejump.kinds.truss.arrays import References, column, distances, given_or, pairs, said
 from statejump.kinds.truss.elements.protocol import BetweenNodes, EndsArrays, Lines, Switch
 from statejump.kinds.truss.joints.protocol import ItemColumn
 from statejump.kinds.truss.joints.words import USER, scaled
@@ -52,6 +52,7 @@ class SpringType(BetweenNodes[Spring, Springs]):
 
     section = "spring"
     Item = Spring
+    Arrays = Springs
     columns: ClassVar[tuple[ItemColumn, ...]] = (ItemColumn("tension_N"),)
     listed_if_none = True  # as in all result files so far
     varied = ("stiffness_N_per_m", "preload_N")
@@ -63,19 +64,14 @@ class SpringType(BetweenNodes[Spring, Springs]):
     def may_be_wrong_keys(self, items: ItemColumns[Spring]) -> np.ndarray:
         return np.asarray(said(items, "preload_N") & said(items, "free_length_m"))
 
-    def resolve(self, items: Sequence[Spring], known: References) -> Springs:
-        nodes = pairs(items, "nodes", known.node)
-        drawn = distances(known.position_m, nodes)
+    def derived(self, items: Sequence[Spring], known: References) -> dict[str, Any]:
+        drawn = distances(known.position_m, pairs(items, "nodes", known.node))
         stiffness = column(items, "stiffness_N_per_m")
         free, preload = column(items, "free_length_m"), column(items, "preload_N")
         preload = once(np.where(np.isnan(free), np.nan_to_num(preload), stiffness * (drawn - free)))
         with np.errstate(over="ignore"):  # refused by the checks
             stretch = preload / stiffness
-        return Springs(
-            names=names(items), nodes=nodes, stiffness_N_per_m=stiffness,
-            free_length_m=given_or(free, drawn - stretch), preload_N=preload,
-            cable=np.array(list(values(items, "cable")), dtype=bool),
-        )
+        return {"free_length_m": given_or(free, drawn - stretch), "preload_N": preload}
 
     def check_geometry(self, truss: ResolvedTruss, elements: Springs) -> None:
         super().check_geometry(truss, elements)

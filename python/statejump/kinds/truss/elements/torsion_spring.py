@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from statejump.kinds.truss.arrays import References, columns, names, pairs
 from statejump.kinds.truss.elements.protocol import ElementType
 from statejump.kinds.truss.joints.protocol import Strokes, Symbol, Torsion
 from statejump.kinds.truss.joints.words import USER, scaled
@@ -58,6 +57,7 @@ class TorsionSpringType(ElementType[TorsionSpring, TorsionSprings]):
 
     section = "torsion_spring"
     Item = TorsionSpring
+    Arrays = TorsionSprings
     varied = ("stiffness_N_m_per_rad", "bias_rad")
 
     def check_vectors(self, item: TorsionSpring, dimension: int) -> None:
@@ -71,12 +71,6 @@ class TorsionSpringType(ElementType[TorsionSpring, TorsionSprings]):
 
     def may_be_wrong_references(self, items: ItemColumns[TorsionSpring], around: Around) -> np.ndarray:
         return wrong_ends(around.links.of(items, "links"), 1)
-
-    def resolve(self, items: Sequence[TorsionSpring], known: References) -> TorsionSprings:
-        return TorsionSprings(
-            names=names(items), links=pairs(items, "links", known.link), axis=known.axes(items),
-            **columns(items, "stiffness_N_m_per_rad", "bias_rad"),
-        )
 
     def check_geometry(self, truss: ResolvedTruss, elements: TorsionSprings) -> None:
         turned_links(truss, self.section, elements)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from statejump.core.errors import NotAllowed
-from statejump.kinds.truss.arrays import References, columns, having, indices, names
+from statejump.kinds.truss.arrays import References, having
 from statejump.kinds.truss.joints.protocol import BLACK, Contacts, ItemColumn, Sampled, Symbol
 from statejump.kinds.truss.joints.round_parts import RoundParts
 from statejump.kinds.truss.joints.words import ALUMINIUM, USER, count, scaled, spread
@@ -75,6 +75,7 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
 
     section = "ball_joint"
     Item = BallJoint
+    Arrays = BallJoints
     columns: ClassVar[tuple[ItemColumn, ...]] = (
         ItemColumn("ball_eccentricity_m", "ball minus socket centre", vector=True),
         ItemColumn("ball_normal_force_N"),
@@ -86,18 +87,8 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
     friction_force = "ball_friction_force_N"
     has_axis = False
 
-    def resolve(self, items: Sequence[BallJoint], known: References) -> BallJoints:
-        return BallJoints(
-            names=names(items),
-            **{key: indices(items, key, known.node) for key in ("socket_node", "ball_node")},
-            **{key: indices(items, key, known.link) for key in ("socket_link", "ball_link")},
-            program=known.programs_of(items),
-            rigid=having(items, "contact", "rigid"),
-            **columns(
-                items, "ball_radius_m", "radial_clearance_m", "friction_coefficient", "ball_thermal_expansion_per_K",
-                "socket_thermal_expansion_per_K", "temperature_fraction", "young_modulus_Pa", "poisson_ratio",
-            ),
-        )
+    def derived(self, items: Sequence[BallJoint], known: References) -> dict[str, Any]:
+        return {"rigid": having(items, "contact", "rigid")}
 
     def check_vectors(self, item: BallJoint, dimension: int) -> None:
         if dimension == 2:

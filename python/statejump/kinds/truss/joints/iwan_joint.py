@@ -13,7 +13,7 @@ import numpy as np
 
 from statejump import _engine
 from statejump.core.errors import NotAllowed
-from statejump.kinds.truss.arrays import References, column, columns, names, none_of, pairs, unit, vectors
+from statejump.kinds.truss.arrays import none_of
 from statejump.kinds.truss.joints.along_axis import AlongAxis
 from statejump.kinds.truss.joints.protocol import ItemColumn, Strokes, Symbol
 from statejump.kinds.truss.joints.slider import with_sliders
@@ -70,19 +70,13 @@ class IwanJointType(AlongAxis[IwanJoint, IwanJoints]):
     section = "iwan_joint"
     noun = "an Iwan joint"
     Item = IwanJoint
+    Arrays = IwanJoints
     columns: ClassVar[tuple[ItemColumn, ...]] = (
         ItemColumn("iwan_slide_m", "from the drawn shape"),
         ItemColumn("iwan_force_N", "on the first node, against the axis"),
     )
     varied = NUMBERS
     not_in_dem = "is a joint that the DEM does not have"
-
-    def resolve(self, items: Sequence[IwanJoint], known: References) -> IwanJoints:
-        return IwanJoints(
-            names=names(items), nodes=pairs(items, "nodes", known.node),
-            axis=unit(vectors(items, "axis", known.dimension)),
-            elements=column(items, "elements").astype(int), **columns(items, *NUMBERS, "spacing"),
-        )
 
     def check_geometry(self, truss: ResolvedTruss, joints: IwanJoints, ranges_K: np.ndarray) -> None:
         super().check_geometry(truss, joints, ranges_K)

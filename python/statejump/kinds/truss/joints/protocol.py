@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 import numpy as np
 
 from statejump.core.case import Case
-from statejump.kinds.truss.arrays import References
+from statejump.kinds.truss.arrays import References, arrays_of
 from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
 
@@ -110,6 +110,7 @@ class JointType(Generic[ItemType, ArraysType]):
 
     section: ClassVar[str]
     Item: ClassVar[type[Item]]
+    Arrays: ClassVar[type[Any]]  # dataclass: names, and a field of the name of each key that models use
     columns: ClassVar[tuple[ItemColumn, ...]] = ()  # the first says where it is: a slide, an offset, a rotation
     varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that a jump may follow
     has_temperature: ClassVar[bool] = False  # its items have a program and a temperature_fraction
@@ -152,8 +153,13 @@ class JointType(Generic[ItemType, ArraysType]):
         return False
 
     def resolve(self, items: Sequence[ItemType], known: References) -> ArraysType:
-        """Return the joints as a dataclass of arrays: ``names`` and one array per number, axes of length 1."""
-        raise NotImplementedError
+        """Return the joints as arrays: the keys of their items, but for those of :meth:`derived`."""
+        made: ArraysType = arrays_of(self.Arrays, self.Item, items, known, **self.derived(items, known))
+        return made
+
+    def derived(self, items: Sequence[ItemType], known: References) -> dict[str, Any]:
+        """Return the arrays whose values are not those of a key as it is given."""
+        return {}
 
     def check_geometry(self, truss: ResolvedTruss, joints: ArraysType, ranges_K: np.ndarray) -> None:
         """Raise an error for what is wrong with places, directions and clearances.

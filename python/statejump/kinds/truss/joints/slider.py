@@ -13,7 +13,7 @@ from statejump.core import physics
 from statejump.core.errors import NotAllowed
 from statejump.core.start import FRICTIONLESS
 from statejump.core.units import text
-from statejump.kinds.truss.arrays import GROUND, References, columns, names, pairs, unit, vectors
+from statejump.kinds.truss.arrays import GROUND, References, columns
 from statejump.kinds.truss.joints.along_axis import AlongAxis, Axes
 from statejump.kinds.truss.joints.protocol import (
     IMPACT, ContactPart, Contacts, Drawn, ItemColumn, Sampled, Strokes, Symbol,
@@ -175,6 +175,7 @@ class SliderType(AlongAxis[Slider, Sliders]):
     section = "slider"
     noun = "a slider"
     Item = Slider
+    Arrays = Sliders
     columns: ClassVar[tuple[ItemColumn, ...]] = (
         ItemColumn("slide_m"),
         ItemColumn("slider_force_N", "friction and stop on the slider, against its axis"),
@@ -183,15 +184,9 @@ class SliderType(AlongAxis[Slider, Sliders]):
               "stop_stiffness_N_per_m", "play_m")
     has_contacts = True
 
-    def resolve(self, items: Sequence[Slider], known: References) -> Sliders:
+    def derived(self, items: Sequence[Slider], known: References) -> dict[str, Any]:
         stops = columns(items, "clearance_minus_m", "clearance_plus_m", "stop_stiffness_N_per_m")
-        return Sliders(
-            names=names(items), nodes=pairs(items, "nodes", known.node),
-            axis=unit(vectors(items, "axis", known.dimension)),
-            **columns(items, "friction_coefficient", "normal_force_N", "play_m", "pad_radius_m", "young_modulus_Pa",
-                      "poisson_ratio"),
-            **{key: np.where(np.isnan(values), inf, values) for key, values in stops.items()},
-        )
+        return {key: np.where(np.isnan(values), inf, values) for key, values in stops.items()}
 
     def check_geometry(self, truss: ResolvedTruss, joints: Sliders, ranges_K: np.ndarray) -> None:
         super().check_geometry(truss, joints, ranges_K)
