@@ -9,6 +9,7 @@ import pytest
 
 import statejump as sj
 from statejump import _engine
+from statejump.kinds.truss import dem
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.checks import SECTIONS
 from statejump.kinds.truss.elements import ELEMENTS, ElementLists
@@ -81,3 +82,13 @@ def test_arrays_are_those_of_the_engine(kind: AnyType) -> None:
 def test_names_of_types_and_columns_are_unique() -> None:
     names = [name for kind in TYPES for name in (kind.section, *(column.name for column in kind.columns))]
     assert len(set(names)) == len(names)
+
+
+def test_dem_refuses_elements_by_name() -> None:
+    case = sj.truss.umbrella(1)
+    (spring,) = case.torsion_spring
+    with pytest.raises(sj.StatejumpError) as refused:
+        dem.check(case.changed({f"torsion_spring.{spring.name}.bias_rad": 1.6}))
+    assert refused.value.code == "dem_cannot_run"
+    assert f"torsion_spring {spring.name!r}" in str(refused.value)
+    dem.check(case.changed({f"torsion_spring.{spring.name}.bias_rad": -1.57}))

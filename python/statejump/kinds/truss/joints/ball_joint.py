@@ -105,11 +105,14 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
         self.check_parts(truss, joints, ranges_K, np.linalg.norm(self.offset_m(truss, joints), axis=1))
 
     def regularised_refuses(self, joints: BallJoints) -> tuple[str, str] | None:
-        return next(((name, "has contact = 'rigid'") for name in self.rigid_ones(joints)), None)
+        for index in np.flatnonzero(joints.rigid)[:1]:
+            return joints.names[index], "has contact = 'rigid'"
+        return None
 
-    def rigid_ones(self, joints: BallJoints) -> list[str]:
-        """Return the names of those whose contact is rigid."""
-        return [joints.names[index] for index in np.flatnonzero(joints.rigid)]
+    def path_refuses(self, joints: BallJoints) -> tuple[str, str] | None:
+        for index in np.flatnonzero(joints.rigid)[:1]:
+            return joints.names[index], "has contact = 'rigid', of which a path does not say how it begins to slide"
+        return None
 
     def engine_arrays(self, truss: ResolvedTruss, joints: BallJoints) -> dict[str, Any]:
         return {

@@ -177,6 +177,10 @@ class JointType(Generic[ItemType, ArraysType]):
         """Return the engine's parameters that are not arrays of the same name."""
         return {}
 
+    def path_refuses(self, joints: ArraysType) -> tuple[str, str] | None:
+        """Return name and reason of a joint that has no quasi-static path: it moves from ``motion.start = "drawn"``."""
+        return None
+
     # ---------------------------------------------------------------- result
 
     def contacts(self, run: Sampled, joints: ArraysType) -> Contacts:
