@@ -10,6 +10,7 @@ from typing import Any, Iterator
 
 from statejump import _engine, kinds
 from statejump.core.units import unit_of
+from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.joints import JOINTS
 from statejump.schema import json_schema as schema
 
@@ -178,6 +179,7 @@ def history_columns() -> set[str]:
     """Return the columns of histories and the arguments that the engine's modules document."""
     found = {column for name in kinds.names() for column in kinds.kind(name).COLUMNS}
     found.update(column.name for joint in JOINTS for column in joint.columns)
+    found.update(column.name for element in ELEMENTS for column in element.columns)
     for value in (*vars(_engine).values(), *vars(import_module("statejump._engine_more")).values()):
         inner = vars(value) if isinstance(value, type) else {}
         found.update(inner)

@@ -397,7 +397,7 @@ def test_arrays_of_a_planar_truss() -> None:
     # One rounding of each of two operations on numbers near 1.
     assert truss.springs.free_length_m[0] == pytest.approx(2**0.5 - 5.0 / 1e4, rel=4e-16)
     assert truss.springs.cable[0]
-    assert truss.torsion_springs.links.tolist() == [[0, 1]]
+    assert truss.elements["torsion_spring"].links.tolist() == [[0, 1]]
     assert truss.reflector is not None and truss.reflector.nodes.tolist() == [1, 3]
     assert truss.reflector.axis.tolist() == [0, 1, 0]
 
@@ -408,7 +408,7 @@ def test_arrays_of_a_spatial_truss() -> None:
     assert not truss.nodes.fixed[1].any() and truss.nodes.fixed[0].all()
     # Journal and bearing may be apart along the axis.
     assert truss.revolutes.axis.tolist() == [[0, 1, 0]]
-    assert truss.torsion_springs.axis.tolist() == [[0, -1, 0]]
+    assert truss.elements["torsion_spring"].axis.tolist() == [[0, -1, 0]]
     assert truss.springs.names == () and truss.springs.nodes.shape == (0, 2) and truss.reflector is None
 
 
@@ -506,7 +506,7 @@ def test_umbrella_rib_is_the_umbrella_case(cases: Path) -> None:
         assert getattr(joint, key)[0] == getattr(case.joint, key), key
     for link in (case.link_ab, case.link_bc):
         assert (joint.young_modulus_Pa[0], joint.poisson_ratio[0]) == (link.young_modulus_Pa, link.poisson_ratio)
-    spring = truss.torsion_springs
+    spring = truss.elements["torsion_spring"]
     assert spring.stiffness_N_m_per_rad[0] == case.torsion_spring.stiffness_N_m_per_rad
     assert spring.bias_rad[0] == case.torsion_spring.bias_rad
     # The drawn angle from the first link to the second is the flare angle of the ideal position.
@@ -532,7 +532,7 @@ def test_ribs_of_an_umbrella_are_turned_copies() -> None:
         own = slice(4 * k, 4 * k + 4)
         # 15 decimals of a metre, of a unit vector.
         assert many.nodes.position_m[own] == pytest.approx(one.nodes.position_m @ turn.T, abs=2e-15)
-        for axis in (many.revolutes.axis[k], many.torsion_springs.axis[k], *many.nodes.guide_normal[own][2:]):
+        for axis in (many.revolutes.axis[k], many.elements["torsion_spring"].axis[k], *many.nodes.guide_normal[own][2:]):
             assert axis == pytest.approx(turn @ [0, 0, 1], abs=2e-15)
     assert many.reflector is not None and [many.nodes.names[i] for i in many.reflector.nodes] == [
         f"B{k}" for k in range(1, n + 1)]
@@ -569,14 +569,14 @@ def stiffness_and_forces(truss: ResolvedTruss, temperature_change_K: float) -> t
         row((nodes[0], -along), (nodes[1], along))
         stiffness.append(springs.stiffness_N_per_m[index])
         stress.append(springs.preload_N[index])
-    for index, pair in enumerate(truss.torsion_springs.links):
+    for index, pair in enumerate(truss.elements["torsion_spring"].links):
         parts = []
         for link, sign in zip(pair, (-1.0, 1.0)):
             along, length = direction(links.nodes[link])
             across = sign * np.array([-along[1], along[0]]) / length
             parts += [(links.nodes[link][0], -across), (links.nodes[link][1], across)]
         row(*parts)
-        stiffness.append(truss.torsion_springs.stiffness_N_m_per_rad[index])
+        stiffness.append(truss.elements["torsion_spring"].stiffness_N_m_per_rad[index])
         stress.append(0.0)
     free = (~truss.nodes.fixed[:, :2] & (same == np.arange(count))[:, None]).ravel()
     matrix = np.array(rows)[:, free]

@@ -498,9 +498,116 @@ py::dict type_dict() {
   return made;
 }
 
-}  // namespace
+/// Documentation of truss_path().
+constexpr const char* about_path =
+    "Quasi-static path of a truss: exact Coulomb friction at every joint.\n\n"
+    "Every kind of item is a dict of arrays, one entry per item, and 'names'. Index -1: ground.\n"
+    "nodes: position_m (n, 3), fixed (n, 3), guide_normal (n, 3), force_N (n, 3)\n"
+    "elements: table -> such a dict, with the arrays that truss_elements() lists for it\n"
+    "joints: kind -> such a dict, with the arrays that truss_joints() lists for it\n\n"
+    "Returns states and cycle_ends (dicts of arrays, first axis the state; axial force positive\n"
+    "in compression), events, problems (frictional contact problems of the first steps that end "
+    "at\n"
+    "problem_times or later, see truss/local_problem.hpp), complete, solves, factorizations, "
+    "unknowns, largest residuals.\n"
+    "start_friction: 'stuck' or 'frictionless', see start_friction.hpp.\n"
+    "progress(share) may return False to end the path early: complete is then False.\n"
+    "trace is called with every Newton iteration, a tuple in the order of\n"
+    "statejump/truss/trace.hpp with names in place of numbers. Raises "
+    "ValueError for items out of range, RuntimeError that names joint or nodes "
+    "and\n"
+    "temperature for mechanisms, unloaded joints and failed equilibrium.";
 
-void bind_truss(py::module_& module) {
+py::dict path_of(const py::dict& nodes, const py::dict& elements, const py::dict& joints,
+                 std::vector<thermal::Program> programs, int increments_per_branch,
+                 bool locate_events, double event_tolerance, double energy_tolerance,
+                 bool cycle_ends_only, std::vector<double> problem_times,
+                 const std::string& start_friction, const py::object& progress,
+                 const py::object& trace) {
+  const truss::Model model = make_model(nodes, elements, joints, std::move(programs));
+  truss::Options options;
+  options.start_friction = start_friction_of(start_friction);
+  options.increments_per_branch = increments_per_branch;
+  options.locate_events = locate_events;
+  options.event_tolerance = event_tolerance;
+  options.energy_tolerance = energy_tolerance;
+  options.cycle_ends_only = cycle_ends_only;
+  options.problem_times = std::move(problem_times);
+  options.progress = going_on(progress);
+  options.trace = trace_to(trace, model);
+  truss::Path path;
+  {
+    py::gil_scoped_release unlocked;
+    if (model.nodes.size() >= many_nodes) give_back_memory();
+    path = truss::solve(model, options);
+  }
+  return path_dict(model, path);
+}
+
+/// Documentation of truss_motion().
+constexpr const char* about_motion =
+    "Motion of a truss from the equilibrium in which its quasi-static path begins, or from the\n"
+    "drawn shape, at rest.\n\n"
+    "Items as of truss_path(). inertia: link_mass_kg, link_damping_N_s_per_m,\n"
+    "pin_damping_N_m_s_per_rad (a number for each link), node_mass_kg,\n"
+    "spring_damping_N_s_per_m, joint_damping_sqrt_kg (2 ζ √m of each joint, kind by kind as of\n"
+    "truss_joints()), link_centre (m, 2) shares along and to the left, link_moment_kg_m2.\n"
+    "steps: of the whole program. displacement_tolerance_m: of a step, which is then as long as\n"
+    "that allows; 0: equal steps. drives: dicts with name, link, time_s,\n"
+    "angular_velocity_rad_per_s; their moments and work are among the states. friction_law: the\n"
+    "contacts of a DEM with friction of that name, in explicit steps; \"\": sets.\n\n"
+    "Returns states as truss_path() with velocities and energies, events with the heat of their\n"
+    "step, the watched node's velocity at every step. Ctrl-C, or progress(share) that returns\n"
+    "False, ends it with what it has, complete is then False. Raises ValueError for items out of "
+    "range,\n"
+    "RuntimeError that names joint and temperature for a step without solution.";
+
+py::dict motion_of(const py::dict& nodes, const py::dict& elements, const py::dict& joints,
+                   std::vector<thermal::Program> programs, const py::dict& inertia, long steps,
+                   long sample_every, double theta, double displacement_tolerance_m,
+                   double restitution, int watched_node, const py::list& drives, bool start_drawn,
+                   const std::string& start_friction, const std::string& friction_law,
+                   const py::object& progress) {
+  const truss::Model model = make_model(nodes, elements, joints, std::move(programs));
+  const auto numbers = [&](const char* key) { return inertia[key].cast<Eigen::VectorXd>(); };
+  const truss::Inertia masses{numbers("link_mass_kg"),
+                              numbers("node_mass_kg"),
+                              numbers("link_damping_N_s_per_m"),
+                              numbers("pin_damping_N_m_s_per_rad"),
+                              numbers("spring_damping_N_s_per_m"),
+                              numbers("joint_damping_sqrt_kg"),
+                              inertia["link_centre"].cast<Eigen::MatrixX2d>().transpose(),
+                              numbers("link_moment_kg_m2")};
+  truss::MotionOptions options;
+  for (const py::handle& one : drives) {
+    options.drives.push_back({one["name"].cast<std::string>(), one["link"].cast<int>(),
+                              one["time_s"].cast<Eigen::VectorXd>(),
+                              one["angular_velocity_rad_per_s"].cast<Eigen::VectorXd>()});
+  }
+  options.start_friction = start_friction_of(start_friction);
+  if (start_drawn) {
+    const auto count = static_cast<Eigen::Index>(model.nodes.size());
+    options.start =
+        truss::MotionStart{Eigen::Matrix3Xd::Zero(3, count), Eigen::Matrix3Xd::Zero(3, count)};
+  }
+  options.steps = steps;
+  options.sample_every = sample_every;
+  options.theta = theta;
+  options.displacement_tolerance = displacement_tolerance_m;
+  options.restitution = restitution;
+  options.watched_node = watched_node;
+  options.progress = until_interrupted(progress);
+  truss::Motion motion;
+  {
+    py::gil_scoped_release unlocked;
+    motion = friction_law.empty()
+                 ? truss::simulate(model, masses, options)
+                 : truss::simulate_regularised(model, masses, friction_law, options);
+  }
+  return motion_dict(model, motion);
+}
+
+void bind_types(py::module_& module) {
   module.def(
       "truss_elements",
       [] {
@@ -537,124 +644,36 @@ void bind_truss(py::module_& module) {
       py::arg("tangent_stiffness_N_per_m"), py::arg("slip_force_N"), py::arg("exponent"),
       py::arg("stiffness_ratio"), py::arg("elements"), py::arg("spacing"),
       "Largest error [N] of a first loading of an Iwan joint in Jenkins elements.");
-  module.def(
-      "truss_path",
-      [](const py::dict& nodes, const py::dict& elements, const py::dict& joints,
-         std::vector<thermal::Program> programs, int increments_per_branch, bool locate_events,
-         double event_tolerance, double energy_tolerance, bool cycle_ends_only,
-         std::vector<double> problem_times, const std::string& start_friction,
-         const py::object& progress, const py::object& trace) {
-        const truss::Model model = make_model(nodes, elements, joints, std::move(programs));
-        truss::Options options;
-        options.start_friction = start_friction_of(start_friction);
-        options.increments_per_branch = increments_per_branch;
-        options.locate_events = locate_events;
-        options.event_tolerance = event_tolerance;
-        options.energy_tolerance = energy_tolerance;
-        options.cycle_ends_only = cycle_ends_only;
-        options.problem_times = std::move(problem_times);
-        options.progress = going_on(progress);
-        options.trace = trace_to(trace, model);
-        truss::Path path;
-        {
-          py::gil_scoped_release unlocked;
-          if (model.nodes.size() >= many_nodes) give_back_memory();
-          path = truss::solve(model, options);
-        }
-        return path_dict(model, path);
-      },
-      py::arg("nodes"), py::arg("elements"), py::arg("joints"), py::arg("programs"), py::kw_only(),
-      py::arg("increments_per_branch") = truss::Options().increments_per_branch,
-      py::arg("locate_events") = truss::Options().locate_events,
-      py::arg("event_tolerance") = truss::Options().event_tolerance,
-      py::arg("energy_tolerance") = truss::Options().energy_tolerance,
-      py::arg("cycle_ends_only") = truss::Options().cycle_ends_only,
-      py::arg("problem_times") = std::vector<double>(), py::arg("start_friction") = "stuck",
-      py::arg("progress") = py::none(), py::arg("trace") = py::none(),
-      "Quasi-static path of a truss: exact Coulomb friction at every joint.\n\n"
-      "Every kind of item is a dict of arrays, one entry per item, and 'names'. Index -1: ground.\n"
-      "nodes: position_m (n, 3), fixed (n, 3), guide_normal (n, 3), force_N (n, 3)\n"
-      "elements: table -> such a dict, with the arrays that truss_elements() lists for it\n"
-      "joints: kind -> such a dict, with the arrays that truss_joints() lists for it\n\n"
-      "Returns states and cycle_ends (dicts of arrays, first axis the state; axial force positive\n"
-      "in compression), events, problems (frictional contact problems of the first steps that end "
-      "at\n"
-      "problem_times or later, see truss/local_problem.hpp), complete, solves, factorizations, "
-      "unknowns, largest residuals.\n"
-      "start_friction: 'stuck' or 'frictionless', see start_friction.hpp.\n"
-      "progress(share) may return False to end the path early: complete is then False.\n"
-      "trace is called with every Newton iteration, a tuple in the order of\n"
-      "statejump/truss/trace.hpp with names in place of numbers. Raises "
-      "ValueError for items out of range, RuntimeError that names joint or nodes "
-      "and\n"
-      "temperature for mechanisms, unloaded joints and failed equilibrium.");
-  module.def(
-      "truss_motion",
-      [](const py::dict& nodes, const py::dict& elements, const py::dict& joints,
-         std::vector<thermal::Program> programs, const py::dict& inertia, long steps,
-         long sample_every, double theta, double displacement_tolerance_m, double restitution,
-         int watched_node, const py::list& drives, bool start_drawn,
-         const std::string& start_friction, const std::string& friction_law,
-         const py::object& progress) {
-        const truss::Model model = make_model(nodes, elements, joints, std::move(programs));
-        const auto numbers = [&](const char* key) { return inertia[key].cast<Eigen::VectorXd>(); };
-        const truss::Inertia masses{numbers("link_mass_kg"),
-                                    numbers("node_mass_kg"),
-                                    numbers("link_damping_N_s_per_m"),
-                                    numbers("pin_damping_N_m_s_per_rad"),
-                                    numbers("spring_damping_N_s_per_m"),
-                                    numbers("joint_damping_sqrt_kg"),
-                                    inertia["link_centre"].cast<Eigen::MatrixX2d>().transpose(),
-                                    numbers("link_moment_kg_m2")};
-        truss::MotionOptions options;
-        for (const py::handle& one : drives) {
-          options.drives.push_back({one["name"].cast<std::string>(), one["link"].cast<int>(),
-                                    one["time_s"].cast<Eigen::VectorXd>(),
-                                    one["angular_velocity_rad_per_s"].cast<Eigen::VectorXd>()});
-        }
-        options.start_friction = start_friction_of(start_friction);
-        if (start_drawn) {
-          const auto count = static_cast<Eigen::Index>(model.nodes.size());
-          options.start = truss::MotionStart{Eigen::Matrix3Xd::Zero(3, count),
-                                             Eigen::Matrix3Xd::Zero(3, count)};
-        }
-        options.steps = steps;
-        options.sample_every = sample_every;
-        options.theta = theta;
-        options.displacement_tolerance = displacement_tolerance_m;
-        options.restitution = restitution;
-        options.watched_node = watched_node;
-        options.progress = until_interrupted(progress);
-        truss::Motion motion;
-        {
-          py::gil_scoped_release unlocked;
-          motion = friction_law.empty()
-                       ? truss::simulate(model, masses, options)
-                       : truss::simulate_regularised(model, masses, friction_law, options);
-        }
-        return motion_dict(model, motion);
-      },
-      py::arg("nodes"), py::arg("elements"), py::arg("joints"), py::arg("programs"),
-      py::arg("inertia"), py::kw_only(), py::arg("steps"), py::arg("sample_every"),
-      py::arg("theta") = 0.5, py::arg("displacement_tolerance_m") = 0.0,
-      py::arg("restitution") = 0.0, py::arg("watched_node") = -1, py::arg("drives") = py::list(),
-      py::arg("start_drawn") = false, py::arg("start_friction") = "stuck",
-      py::arg("friction_law") = "", py::arg("progress") = py::none(),
-      "Motion of a truss from the equilibrium in which its quasi-static path begins, or from the\n"
-      "drawn shape, at rest.\n\n"
-      "Items as of truss_path(). inertia: link_mass_kg, link_damping_N_s_per_m,\n"
-      "pin_damping_N_m_s_per_rad (a number for each link), node_mass_kg,\n"
-      "spring_damping_N_s_per_m, joint_damping_sqrt_kg (2 ζ √m of each joint, kind by kind as of\n"
-      "truss_joints()), link_centre (m, 2) shares along and to the left, link_moment_kg_m2.\n"
-      "steps: of the whole program. displacement_tolerance_m: of a step, which is then as long as\n"
-      "that allows; 0: equal steps. drives: dicts with name, link, time_s,\n"
-      "angular_velocity_rad_per_s; their moments and work are among the states. friction_law: the\n"
-      "contacts of a DEM with friction of that name, in explicit steps; \"\": sets.\n\n"
-      "Returns states as truss_path() with velocities and energies, events with the heat of their\n"
-      "step, the watched node's velocity at every step. Ctrl-C, or progress(share) that returns\n"
-      "False, ends it with what it has, complete is then False. Raises ValueError for items out of "
-      "range,\n"
-      "RuntimeError that names joint and temperature for a step without solution.");
+}
+
+void bind_path(py::module_& module) {
+  module.def("truss_path", path_of, py::arg("nodes"), py::arg("elements"), py::arg("joints"),
+             py::arg("programs"), py::kw_only(),
+             py::arg("increments_per_branch") = truss::Options().increments_per_branch,
+             py::arg("locate_events") = truss::Options().locate_events,
+             py::arg("event_tolerance") = truss::Options().event_tolerance,
+             py::arg("energy_tolerance") = truss::Options().energy_tolerance,
+             py::arg("cycle_ends_only") = truss::Options().cycle_ends_only,
+             py::arg("problem_times") = std::vector<double>(), py::arg("start_friction") = "stuck",
+             py::arg("progress") = py::none(), py::arg("trace") = py::none(), about_path);
+}
+
+void bind_motion(py::module_& module) {
+  module.def("truss_motion", motion_of, py::arg("nodes"), py::arg("elements"), py::arg("joints"),
+             py::arg("programs"), py::arg("inertia"), py::kw_only(), py::arg("steps"),
+             py::arg("sample_every"), py::arg("theta") = 0.5,
+             py::arg("displacement_tolerance_m") = 0.0, py::arg("restitution") = 0.0,
+             py::arg("watched_node") = -1, py::arg("drives") = py::list(),
+             py::arg("start_drawn") = false, py::arg("start_friction") = "stuck",
+             py::arg("friction_law") = "", py::arg("progress") = py::none(), about_motion);
+}
+
+}  // namespace
+
+void bind_truss(py::module_& module) {
+  bind_types(module);
+  bind_path(module);
+  bind_motion(module);
 }
 
 }  // namespace statejump::bindings

@@ -25,7 +25,8 @@ from statejump.core.results_folder import Results
 from statejump.core.thermal import SHAPES
 from statejump.core.units import split_unit
 from statejump.kinds import require
-from statejump.kinds.truss.sections import Revolute, TrussReduced
+from statejump.kinds.truss.joints.revolute import Revolute
+from statejump.kinds.truss.sections import TrussReduced
 from statejump.kinds.truss.generate.document import write
 from statejump.report.capabilities import CaseDrawing
 from statejump.schema.fields import fields_of, rule_of

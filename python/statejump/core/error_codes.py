@@ -705,7 +705,7 @@ CODES: dict[str, Code] = {
     "spring_between_one_place": Code(cause="a spring needs two nodes at different places"),
     "spring_without_length": Code(cause="a stiffness of {stiffness:g} N/m gives it at no length that is a number"),
     "start_not_drawn": Code(
-        cause="must be 'drawn' with ball_joint {ball_joint!r}, whose contact is rigid: no path says where it rests",
+        cause="must be 'drawn' with {part}, whose contact is rigid: no path says where it rests",
     ),
     "start_not_stuck": Code(
         beside="with motion.start = 'drawn'",

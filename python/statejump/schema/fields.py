@@ -190,6 +190,11 @@ class Section:
         return getattr(self, fields_of(type(self))[name].name)
 
 
+def section_class(name: str, documentation: str, keys: Mapping[str, Any]) -> type[Section]:
+    """Return a class of sections whose keys a program lists, where a type checker need not know them."""
+    return definition(type(name, (Section,), {**keys, "__doc__": documentation}))
+
+
 def _plain(value: Any) -> Any:
     if isinstance(value, Section):
         return value.to_dict()

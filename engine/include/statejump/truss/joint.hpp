@@ -14,8 +14,12 @@
 
 namespace statejump::truss {
 
-/// A joint of any type: what a type has to bring, joints/interface.hpp says.
-using Joint = std::variant<Slider, ClearanceRevolute, LatchHinge, IwanJoint, BallJoint>;
+/// One of several types of joints; joints/interface.hpp documents the members of a type.
+template <JointType... Types>
+using JointOf = std::variant<Types...>;
+
+/// The registry of joints. A new type is added here and nowhere else.
+using Joint = JointOf<Slider, ClearanceRevolute, LatchHinge, IwanJoint, BallJoint>;
 
 inline const std::string& name_of(const Joint& joint) {
   return std::visit([](const auto& one) -> const std::string& { return one.name; }, joint);

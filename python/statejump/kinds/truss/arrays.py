@@ -7,14 +7,18 @@ Index -1 stands for ground.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, fields
+from typing import Any, TypeVar
 
 import numpy as np
 
+from statejump.schema.fields import fields_of, rule_of
 from statejump.schema.item_tables import ItemColumns, Places, once
 from statejump.schema.items import Item
+from statejump.schema.rules import NUMBERS, SWITCH, TEXT, TEXTS, WHOLE
 from statejump.schema.texts import BLOCK, Names
+
+ArraysType = TypeVar("ArraysType")
 
 GROUND = -1
 # Directions that differ by less are equal: far above rounding, far below any intended difference.
@@ -124,6 +128,7 @@ class References:
     """What names of a case stand for. References must be right: ``checks`` sees to it when a case is read."""
 
     dimension: int
+    position_m: np.ndarray  # (n, 3) of the nodes
     node: Places
     link: Places
     program: Places  # of [[program]], one less than their index: 0 is the common one
@@ -156,3 +161,34 @@ def pairs(items: Sequence[Any], key: str, among: Places) -> np.ndarray:
         given = among.of(items, key)[:, :2]
         found[:, :given.shape[1]] = given
     return found
+
+
+def arrays_of(made: type[ArraysType], model: type[Item], items: Sequence[Any], known: References, **own: Any
+              ) -> ArraysType:
+    """Return items as a dataclass of arrays. A field has the name of a key and its values; ``names`` are those of the
+    items.
+
+    :param made: the dataclass
+    :param model: what an item is
+    :param own: arrays of fields that are not a key as it is given
+    """
+    given = {field.name: names(items) if field.name == "names" else _of_key(field.name, model, items, known)
+             for field in fields(made) if field.name not in own}  # type: ignore[arg-type]  # it is a dataclass
+    return made(**given, **own)
+
+
+def _of_key(key: str, model: type[Item], items: Sequence[Any], known: References) -> Any:
+    """Return the values of a key: names of nodes, links and programs as indices, axes as unit vectors."""
+    rule = rule_of(fields_of(model)[key])
+    if key == "program":
+        return known.programs_of(items)
+    if key == "axis" and rule.form == NUMBERS:
+        return known.axes(items) if rule.optional else unit(vectors(items, key, known.dimension))
+    if rule.form == TEXTS:
+        return pairs(items, key, {"nodes": known.node, "links": known.link}[key])
+    if rule.form == TEXT:
+        return indices(items, key, {"node": known.node, "link": known.link}[key.rpartition("_")[2]])
+    if rule.form == SWITCH:
+        return np.array(list(values(items, key)), dtype=bool)
+    found = column(items, key)
+    return found.astype(int) if rule.form == WHOLE else found

@@ -9,38 +9,23 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from statejump.core.errors import NotAllowed, StatejumpError
-from statejump.kinds.truss.arrays import distances
+from statejump.kinds.truss.elements import ELEMENTS
+from statejump.kinds.truss.elements.protocol import check_lengths
 from statejump.kinds.truss.joints import JOINTS
-from statejump.kinds.truss.references import MOST_LISTED, listed, turned_links
-from statejump.kinds.truss.resolved import Links, ResolvedTruss, Springs
+from statejump.kinds.truss.references import MOST_LISTED, listed
+from statejump.kinds.truss.resolved import ResolvedTruss
 
 
 def check_geometry(truss: ResolvedTruss) -> None:
     """Raise StatejumpError for the first fault in the shape of a truss whose references are valid."""
     ranges_K = truss.temperature_ranges_K
-    _lengths(truss)
-    _stretches(truss.springs)
+    check_lengths(truss, "link", truss.links.names, truss.links.nodes)
     _expansions(truss, ranges_K)
+    for element in ELEMENTS:
+        element.check_geometry(truss, truss.elements[element.section])
     for joint in JOINTS:
         joint.check_geometry(truss, truss.joints[joint.section], ranges_K)
-    turned_links(truss, "torsion_spring", truss.torsion_springs)
     _supports(truss)
-
-
-def _lengths(truss: ResolvedTruss) -> None:
-    sections: tuple[tuple[str, Links | Springs], ...] = (("link", truss.links), ("spring", truss.springs))
-    for section, items in sections:
-        for index in np.flatnonzero(distances(truss.nodes.position_m, items.nodes) == 0)[:1]:
-            ends = [truss.nodes.names[node] for node in items.nodes[index]]
-            place = truss.nodes.position_m[items.nodes[index, 0]][: truss.dimension].tolist()
-            raise StatejumpError(code="zero_length", item=f"{section} {items.names[index]!r}", key="nodes", value=ends,
-                                 nodes=ends, ends=" and ".join(map(repr, ends)), place_m=place, part=section)
-
-
-def _stretches(springs: Springs) -> None:
-    for index in np.flatnonzero(~np.isfinite(springs.free_length_m))[:1]:
-        raise NotAllowed("preload_N", float(springs.preload_N[index]), code="spring_without_length",
-                         item=f"spring {springs.names[index]!r}", stiffness=springs.stiffness_N_per_m[index])
 
 
 def _expansions(truss: ResolvedTruss, ranges_K: np.ndarray) -> None:
@@ -76,7 +61,7 @@ def supported(truss: ResolvedTruss) -> np.ndarray:
 def _supports(truss: ResolvedTruss) -> None:
     names = truss.nodes.names
     held = supported(truss)
-    pairs = truss.links.nodes, truss.springs.nodes, truss.joined()
+    pairs = *truss.ends(), truss.joined()
     used = held.copy()
     for ends in pairs:
         used[ends.ravel()] = True

@@ -9,7 +9,7 @@ import numpy as np
 
 from statejump.core.errors import MissingKey, NotAllowed
 from statejump.kinds.truss.arrays import said, vectors
-from statejump.kinds.truss.joints.ball_joint import BALL_JOINT
+from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.mechanism import Drive
 from statejump.kinds.truss.references import known_name, vector
 from statejump.kinds.truss.resolved import ResolvedTruss
@@ -81,7 +81,10 @@ def refused_at_rest(truss: ResolvedTruss) -> str | None:
     """Return why a truss has no quasi-static path; None: it has one."""
     for name in truss.drives.names[:1]:
         return f"drive {name!r} turns a link, which is motion: 'statejump reduced --dynamic' runs the case"
-    for name in BALL_JOINT.rigid_ones(truss.joints[BALL_JOINT.section])[:1]:
-        return (f"{BALL_JOINT.section} {name!r} has contact = 'rigid', of which a path does not say how it begins to "
-                "slide: 'statejump reduced --dynamic' runs the case with motion.start = 'drawn'")
+    for joint in JOINTS:
+        unable = joint.path_refuses(truss.joints[joint.section])
+        if unable is not None:
+            name, why = unable
+            return (f"{joint.section} {name!r} {why}: 'statejump reduced --dynamic' runs the case with motion.start = "
+                    "'drawn'")
     return None

@@ -12,9 +12,11 @@ import numpy as np
 from statejump.core.errors import ABSENT, MissingKey, NotAllowed
 from statejump.kinds.truss import check_mechanism
 from statejump.kinds.truss.arrays import having, said
+from statejump.kinds.truss.elements import ELEMENTS
+from statejump.kinds.truss.elements.protocol import listed_elements
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
-from statejump.kinds.truss.references import Around, known_links, known_name, known_nodes, wrong_ends
+from statejump.kinds.truss.references import Around, known_name, known_nodes, wrong_ends
 from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns, Places, by_name, each, where_wrong
 
 if TYPE_CHECKING:
@@ -29,8 +31,6 @@ def check_references(case: TrussSections) -> None:
     node_places, link_places = Places(case.node), Places(case.link)
     for link in where_wrong(case.link, lambda items: wrong_ends(node_places.of(items, "nodes"), 2)):
         known_nodes(link.nodes, 2, nodes, {"item": f"link {link.name!r}"})
-    for tie in where_wrong(case.spring, lambda items: wrong_ends(node_places.of(items, "nodes"), 2)):
-        known_nodes(tie.nodes, 2, nodes, {"item": f"spring {tie.name!r}"})
     _programs(case)
     _expansions(case)
     _members(case)
@@ -39,8 +39,10 @@ def check_references(case: TrussSections) -> None:
     for joint in JOINTS:
         for item in where_wrong(listed_joints(case, joint), partial(joint.may_be_wrong_references, around=around)):
             joint.check_references(item, nodes, links)
-    for spring in where_wrong(case.torsion_spring, lambda items: wrong_ends(link_places.of(items, "links"), 1)):
-        known_links(spring.links, links, {"item": f"torsion_spring {spring.name!r}"})
+    for element in ELEMENTS:
+        items = listed_elements(case, element)
+        for item in where_wrong(items, partial(element.may_be_wrong_references, around=around)):
+            element.check_references(item, nodes, links)
     check_mechanism.check(case, links)
     if case.reflector is not None:
         if not case.reflector.nodes:
@@ -127,7 +129,6 @@ def _alternatives(case: TrussSections) -> None:
     for link in where_wrong(case.link, lambda links: said(links, "density_kg_per_m3") & said(links, "mass_kg")):
         if link.density_kg_per_m3 is not None and link.mass_kg is not None:
             raise NotAllowed("mass_kg", link.mass_kg, code="only_without_density", item=f"link {link.name!r}")
-    for spring in where_wrong(case.spring, lambda ties: said(ties, "preload_N") & said(ties, "free_length_m")):
-        if spring.preload_N is not None and spring.free_length_m is not None:
-            raise NotAllowed("preload_N", spring.preload_N, code="only_without_free_length",
-                             item=f"spring {spring.name!r}")
+    for element in ELEMENTS:
+        for item in where_wrong(listed_elements(case, element), element.may_be_wrong_keys):
+            element.check_keys(item)

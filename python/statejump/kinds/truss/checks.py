@@ -14,9 +14,11 @@ from statejump.core import expansion, thermal
 from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.kinds.truss.check_geometry import check_geometry
 from statejump.kinds.truss.check_references import check_references
+from statejump.kinds.truss.elements import ELEMENTS
+from statejump.kinds.truss.elements.protocol import listed_elements
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
-from statejump.kinds.truss.references import axis_of_rotation, vector, wrong_axes, wrong_vectors
+from statejump.kinds.truss.references import vector, wrong_vectors
 from statejump.schema.item_tables import ItemColumns, each, repeated_names, where_wrong
 
 if TYPE_CHECKING:
@@ -25,8 +27,8 @@ if TYPE_CHECKING:
     from statejump.kinds.truss.resolved import ResolvedTruss
     from statejump.kinds.truss.sections import Node, TrussSections
 
-SECTIONS = ("node", "link", "program", "expansion", *(joint.section for joint in JOINTS), "spring", "torsion_spring",
-            "drive")
+SECTIONS = ("node", "link", "program", "expansion", *(joint.section for joint in JOINTS),
+            *(element.section for element in ELEMENTS), "drive")
 
 
 def check(case: TrussSections, resolve: Callable[[], ResolvedTruss]) -> None:
@@ -114,8 +116,10 @@ def _vectors(case: TrussSections) -> None:
         for item in where_wrong(listed_joints(case, joint),
                                 partial(joint.may_be_wrong_vectors, dimension=dimension)):
             joint.check_vectors(item, dimension)
-    for spring in where_wrong(case.torsion_spring, partial(wrong_axes, dimension=dimension)):
-        axis_of_rotation(spring.axis, dimension, {"item": f"torsion_spring {spring.name!r}"})
+    for element in ELEMENTS:
+        for item in where_wrong(listed_elements(case, element),
+                                partial(element.may_be_wrong_vectors, dimension=dimension)):
+            element.check_vectors(item, dimension)
     if case.reflector is not None:
         axis = case.reflector.axis
         if len(axis) != dimension or not any(axis):

@@ -23,6 +23,7 @@ from statejump.core.run import Run
 from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.check_mechanism import refused_at_rest
+from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import Torsion
 from statejump.kinds.truss.masses import lumped_mass_kg
@@ -61,13 +62,14 @@ def stable_time_step(case: TrussCase, path: Course) -> float:
             np.add.at(stiffness, nodes[:, side], moving * k * inverse[nodes[:, side]])
             np.add.at(damping, nodes[:, side], moving * dashpot * inverse[nodes[:, side]])
 
-    links, springs, torsion = truss.links, truss.springs, _torsion(truss)
+    links, torsion = truss.links, _torsion(truss)
     ratio, contact = case.dem_settings.link_damping_ratio, case.dem_settings.contact_damping_ratio
     ranges = path.truss.temperature_ranges_K[links.program] * links.temperature_fraction[:, None]
     shortest = links.stress_free_length_m * (1 + links.thermal_expansion_per_K[:, None] * ranges).T.min(axis=0)
     axial = physics.axial_stiffness_N_per_m(links.young_modulus_Pa, links.cross_section_area_m2, shortest)
     touch(links.nodes, axial, ratio, case.dem_settings.pin_damping_N_m_s_per_rad / shortest**2)
-    touch(springs.nodes, springs.stiffness_N_per_m, ratio)
+    for ends, along in zip(truss.ends()[1:], truss.element_stiffnesses_N_per_m()):
+        touch(ends, along, ratio)
     for ends, moment in zip(torsion.links, torsion.stiffness_N_m_per_rad):
         # The angle is a sum over all ends of both links.
         turned = ends[ends != GROUND]
@@ -139,7 +141,7 @@ def check(case: TrussCase) -> None:
     for index in np.flatnonzero(truss.bodies.own)[:1]:
         raise refuse(case, f"link {truss.links.names[index]!r} is a body of its own, the DEM has rods")
     mass = lumped_mass_kg(truss)
-    nodes, springs = truss.nodes, truss.springs
+    nodes = truss.nodes
     for joint in JOINTS:
         joints = truss.joints[joint.section]
         unable = joint.dem_refuses(joints)
@@ -167,17 +169,21 @@ def check(case: TrussCase) -> None:
                     raise refuse(case, f"{joint.section} {name!r} gives node {nodes.names[node]!r} a second contact "
                                        "part, in the DEM a node has one", joint=name, nodes=(nodes.names[node],))
                 roles[node] = role
-    for index in np.flatnonzero(springs.free_length_m <= 0)[:1]:
-        raise refuse(case, f"spring {springs.names[index]!r} has the free length {springs.free_length_m[index]:.6g} m, "
-                           "the DEM needs one above 0")
+    for element in ELEMENTS:
+        elements = truss.elements[element.section]
+        unable = element.dem_refuses(elements)
+        if element.not_in_dem and elements.names:
+            unable = elements.names[0], element.not_in_dem
+        if unable is not None:
+            name, why = unable
+            raise refuse(case, f"{element.section} {name!r} {why}")
     if truss.dimension == 3:
         _refuse_tilted_torsion(case, truss)
 
 
 def _torsion(truss: ResolvedTruss) -> Torsion:
-    """Return torsion springs and what joints have of the kind; names with their sections."""
-    springs = truss.torsion_springs
-    parts = [("torsion_spring", Torsion(springs.names, springs.links, springs.axis, springs.stiffness_N_m_per_rad))]
+    """Return the moments of elements and joints between links; names with their sections."""
+    parts = [(element.section, element.torsion(truss.elements[element.section])) for element in ELEMENTS]
     parts += [(joint.section, joint.torsion(truss.joints[joint.section])) for joint in JOINTS]
     return Torsion(
         tuple(f"{section} {name!r}" for section, part in parts for name in part.names),
@@ -199,9 +205,6 @@ def _refuse_tilted_torsion(case: TrussCase, truss: ResolvedTruss) -> None:
 
 def _refuse_far_turns(case: TrussCase, path: Course) -> None:
     """Beyond a quarter of a turn the DEM cannot distinguish an angle from its opposite."""
-    torsion = path.truss.torsion_springs
-    if len(torsion.links) and np.abs(torsion.bias_rad).max() > pi / 2:
-        raise refuse(case, "a torsion spring has a bias above π/2, beyond what the DEM can tell from its opposite")
     for joint in JOINTS:
         joints = path.truss.joints[joint.section]
         turned = joint.largest_turn_rad(path, joints) if joints.names else np.zeros(0)
@@ -251,8 +254,7 @@ def resolved(case: TrussCase, path: Course) -> dict[str, Any]:
         "link": _lists(truss.links),
         **{joint.section: _lists(truss.joints[joint.section], **joint.scene(path, truss.joints[joint.section]),
                                  group=group) for joint, group in zip(JOINTS, groups)},
-        "spring": _lists(truss.springs),
-        "torsion_spring": _lists(truss.torsion_springs),
+        **{element.section: _lists(truss.elements[element.section]) for element in ELEMENTS if not element.not_in_dem},
     }
 
 

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 
 from statejump.core.figures import Constrained, Drawing
 from statejump.kinds.truss.draw_symbols import (
-    CABLE, FRACTION, LOAD, MOST_NAMED, PIN, ROLLER, SPRING, SURFACE, covered, gap_m, guided, legend, link_colours,
-    marker, names, symbol_size, symbols,
+    DASHES, FRACTION, LOAD, MOST_NAMED, PIN, ROLLER, SURFACE, covered, gap_m, guided, legend, link_colours, marker,
+    names, styled_lines, symbol_size, symbols,
 )
 from statejump.kinds.truss.joints.protocol import Symbol
 from statejump.kinds.truss.resolved import ResolvedTruss
@@ -173,13 +173,15 @@ def _draw_symbol(panel: Axes, symbol: Symbol, size: float) -> None:
 
 
 def _draw_springs(panel: Axes, truss: ResolvedTruss, height: float) -> None:
-    springs, positions = truss.springs, truss.nodes.position_m[:, :2]
-    ends = positions[springs.nodes]
-    few = len(springs.names) <= MOST_ZIGZAGS
-    lines = [_zigzag(a, b, 0.4 * height) if few else np.stack((a, b)) for a, b in ends[~springs.cable]]
-    panel.add_collection(LineCollection(lines, colors=SPRING, linewidths=1.0 if few else 0.5, zorder=1.5))
-    panel.add_collection(LineCollection(list(ends[springs.cable]), colors=CABLE, linewidths=1.0,
-                                        linestyles=[(0, (5, 2))], zorder=1.5))
+    for ends, style in styled_lines(truss):
+        drawn = truss.nodes.position_m[ends, :2]
+        few = len(ends) <= MOST_ZIGZAGS
+        if style.dashed:
+            lines, look = list(drawn), {"linewidths": 1.0, "linestyles": [DASHES]}
+        else:
+            lines = [_zigzag(a, b, 0.4 * height) if few else np.stack((a, b)) for a, b in drawn]
+            look = {"linewidths": 1.0 if few else 0.5}
+        panel.add_collection(LineCollection(lines, colors=style.colour, zorder=1.5, **look))
 
 
 def _draw_supports(panel: Axes, truss: ResolvedTruss, size: float) -> None:

@@ -10,7 +10,7 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
 from statejump.core.figures import Drawing
 from statejump.kinds.truss.draw_symbols import (
-    CABLE, FRACTION, LOAD, MOST_NAMED, SPRING, SURFACE, covered, gap_m, legend, link_colours, marker, names,
+    DASHES, FRACTION, LOAD, MOST_NAMED, SURFACE, covered, gap_m, legend, link_colours, marker, names, styled_lines,
     symbol_size, symbols,
 )
 from statejump.kinds.truss.joints.protocol import Symbol
@@ -75,16 +75,16 @@ def draw_spatial(truss: ResolvedTruss, axes: Axes3D, most_named: int = MOST_NAME
 
 
 def _lines(axes: Axes3D, truss: ResolvedTruss, size: float, span: float) -> None:
-    """Links, springs, and the normals of guided nodes."""
-    nodes, positions, springs = truss.nodes, truss.nodes.position_m, truss.springs
+    """Links, elements, and the normals of guided nodes."""
+    nodes, positions = truss.nodes, truss.nodes.position_m
     colours, _ = link_colours(truss)
     ends = positions[truss.links.nodes]
     axes.add_collection3d(Line3DCollection(list(ends), colors=colours, linewidths=float(np.clip(size / 5, 0.8, 2.2)),
                                            zorder=2))
-    for mask, colour, style in ((~springs.cable, SPRING, "-"), (springs.cable, CABLE, (0, (5, 2)))):
-        if mask.any():
-            axes.add_collection3d(Line3DCollection(list(positions[springs.nodes[mask]]), colors=colour, linewidths=1.0,
-                                                   linestyles=[style], zorder=1.5))
+    for pairs, style in styled_lines(truss):
+        if len(pairs):
+            axes.add_collection3d(Line3DCollection(list(positions[pairs]), colors=style.colour, linewidths=1.0,
+                                                   linestyles=[DASHES if style.dashed else "-"], zorder=1.5))
     guided = nodes.guide_normal.any(axis=1)
     if guided.any():
         tick = 0.07 * span * nodes.guide_normal[guided]

@@ -16,6 +16,8 @@ from matplotlib.path import Path as Outline
 from matplotlib.transforms import Affine2D
 from scipy.spatial import cKDTree
 
+from statejump.kinds.truss.elements import ELEMENTS
+from statejump.kinds.truss.elements.protocol import Lines
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import Strokes, Symbol
 from statejump.kinds.truss.joints.words import scaled
@@ -23,9 +25,8 @@ from statejump.kinds.truss.resolved import ResolvedTruss
 
 # Cold is pale, hot is red, and ever darker: reads in grey and for colour-blind eyes. The palest are lost on white.
 COLOURS = ListedColormap(colormaps["YlOrRd"](np.linspace(0.2, 1.0, 256)))
-LINK, SPRING, CABLE, LOAD, TORSION, SURFACE = (
-    "#0072B2", "#009E73", "#D55E00", "#D55E00", "#CC79A7", "#E69F00",
-)
+LINK, LOAD, SURFACE = "#0072B2", "#D55E00", "#E69F00"
+DASHES = (0, (5, 2))
 FRACTION = "Temperature fraction of a link [-]"
 MOST_NAMED = 24  # nodes that get names by default; more names would cover the drawing
 
@@ -42,7 +43,6 @@ def _outline(*strokes: Sequence[tuple[float, float]]) -> Outline:
 PIN: Strokes = (((0, 0), (-0.55, -0.8), (0.55, -0.8), (0, 0)), ((-0.9, -0.8), (0.9, -0.8)),
                 *(((x, -0.8), (x - 0.2, -1.0)) for x in (-0.6, -0.2, 0.2, 0.6)))
 ROLLER: Strokes = (((0, 0), (-0.5, -0.7), (0.5, -0.7), (0, 0)), ((-0.9, -0.95), (0.9, -0.95)))
-SPIRAL: Strokes = (tuple((0.28 * t * np.cos(5.2 * t), 0.28 * t * np.sin(5.2 * t)) for t in np.linspace(0.4, 3.6, 60)),)
 
 
 def gap_m(truss: ResolvedTruss) -> float:
@@ -70,7 +70,6 @@ def legend(truss: ResolvedTruss) -> list[Line2D]:
     def entry(label: str, **style: Any) -> Line2D:
         return Line2D([], [], **{"linestyle": "none", "markersize": 9, **style}, label=label)
 
-    springs = truss.springs
     fraction = truss.links.shown_fraction
     uniform = not len(fraction) or np.ptp(fraction) < 1e-9
     text = "link" if (fraction == 1).all() else f"link, {scaled(fraction, 1.0, 'of ΔT')}"
@@ -95,20 +94,28 @@ def legend(truss: ResolvedTruss) -> list[Line2D]:
             first = joint.symbols(truss, joints)[0]
             found.append(entry(joint.legend(joints), marker=marker(first.marker), color=first.colour,
                                markerfacecolor=first.face, markeredgewidth=1.2))
-    for what, mask, style in (("spring", ~springs.cable, dict(color=SPRING, linestyle="-", linewidth=1)),
-                              ("cable", springs.cable, dict(color=CABLE, linestyle=(0, (5, 2)), linewidth=1))):
-        if mask.any():
-            found.append(entry(f"{what}, preload {scaled(springs.preload_N[mask], 1.0, 'N')}", **style))
-    if len(truss.torsion_springs.names):
-        stiffness = scaled(truss.torsion_springs.stiffness_N_m_per_rad, 1.0, "N m/rad")
-        found.append(entry(f"torsion spring, {stiffness}", marker=marker(SPIRAL), color=TORSION, markersize=12,
-                           markeredgewidth=0.8, markerfacecolor="none"))
+    for ends, style in styled_lines(truss):
+        if len(ends):
+            found.append(entry(style.legend, color=style.colour, linestyle=DASHES if style.dashed else "-",
+                               linewidth=1))
+    for element in ELEMENTS:
+        elements = truss.elements[element.section]
+        for one in element.symbols(truss, elements)[:1] if len(elements.names) else ():
+            found.append(entry(element.legend(elements), marker=marker(one.marker), color=one.colour, markersize=12,
+                               markeredgewidth=0.8, markerfacecolor=one.face))
     forces = np.linalg.norm(truss.nodes.force_N, axis=1)
     if forces.any():
         found.append(entry(f"load, {scaled(forces[forces > 0], 1.0, 'N')}", marker=r"$\rightarrow$", color=LOAD))
     if truss.reflector is not None:
         found.append(entry("reflecting surface", marker="D", color=SURFACE, markerfacecolor="none"))
     return found
+
+
+def styled_lines(truss: ResolvedTruss) -> list[tuple[np.ndarray, Lines]]:
+    """Return the ends (k, 2) of elements that are drawn as lines, by style."""
+    return [(element.ends(elements)[style.which], style)
+            for element, elements in ((one, truss.elements[one.section]) for one in ELEMENTS)
+            for style in element.lines(elements)]
 
 
 def guided(truss: ResolvedTruss) -> np.ndarray:
@@ -134,14 +141,11 @@ def marker(given: str | Strokes, up: np.ndarray | None = None) -> MarkerStyle:
 
 
 def symbols(truss: ResolvedTruss) -> list[Symbol]:
-    """Return the symbols of joints and torsion springs."""
+    """Return the symbols of joints and elements."""
     found = [symbol for joint in JOINTS if len(truss.joints[joint.section].names)
              for symbol in joint.symbols(truss, truss.joints[joint.section])]
-    if len(truss.torsion_springs.names):
-        # A revolute has its own symbol in the middle: the spring stands around it.
-        found.append(Symbol(truss.turning_places(truss.torsion_springs.links), SPIRAL, 1.6, 1.3, colour=TORSION,
-                            face="none", order=4.5))
-    return found
+    return found + [symbol for element in ELEMENTS if len(truss.elements[element.section].names)
+                    for symbol in element.symbols(truss, truss.elements[element.section])]
 
 
 def covered(truss: ResolvedTruss) -> np.ndarray:
@@ -151,12 +155,12 @@ def covered(truss: ResolvedTruss) -> np.ndarray:
 
 def names(truss: ResolvedTruss) -> list[tuple[np.ndarray, str, np.ndarray]]:
     """Place, names of the nodes there, and for planar trusses the direction (2,) that is farthest from
-    links, springs and the ground of supports."""
+    links, elements and the ground of supports."""
     positions = truss.nodes.position_m
     places: dict[tuple[float, ...], list[int]] = {}
     for index, place in enumerate(positions):
         places.setdefault(tuple(np.round(place, 9)), []).append(index)
-    ends = np.concatenate((truss.links.nodes, truss.springs.nodes))
+    ends = np.concatenate(truss.ends())
     taken: dict[int, list[np.ndarray]] = {}
     for one, two in np.concatenate((ends, ends[:, ::-1])):
         taken.setdefault(int(one), []).append((positions[two] - positions[one])[:2])

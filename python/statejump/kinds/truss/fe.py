@@ -23,6 +23,7 @@ from statejump.fe.ccx import number
 from statejump.kinds.truss import fe_sliding
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.arrays import GROUND, none_of
+from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.along_axis import AlongAxis
 from statejump.kinds.truss.joints.round_parts import RoundParts
@@ -95,8 +96,8 @@ def _refuse(truss: ResolvedTruss) -> None:
         raise NotAllowed("link", code="fe_no_links")
     of_angles = [(joint.section, truss.joints[joint.section].names) for joint in JOINTS
                  if not isinstance(joint, (AlongAxis, RoundParts))]
-    of_springs = [("spring", truss.springs.names), ("torsion_spring", truss.torsion_springs.names)]
-    for section, names in of_springs + of_angles:
+    of_elements = [(element.section, truss.elements[element.section].names) for element in ELEMENTS]
+    for section, names in of_elements + of_angles:
         if names:
             raise NotAllowed(section, code="fe_other_parts")
     ends = truss.nodes.position_m[truss.links.nodes]

@@ -16,7 +16,6 @@ from statejump.core.start import FRICTIONLESS
 from statejump.core.progress import Tell
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.joints import JOINTS
-from statejump.kinds.truss.joints.ball_joint import BALL_JOINT
 from statejump.kinds.truss.masses import lumped_mass_kg
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussEvents, engine_items
@@ -139,10 +138,11 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
     if truss.nodes.fixed[:, :truss.dimension].all():
         raise StatejumpError("every node is held in all directions", cause="nothing moves",
                              remedy="leave a direction of a node free, or run without --dynamic", case=case.name)
-    for name in BALL_JOINT.rigid_ones(truss.joints[BALL_JOINT.section])[:1]:
-        if case.motion.start != "drawn":
-            raise NotAllowed("motion.start", case.motion.start, code="start_not_drawn", case=case.name, joint=name,
-                             ball_joint=name)
+    for joint in JOINTS if case.motion.start != "drawn" else ():
+        unable = joint.path_refuses(truss.joints[joint.section])
+        if unable is not None:
+            raise NotAllowed("motion.start", case.motion.start, code="start_not_drawn", case=case.name, joint=unable[0],
+                             part=f"{joint.section} {unable[0]!r}")
     if case.motion.start == "drawn" and case.start.friction == FRICTIONLESS:
         raise NotAllowed("start.friction", case.start.friction, code="start_not_stuck", case=case.name)
     regularised = case.motion.scheme == "regularised"

@@ -7,7 +7,7 @@ then ranks joints by their motion and their heat, not by their contributions.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,10 +19,10 @@ from statejump.core.errors import Unreadable
 from statejump.core.run import Run
 from statejump.core.units import scale_of, text, unit_of
 from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.result import names as names_of
 from statejump.kinds.truss.scales import scales
-from statejump.kinds.truss.sections import Link, Spring
 from statejump.kinds.truss.words import is_guided, is_held
 from statejump.report import words
 from statejump.report.drawing import round_down
@@ -369,11 +369,11 @@ class TrussPart:
         start = self._run.history["position_m"].values[0]
         size = float(np.ptp(start, axis=0).max())
         largest = float(self._size_m.max())
-        between: dict[str, Sequence[Link | Spring]] = {"link": self.case.link, "spring": self.case.spring}
-        lines = [{"nodes": [self._number[name] for name in item.nodes], "kind": kind, "name": item.name}
-                 for kind, items in between.items() for item in items]
-        # The drawing magnifies jumps until journals leave their bearings: a line connects each pair.
         truss = self.case.resolve()
+        between = [("link", truss.links.names), *(("spring", truss.elements[one.section].names) for one in ELEMENTS)]
+        lines = [{"nodes": [int(node) for node in nodes], "kind": kind, "name": name}
+                 for (kind, names), ends in zip(between, truss.ends()) for name, nodes in zip(names, ends)]
+        # The drawing magnifies jumps until journals leave their bearings: a line connects each pair.
         for joint in (one for one in JOINTS if one.columns[0].vector):
             joints = truss.joints[joint.section]
             lines += [{"nodes": [int(node) for node in nodes], "kind": "journal", "name": name}

@@ -8,13 +8,15 @@ from math import inf
 import numpy as np
 
 from statejump.kinds.truss.arrays import (
-    References, column, columns, distances, given_or, having, in_space, names, pairs, texts, unit, values, vectors,
+    References, column, columns, distances, given_or, having, in_space, names, pairs, texts, unit, vectors,
 )
+from statejump.kinds.truss.elements import ELEMENTS
+from statejump.kinds.truss.elements.protocol import listed_elements
 from statejump.kinds.truss.expansions import link_temperatures
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.mechanism import resolve_bodies, resolve_drives, weights_N
-from statejump.kinds.truss.resolved import Links, Nodes, ReflectorSurface, ResolvedTruss, Springs, TorsionSprings
+from statejump.kinds.truss.resolved import Links, Nodes, ReflectorSurface, ResolvedTruss
 from statejump.kinds.truss.sections import TrussSections
 from statejump.schema.item_tables import Places, once
 
@@ -30,7 +32,7 @@ def resolve(case: TrussSections) -> ResolvedTruss:
         name: index for index, name in enumerate(members.names, start=1 + len(case.program))
     }
 
-    known = References(dimension, node_places, link_places, Places(case.program), member_number)
+    known = References(dimension, positions, node_places, link_places, Places(case.program), member_number)
 
     fixed = np.stack([having(case.node, "fixed", axis) for axis in "xyz"], axis=1)
     fixed[:, dimension:] = True
@@ -69,23 +71,6 @@ def resolve(case: TrussSections) -> ResolvedTruss:
         ends=texts(case.link, "ends"), yield_strength_Pa=given_or(strength, inf),
     )
 
-    spring_nodes = pairs(case.spring, "nodes", node_places)
-    drawn = distances(positions, spring_nodes)
-    stiffness = column(case.spring, "stiffness_N_per_m")
-    free, preload = column(case.spring, "free_length_m"), column(case.spring, "preload_N")
-    preload = once(np.where(np.isnan(free), np.nan_to_num(preload), stiffness * (drawn - free)))
-    with np.errstate(over="ignore"):  # refused by the checks
-        stretch = preload / stiffness
-    springs = Springs(
-        names=names(case.spring), nodes=spring_nodes, stiffness_N_per_m=stiffness,
-        free_length_m=given_or(free, drawn - stretch), preload_N=preload,
-        cable=np.array(list(values(case.spring, "cable")), dtype=bool),
-    )
-    torsion_springs = TorsionSprings(
-        names=names(case.torsion_spring), links=pairs(case.torsion_spring, "links", link_places),
-        axis=known.axes(case.torsion_spring),
-        **columns(case.torsion_spring, "stiffness_N_m_per_rad", "bias_rad"),
-    )
     reflector = None
     if case.reflector is not None:
         reflector = ReflectorSurface(
@@ -96,11 +81,13 @@ def resolve(case: TrussSections) -> ResolvedTruss:
     return ResolvedTruss(
         name=case.name, dimension=dimension, nodes=nodes, links=links, bodies=bodies,
         joints={joint.section: joint.resolve(listed_joints(case, joint), known) for joint in JOINTS},
-        springs=springs, torsion_springs=torsion_springs, drives=resolve_drives(case.drive, known),
+        elements={element.section: element.resolve(listed_elements(case, element), known) for element in ELEMENTS},
+        drives=resolve_drives(case.drive, known),
         programs=warmed.programs,
         program_names=warmed.program_names,
         reflector=reflector,
         sticking=case.reduced_settings.sticking,
         start_friction=case.start.friction,
         types=JOINTS,
+        element_types=ELEMENTS,
     )

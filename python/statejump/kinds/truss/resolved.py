@@ -72,36 +72,27 @@ class Links:
 
 
 @dataclass(frozen=True)
-class Springs:
-    """Springs and cables: tension stiffness · (length - free length), of a cable never below 0."""
-
-    names: Sequence[str]
-    nodes: np.ndarray  # (k, 2) int
-    stiffness_N_per_m: np.ndarray
-    free_length_m: np.ndarray  # below 0 when the preload exceeds stiffness · drawn length
-    preload_N: np.ndarray  # tension of the drawn truss, below 0 for a slack cable
-    cable: np.ndarray  # bool
-
-
-@dataclass(frozen=True)
-class TorsionSprings:
-    """Springs on the angle from the first link to the second, both from their first to their second node,
-    anticlockwise about the axis; moment stiffness · (angle - drawn angle - bias)."""
-
-    names: Sequence[str]
-    links: np.ndarray  # (t, 2) int; (link, GROUND): the angle of one link, from ground to it
-    stiffness_N_m_per_rad: np.ndarray
-    bias_rad: np.ndarray
-    axis: np.ndarray  # (t, 3) unit; z in planar trusses
-
-
-@dataclass(frozen=True)
 class ReflectorSurface:
     """Nodes of the reflecting surface."""
 
     nodes: np.ndarray  # int
     axis: np.ndarray  # (3,) unit
     focal_length_m: float | None  # None: best fit
+
+
+class PullsNodes(Protocol):
+    """A type of element: the functions that a truss needs."""
+
+    section: ClassVar[str]
+
+    def ends(self, elements: Any) -> np.ndarray:
+        """Return the pairs of nodes (k, 2) that the elements connect."""
+
+    def stiffness_N_per_m(self, elements: Any) -> np.ndarray:
+        """Return the largest stiffness (k,) [N/m] between the ends."""
+
+    def tension_N(self, states: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Return the tension (states, k) [N] between the ends."""
 
 
 class JoinsNodes(Protocol):
@@ -124,8 +115,7 @@ class ResolvedTruss:
     links: Links
     bodies: Bodies  # shapes of the links
     joints: Mapping[str, Any]  # by section: the arrays of every type of joint
-    springs: Springs
-    torsion_springs: TorsionSprings
+    elements: Mapping[str, Any]  # by section: the arrays of every type of element beside links
     drives: Drives
     programs: tuple[Thermal | MemberProgram, ...]
     program_names: tuple[str, ...]  # "thermal", those of the file, those of members, "EXPANSION of PROGRAM"
@@ -133,6 +123,7 @@ class ResolvedTruss:
     sticking: str  # one of STICKING: contacts of the reduced model
     start_friction: str  # stuck or frictionless
     types: Sequence[JoinsNodes]  # of joints, in the order in which results list them
+    element_types: Sequence[PullsNodes]  # likewise
 
     @property
     def temperature_ranges_K(self) -> np.ndarray:
@@ -148,6 +139,27 @@ class ResolvedTruss:
     def revolutes(self) -> Any:
         """Its clearance revolutes, as :class:`.joints.revolute.Revolutes`."""
         return self.joints["revolute"]
+
+    @property
+    def springs(self) -> Any:
+        """Its springs and cables, as :class:`.elements.spring.Springs`."""
+        return self.elements["spring"]
+
+    def with_elements(self, **changed: Any) -> ResolvedTruss:
+        """Return the truss with other elements of the sections that are named."""
+        return replace(self, elements={**self.elements, **changed})
+
+    def ends(self) -> list[np.ndarray]:
+        """Return the pairs of nodes (k, 2) that links, and the elements of each type, connect."""
+        return [self.links.nodes, *(element.ends(self.elements[element.section]) for element in self.element_types)]
+
+    def element_stiffnesses_N_per_m(self) -> list[np.ndarray]:
+        """Return the largest stiffness (k,) [N/m] between the ends of the elements of each type."""
+        return [element.stiffness_N_per_m(self.elements[element.section]) for element in self.element_types]
+
+    def tensions_N(self, states: Mapping[str, np.ndarray]) -> list[np.ndarray]:
+        """Return the tensions (states, k) [N] of links, and of the elements of each type, along :meth:`ends`."""
+        return [-states["axial_force_N"], *(element.tension_N(states) for element in self.element_types)]
 
     def with_joints(self, **changed: Any) -> ResolvedTruss:
         """Return the truss with other joints of the sections that are named."""

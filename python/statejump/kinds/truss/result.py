@@ -17,8 +17,10 @@ from statejump.core.start import carried
 from statejump.core.units import unit_of
 from statejump.kinds.truss import compare, members, notes
 from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.elements import ELEMENTS
+from statejump.kinds.truss.elements.protocol import ElementType
 from statejump.kinds.truss.joints import JOINTS
-from statejump.kinds.truss.joints.protocol import Contacts, Sampled
+from statejump.kinds.truss.joints.protocol import Contacts, JointType, Sampled
 from statejump.kinds.truss.motion import TrussMotion
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, engine_programs, heat_of_joints_J
@@ -29,9 +31,10 @@ from statejump.results.events import from_states, kind_of
 STATES = np.array([STICK, SLIP, SLIP, AT_STOP, AT_STOP, SEPARATED], dtype=np.uint8)
 STATE_OF = {"stick": STICK, "slip_plus": SLIP, "slip_minus": SLIP, "stop_plus": AT_STOP, "stop_minus": AT_STOP,
             "open": SEPARATED}
+TYPES: tuple[ElementType[Any, Any] | JointType[Any, Any], ...] = (*ELEMENTS, *JOINTS)
 # Columns by item: what it is of, whether it is a vector. Names and order are those of the DEM's samples.
-ITEMS = {"displacement_m": ("nodes", True), "axial_force_N": ("links", False), "tension_N": ("springs", False)} | {
-    column.name: (joint.items, column.vector) for joint in JOINTS for column in joint.columns}
+ITEMS = {"displacement_m": ("nodes", True), "axial_force_N": ("links", False)} | {
+    column.name: (kind.items, column.vector) for kind in TYPES for column in kind.columns}
 TOUCHING = [joint for joint in JOINTS if joint.has_contacts]
 # Of these the DEM samples states; those of contacts are among the contacts of a result.
 STICKING = [joint for joint in JOINTS if joint.has_contacts or not joint.not_in_dem]
@@ -40,7 +43,7 @@ AT_END = "largest_displacement_at_program_end_m"
 HEAT = "heat of friction since the start"
 LOCATED = 1e-6  # fraction of a cycle: a smaller uncertainty of an event is not reported
 NOTES = {"displacement_m": "from the drawn shape", "axial_force_N": "compression positive"} | {
-    column.name: column.note for joint in JOINTS for column in joint.columns}
+    column.name: column.note for kind in TYPES for column in kind.columns}
 
 
 def _joints(truss: ResolvedTruss) -> list[str]:
@@ -69,7 +72,9 @@ def every_joint_name(truss: ResolvedTruss) -> dict[tuple[str, str], str]:
 def names(case: TrussCase) -> dict[str, list[str]]:
     """Names of the items of columns."""
     truss = case.resolve()
-    of = {key: list(getattr(truss, key).names) for key in ("nodes", "links", "springs")}
+    of = {key: list(getattr(truss, key).names) for key in ("nodes", "links")}
+    of |= {element.items: list(truss.elements[element.section].names) for element in ELEMENTS
+           if element.columns and (element.listed_if_none or truss.elements[element.section].names)}
     of |= {joint.items: list(truss.joints[joint.section].names) for joint in JOINTS
            if joint.has_contacts or truss.joints[joint.section].names}
     of |= {"drives": list(truss.drives.names)} if truss.drives.names else {}
@@ -77,16 +82,18 @@ def names(case: TrussCase) -> dict[str, list[str]]:
 
 
 def scene(case: TrussCase) -> dict[str, Any]:
-    """Links and springs between the nodes; blocks of sliders; journals and bearings."""
+    """Links and elements between the nodes; blocks of sliders; journals and bearings."""
     truss = case.resolve()
     nodes = [drawing.ref("history/position_m", name) for name in truss.nodes.names]
     parts: list[dict[str, Any]] = [
         drawing.link(link.name, [nodes[end] for end in ends], _Section(truss, place))
         for place, (link, ends) in enumerate(zip(case.link, truss.links.nodes))
     ]
-    for name, ends, stiffness in zip(truss.springs.names, truss.springs.nodes, truss.springs.stiffness_N_per_m):
-        parts.append({"name": f"spring {name}", "type": "spring", "ends": [nodes[end] for end in ends],
-                      "stiffness_N_per_m": float(stiffness)})
+    for element in ELEMENTS:
+        elements = truss.elements[element.section]
+        for name, ends, stiffness in zip(elements.names, element.ends(elements), element.stiffness_N_per_m(elements)):
+            parts.append({"name": f"{element.section} {name}", "type": "spring", "ends": [nodes[end] for end in ends],
+                          "stiffness_N_per_m": float(stiffness)})
     labels, taken = joint_names(truss), {part["name"] for part in parts}
     contacts, clearances = [], [np.zeros(0)]
     for joint in JOINTS:
@@ -143,8 +150,7 @@ def _run(
     change = plain["temperature_change_K"].values
 
     def happened() -> list[Event]:
-        return sorted([*events(), *_cable_events(truss, time, change, items["tension_N"])],
-                      key=lambda event: event.time_s)
+        return sorted([*events(), *_switches(truss, time, change, items)], key=lambda event: event.time_s)
 
     return Run(model, history, energy, links, contacts, Events(happened),
                {**_jumps(case, *(dense or (time, items["displacement_m"]))), **summary}, names(case), lambda: case,
@@ -184,18 +190,21 @@ def _start_friction(truss: ResolvedTruss, items: Mapping[str, np.ndarray]) -> di
     return found
 
 
-def _cable_events(truss: ResolvedTruss, time: np.ndarray, change: np.ndarray, tension_N: np.ndarray) -> list[Event]:
-    """Return the events at which cables become slack or taut, each at the middle between two samples."""
-    cables = np.flatnonzero(truss.springs.cable)
+def _switches(truss: ResolvedTruss, time: np.ndarray, change: np.ndarray, items: Mapping[str, np.ndarray]
+              ) -> list[Event]:
+    """Return the events at which elements switch, each at the middle between two samples."""
     others = set(every_joint_name(truss).values())
     found = []
-    for cable in cables:
-        name, pulls = truss.springs.names[cable], tension_N[:, cable] > 0
-        for after in np.flatnonzero(pulls[1:] != pulls[:-1]) + 1:
-            between = slice(after - 1, after + 1)
-            found.append(Event("taut" if pulls[after] else "slack", float(time[between].mean()),
-                               float(change[between].mean()), f"spring {name}" if name in others else name,
-                               float(np.ptp(time[between]) / 2)))
+    for element in ELEMENTS:
+        elements = truss.elements[element.section]
+        for one in element.switches(elements, {column.name: items[column.name] for column in element.columns}):
+            name = elements.names[one.element]
+            for after in np.flatnonzero(one.is_on[1:] != one.is_on[:-1]) + 1:
+                between = slice(after - 1, after + 1)
+                found.append(Event(one.on if one.is_on[after] else one.off, float(time[between].mean()),
+                                   float(change[between].mean()),
+                                   f"{element.section} {name}" if name in others else name,
+                                   float(np.ptp(time[between]) / 2)))
     return found
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.resolved import ResolvedTruss
 
 # Changes of status are located within 1e-9 of a branch, and a slender truss enlarges the rounding of coordinates by the
@@ -58,16 +59,17 @@ def scales(truss: ResolvedTruss, displacement_m: np.ndarray) -> Scales:
 
 def _at_rest(truss: ResolvedTruss) -> Scales:
     """Return the scales of a truss that does not move."""
-    links, springs, position = truss.links, truss.springs, truss.nodes.position_m
+    links, position = truss.links, truss.nodes.position_m
     coordinates = COORDINATES * float(np.abs(position).max(initial=0.0))
     size = float(np.ptp(position, axis=0).max()) if len(position) else 0.0
     ranges_K = np.abs(truss.temperature_ranges_K).max(axis=1)
     expansion = np.abs(links.thermal_expansion_per_K * links.temperature_fraction * ranges_K[links.program])
     strain = np.maximum(expansion, coordinates / links.stress_free_length_m)
     rigidity = links.young_modulus_Pa * links.cross_section_area_m2
-    stiffness = np.concatenate((rigidity / links.stress_free_length_m, springs.stiffness_N_per_m))
+    stiffness = np.concatenate((rigidity / links.stress_free_length_m, *truss.element_stiffnesses_N_per_m()))
+    preload = np.concatenate([element.preload_N(truss.elements[element.section]) for element in ELEMENTS])
     load = max(float(np.linalg.norm(truss.nodes.force_N, axis=1).max(initial=0.0)),
-               float(np.abs(springs.preload_N).max(initial=0.0)))
+               float(np.abs(preload).max(initial=0.0)))
     deflection = load / float(stiffness.max()) if len(stiffness) else 0.0
     motion = max(size * float(expansion.max(initial=0.0)), deflection, LEAST_MOTION * coordinates)
     force = max(float((rigidity * strain).max(initial=0.0)), load, coordinates * float(stiffness.max(initial=0.0)))

@@ -6,7 +6,6 @@ name; :class:`.case.TrussCase` turns names into indices and keys into arrays.
 """
 from __future__ import annotations
 
-from math import pi
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from statejump.core import thermal as core_thermal
@@ -16,17 +15,14 @@ from statejump.core.expansion import Expansion
 from statejump.core.start import Start
 from statejump.core.temperature_files import Histories
 from statejump.core.thermal import CaseThermal, MemberProgram, Thermal, returns_s
-from statejump.kinds.truss.joints.ball_joint import BallJoint
-from statejump.kinds.truss.joints.iwan_joint import IwanJoint
-from statejump.kinds.truss.joints.latch_hinge import LatchHinge
-from statejump.kinds.truss.joints.revolute import Revolute
-from statejump.kinds.truss.joints.slider import Slider
+from statejump.kinds.truss.elements import ElementLists
+from statejump.kinds.truss.joints import JointLists
 from statejump.kinds.truss.joints.words import ALUMINIUM, USER
 from statejump.kinds.truss.mechanism import Drive
 from statejump.kinds.truss.resolved import FIXITY, STICKING
 from statejump.schema.fields import (
     CHOICE, Section, attached, choice, definition, fields_of, numbers, optional_section, parameter, section,
-    switch, tables, text, texts, whole,
+    section_class, switch, tables, text, texts, whole,
 )
 from statejump.schema.items import Item
 
@@ -96,31 +92,6 @@ class TrussExpansion(Item, Expansion):
 
 
 @definition
-class Spring(Item):
-    """A linear spring between two nodes, or a cable that only pulls."""
-
-    nodes: list[str] = texts(..., "its two nodes")
-    stiffness_N_per_m: float = parameter(..., "N/m", 0, 1e15, USER, above=True)
-    preload_N: float | None = parameter(None, "N", -1e12, 1e12, "tension of the drawn truss; 0")
-    free_length_m: float | None = parameter(None, "m", 0, LARGEST_LENGTH_M, "instead of preload_N")
-    cable: bool = switch(False, "whether it only pulls")
-
-
-@definition
-class TrussTorsionSpring(Item):
-    """A spring on the angle from the first link to the second, or on the angle of one link in space.
-
-    Links point from their first to their second node, angles are anticlockwise about the axis (z in the
-    plane). The moment K (angle - drawn angle - bias) turns the links back to the drawn angle + bias.
-    """
-
-    links: list[str] = texts(..., "two links that share a place, or one")
-    stiffness_N_m_per_rad: float = parameter(..., "N m/rad", 0, 1e12, USER, above=True)
-    bias_rad: float = parameter(0.0, "rad", -pi, pi, "free angle beyond the drawn one")
-    axis: list[float] | None = numbers(None, "-", -1e9, 1e9, "fixed in space; needed in three dimensions")
-
-
-@definition
 class TrussThermal(CaseThermal):
     """A temperature program, or the temperatures of all members."""
 
@@ -158,28 +129,19 @@ class Output(Section):
     samples_per_cycle: int = whole(200, 10, 1_000_000, CHOICE)
 
 
+def _beside(name: str) -> Any:
+    return text(None, f"CSV or HDF5 file, in place of [[{name}]]")
+
+
+Tables = section_class(
+    "Tables", "Files beside the case file with one row an item and one column a key, in place of sections: large "
+    "trusses.",
+    {name: _beside(name) for name in ("node", "link", *fields_of(JointLists), *fields_of(ElementLists))})
+
+
 def sections_in_files() -> tuple[str, ...]:
     """Return the lists that may stand in files beside a case."""
     return tuple(fields_of(Tables))
-
-
-def _beside(section: str) -> Any:
-    return text(None, f"CSV or HDF5 file, in place of [[{section}]]")
-
-
-@definition
-class Tables(Section):
-    """Files beside the case file with one row an item and one column a key, in place of sections: large trusses."""
-
-    node: str | None = _beside("node")
-    link: str | None = _beside("link")
-    slider: str | None = _beside("slider")
-    revolute: str | None = _beside("revolute")
-    spring: str | None = _beside("spring")
-    torsion_spring: str | None = _beside("torsion_spring")
-    latch_hinge: str | None = _beside("latch_hinge")
-    iwan_joint: str | None = _beside("iwan_joint")
-    ball_joint: str | None = _beside("ball_joint")
 
 
 @definition
@@ -246,23 +208,22 @@ class TrussTolerance(Section):
 
 
 @definition
-class TrussSections(Case):
-    """The sections of a truss with frictional and clearance joints under one or several temperature programs."""
-
-    KIND: ClassVar[str] = "truss"
+class TrussParts(Case):
+    """The sections of a truss to which joints and elements refer."""
 
     truss: Truss = section(Truss, required=True)
     node: list[Node] = tables(Node, "sections [[node]]", required=True)
     link: list[Link] = tables(Link, "sections [[link]]")
     program: list[Program] = tables(Program, "sections [[program]]")
     expansion: list[TrussExpansion] = tables(TrussExpansion, "sections [[expansion]]")
-    slider: list[Slider] = tables(Slider, "sections [[slider]]")
-    revolute: list[Revolute] = tables(Revolute, "sections [[revolute]]")
-    spring: list[Spring] = tables(Spring, "sections [[spring]]")
-    torsion_spring: list[TrussTorsionSpring] = tables(TrussTorsionSpring, "sections [[torsion_spring]]")
-    latch_hinge: list[LatchHinge] = tables(LatchHinge, "sections [[latch_hinge]]")
-    iwan_joint: list[IwanJoint] = tables(IwanJoint, "sections [[iwan_joint]]")
-    ball_joint: list[BallJoint] = tables(BallJoint, "sections [[ball_joint]]")
+
+
+@definition
+class TrussSections(ElementLists, JointLists, TrussParts):
+    """The sections of a truss with frictional and clearance joints under one or several temperature programs."""
+
+    KIND: ClassVar[str] = "truss"
+
     drive: list[Drive] = tables(Drive, "sections [[drive]]")
     thermal: TrussThermal = section(TrussThermal, required=True)
     start: Start = section(Start)
@@ -272,7 +233,7 @@ class TrussSections(Case):
     dem_settings: TrussDem = section(TrussDem, name="dem")
     reflector: Reflector | None = optional_section(Reflector)
     tolerance: TrussTolerance = section(TrussTolerance)
-    tables: Tables | None = optional_section(Tables)
+    tables: Section | None = optional_section(Tables)
 
     @property
     def samples_per_cycle(self) -> int:

@@ -7,6 +7,7 @@ import numpy as np
 from statejump.core.run import Run
 from statejump.kinds.truss.arrays import GROUND
 from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.round_parts import RoundParts
 from statejump.kinds.truss.notes import listed
@@ -74,14 +75,16 @@ def _pins_hold(truss: ResolvedTruss, run: Run, none_N: float, holding: np.ndarra
 
 
 def _others_hold(truss: ResolvedTruss) -> np.ndarray:
-    """Return the number of directions of nodes that supports, springs, rotational items and joints without clearance
+    """Return the number of directions of nodes that supports, elements, rotational items and joints without clearance
     constrain. Each of the last three counts as all directions."""
     d = truss.dimension
     found = truss.nodes.fixed[:, :d].sum(axis=1) + truss.nodes.guide_normal.any(axis=1)
-    turned = [truss.torsion_springs.links, *(joint.torsion(truss.joints[joint.section]).links for joint in JOINTS)]
+    turned = [*(element.torsion(truss.elements[element.section]).links for element in ELEMENTS),
+              *(joint.torsion(truss.joints[joint.section]).links for joint in JOINTS)]
     links = np.concatenate([one.ravel() for one in turned]).astype(int)
     np.add.at(found, truss.links.nodes[links[links != GROUND]].ravel(), d)
-    np.add.at(found, truss.springs.nodes.ravel(), d)
+    for ends in truss.ends()[1:]:
+        np.add.at(found, ends.ravel(), d)
     for joint in JOINTS:
         if not isinstance(joint, RoundParts):
             joints = truss.joints[joint.section]

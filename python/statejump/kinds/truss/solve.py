@@ -17,6 +17,7 @@ from statejump.core.start import FRICTIONLESS
 from statejump.core.thermal import MemberProgram, Thermal
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.check_mechanism import refused_at_rest
+from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import JointType
 from statejump.kinds.truss.resolved import ResolvedTruss
@@ -135,7 +136,8 @@ def _joints(truss: ResolvedTruss, joint: JointType[Any, Any]) -> dict[str, Any]:
 def _elements(truss: ResolvedTruss, table: str) -> dict[str, Any]:
     """Return the elements of a type with the arrays that the engine lists for it."""
     keys = dict.fromkeys(parameter["key"] for parameter in _engine.truss_elements()[table]["parameters"])
-    return _table(getattr(truss, table), *keys)
+    parts = {"links": truss.links} | {element.items: truss.elements[element.section] for element in ELEMENTS}
+    return _table(parts[table], *keys)
 
 
 def engine_items(truss: ResolvedTruss) -> dict[str, Any]:

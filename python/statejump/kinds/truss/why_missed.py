@@ -2,6 +2,7 @@
 """Possible reasons for a missed tolerance of a truss; its slowest natural period."""
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import inf, pi, sqrt
 from typing import Any
 
@@ -15,8 +16,11 @@ from statejump.core.why_missed import SHARE_TOLD, heated_too_fast, still_moving
 from statejump.kinds.truss.arrays import GROUND
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.dem import blocked_directions
+from statejump.kinds.truss.elements import ELEMENTS
+from statejump.kinds.truss.elements.protocol import ElementType
 from statejump.kinds.truss.masses import lumped_mass_kg
 from statejump.kinds.truss.joints import JOINTS
+from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.scales import COMPARED, scales
 from statejump.kinds.truss.solve import TrussPath, engine_program, solve
 
@@ -78,6 +82,11 @@ def slowest_natural_period_s(path: TrussPath) -> float:
     return inf if least <= -10 * shift else 2 * pi / sqrt(least)
 
 
+def _moments(element: ElementType[Any, Any], truss: ResolvedTruss) -> Iterator[tuple[np.ndarray, np.ndarray, float]]:
+    torsion = element.torsion(truss.elements[element.section])
+    return zip(torsion.links, torsion.axis, torsion.stiffness_N_m_per_rad)
+
+
 def _stiffness(path: TrussPath) -> Any:
     """Return the stiffness matrix (3n, 3n) [N/m] of the truss at the start of its path."""
     truss, count = path.truss, len(path.truss.nodes.names)
@@ -103,12 +112,13 @@ def _stiffness(path: TrussPath) -> Any:
         places = np.concatenate(rows), np.concatenate(columns)
         return coo_matrix((np.concatenate(values), places), shape=found.shape).tocsr()
 
-    links, springs, torsion = truss.links, truss.springs, truss.torsion_springs
+    links = truss.links
     axial = physics.axial_stiffness_N_per_m(links.young_modulus_Pa, links.cross_section_area_m2,
                                             links.stress_free_length_m)
-    for nodes, k, tension in ((links.nodes, axial, -path.states["axial_force_N"][0]),
-                              (springs.nodes, springs.stiffness_N_per_m, path.states["tension_N"][0])):
+    for nodes, k, tensions in zip(truss.ends(), (axial, *truss.element_stiffnesses_N_per_m()),
+                                  truss.tensions_N(path.states)):
         if len(nodes):
+            tension = tensions[0]
             way, length = along(nodes)
             outer = way[:, :, None] * way[:, None, :]
             found = found + between(nodes, k[:, None, None] * outer
@@ -117,7 +127,7 @@ def _stiffness(path: TrussPath) -> Any:
         if len(truss.joints[joint.section].names) and not joint.not_in_dem:
             nodes, k = joint.contact_stiffness(path, truss.joints[joint.section])
             found = found + between(nodes, k[:, None, None] * np.eye(3))
-    for ends, axis, moment in zip(torsion.links, torsion.axis, torsion.stiffness_N_m_per_rad):
+    for ends, axis, moment in (moment for element in ELEMENTS for moment in _moments(element, truss)):
         gradient = np.zeros(3 * count)
         for sign, link in zip((-1.0, 1.0), ends if ends[1] != GROUND else ends[::-1]):
             if link == GROUND:

@@ -2,7 +2,7 @@
 """A ``truss`` case in words, and what a command prints of its runs."""
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -11,6 +11,8 @@ from statejump.core.start import FRICTIONLESS
 from statejump.core.tables import Shown
 from statejump.kinds.truss import compare
 from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.elements import ELEMENTS
+from statejump.kinds.truss.elements.protocol import listed_elements
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.joints.words import count, spread
@@ -69,12 +71,8 @@ def _joints(case: TrussCase) -> list[str]:
 
 
 def _tied(case: TrussCase) -> list[str]:
-    cables = [spring for spring in case.spring if spring.cable]
-    springs = [spring for spring in case.spring if not spring.cable]
-    kinds: tuple[tuple[Sequence[object], str], ...] = (
-        (springs, "spring"), (cables, "cable"), (case.torsion_spring, "torsion spring"),
-    )
-    tied = [count(found, name) for found, name in kinds if found]
+    tied = [count(found, noun) for element in ELEMENTS
+            for found, noun in element.counted(listed_elements(case, element)) if found]
     return [f"It has {' and '.join(filter(None, [', '.join(tied[:-1]), tied[-1]]))}."] if tied else []
 
 

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <optional>
 #include <span>
 #include <string>
@@ -116,41 +117,82 @@ struct Seat {
   bool touches = true;                              ///< False: no force says where.
 };
 
-// A type of joint is a struct of parameters with a name and
-//
-//   kind                  its name in tables and messages
-//   parameters()          what it is described by: units, ranges, sources
-//   outputs()             what it has at every state
-//   history()             how many numbers it remembers from state to state
-//   validate()            what its ranges do not say; the truss around it is valid
-//   frame()               nodes, directions, number of unknown forces
-//   evaluate()            forces on nodes and rows of the branch `status`, with all derivatives;
-//                         writes the same places whatever the status
-//   warm()                rates of those forces and rows where only its temperature moves
-//   slide_row             the row that closes the slide where it sticks
-//   decide()              the branch that its inequalities ask for, from the branch whose rows hold
-//   commit()              what it remembers at the start of the next step
-//   begin()               the same at the very start, where nothing is remembered
-//   rolls(), lag()        of types whose slide is an integral along the way: whether it is one,
-//                         and the slide of a step less what friction bends, with what is owed [m]
-//   slip()                slide of the step that friction turned into heat [m]
-//   dissipation()         heat of the step [J]
-//   elastic_energy()      stored in it [J]
-//   clearance_growth()    of types with a clearance that its temperature changes: by how much
-//                         [m/K]; contact_force() is what it then works against [N]
-//   beyond_edges()        of types with edges at which the stiffness jumps without a change of
-//                         status: how far it is beyond each [m]
-//   describe()            outputs in their order
-//   slide_rounding()      of the slide less what friction bends [m]
-//   remembers_when()      whether the state depends on when in a step the status changed
-//   slips_smoothly()      whether its law has one row for stick and slip
-//   settled()             status at the end of a step: of such a law told here, not decided; of
-//                         others what was decided
-//   contact()             which rows are those of a frictional contact, none on a branch that is
-//   not one rest()                status with which the path begins seat(), jumps()       joints
-//   with play: how the start finds contact, and whether a step was a
-//                         jump
-//
+/// A type of joint is a struct of parameters with a name and a law between its nodes, whose forces
+/// are unknowns.
+///
+/// | member | meaning |
+/// |---|---|
+/// | `kind` | its table in the case and its name in messages |
+/// | `parameters()` | key, unit, range and source of each parameter |
+/// | `outputs()`, `describe()` | numbers that it has at every state |
+/// | `history()` | how many numbers it remembers from state to state |
+/// | `validate()` | rules beyond the ranges of single parameters |
+/// | `frame()` | nodes, directions, number of unknown forces |
+/// | `evaluate()` | forces on nodes and rows of a status, with all derivatives |
+/// | `warm()` | rates of these forces and rows where only its temperature moves |
+/// | `slide_row` | row that closes the slide where the joint sticks |
+/// | `decide()` | status that the inequalities require, from the status whose rows hold |
+/// | `begin()` | writes what it remembers at the very start |
+/// | `commit()` | writes what it remembers at the start of the next step |
+/// | `slip()` | slide of the step that friction turned into heat [m] |
+/// | `dissipation()` | heat of the step [J] |
+/// | `elastic_energy()` | energy stored in it [J] |
+/// | `slide_rounding()` | rounding of the slide less what friction bends [m] |
+/// | `remembers_when()` | whether the state depends on when in a step the status changed |
+/// | `slips_smoothly()` | whether its law has one row for stick and slip |
+/// | `settled()` | status at the end of a step; differs from the decided one only for such a law |
+/// | `contact()` | its rows as a frictional contact; none on a status that is not one |
+/// | `rest()` | status with which the path begins |
+/// | `has_play()` | whether the start has to find its contact |
+/// | `least_slide()` | least scale of its slides [m] |
+/// | `seat()`, `jumps()` | how the start finds contact; whether a step was a jump |
+///
+/// Optional members:
+///
+/// | member | meaning |
+/// |---|---|
+/// | `rolls()`, `lag()` | of a slide that is an integral: whether it is one; slide less bend [m] |
+/// | `clearance_growth()` | growth of a clearance by its temperature [m/K] |
+/// | `contact_force()` | force against which that growth works [N] |
+/// | `beyond_edges()` | how far it is beyond each edge at which the stiffness jumps [m] |
+/// | `slack_motion()` | motion of an open joint since the start of the step [m] |
+///
+/// @pre of all but validate(): the joint and the truss around it are valid. evaluate() writes the
+/// same entries whatever the status. The histories of begin(), commit() and Trial have history()
+/// numbers.
+template <class Type>
+concept JointType = requires(const Type& one, const Model& model, const Trial& trial,
+                             JointStatus status, JointWriter& writer, double* written,
+                             const double* after) {
+  { Type::kind } -> std::convertible_to<const char*>;
+  { Type::slide_row } -> std::convertible_to<int>;
+  { Type::parameters() } -> std::same_as<std::span<const Parameter<Type>>>;
+  { Type::outputs() } -> std::same_as<std::span<const Output>>;
+  { one.name } -> std::convertible_to<std::string>;
+  { one.history() } -> std::same_as<int>;
+  { one.validate(model) } -> std::same_as<void>;
+  { one.frame(model) } -> std::same_as<JointFrame>;
+  { one.evaluate(trial, status, writer) } -> std::same_as<void>;
+  { one.warm(trial, status, 1.0, writer) } -> std::same_as<void>;
+  { one.decide(trial, status) } -> std::same_as<JointStatus>;
+  { one.begin(trial, status, written) } -> std::same_as<void>;
+  { one.commit(trial, status, written) } -> std::same_as<void>;
+  { one.slip(trial, after) } -> std::same_as<double>;
+  { one.dissipation(trial, after, 1.0) } -> std::same_as<double>;
+  { one.elastic_energy(trial, after) } -> std::same_as<double>;
+  { one.describe(trial, written) } -> std::same_as<void>;
+  { one.slide_rounding(trial, 1.0, 1.0) } -> std::same_as<double>;
+  { one.remembers_when(status, status) } -> std::same_as<bool>;
+  { one.slips_smoothly() } -> std::same_as<bool>;
+  { one.settled(trial, status) } -> std::same_as<JointStatus>;
+  { one.contact(trial, status) } -> std::same_as<std::optional<LocalContact>>;
+  { one.rest() } -> std::same_as<JointStatus>;
+  { one.has_play() } -> std::same_as<bool>;
+  { one.least_slide() } -> std::same_as<double>;
+  { one.seat(trial, 1.0, 1.0, 1.0) } -> std::same_as<Seat>;
+  { one.jumps(trial, status) } -> std::same_as<bool>;
+};
+
 // A natural map of Alart and Curnier [1] is piecewise smooth: λ − proj(λ − r g; bounds) is r g on
 // one piece, λ less a bound on the others. After a Newton step one of the two vanishes on every
 // piece, so r > 0 drops out of what decides between them, and a row is written as g in metres or as

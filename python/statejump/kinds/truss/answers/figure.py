@@ -61,7 +61,7 @@ def jumps_figure(found: TrussPath, shares: Contributions | None, title: str) -> 
     factor, unit = readable(float(size.max()), "m")
     scale = magnification(truss, float(size.max()))
     drawn, moved = truss.nodes.position_m, truss.nodes.position_m + scale * jump
-    lines = np.concatenate((truss.links.nodes, truss.springs.nodes))
+    lines = np.concatenate(truss.ends())
     colours = ScalarMappable(Normalize(0, float(size.max()) * factor or 1.0), JUMPS)
     flat = truss.dimension == 2
     axes = slice(0, truss.dimension)

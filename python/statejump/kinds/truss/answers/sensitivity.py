@@ -11,7 +11,7 @@ from statejump.core.errors import StatejumpError
 from statejump.core.progress import Tell
 from statejump.kinds.truss.answers.jumps import quick_path
 from statejump.kinds.truss.answers.outputs import Output
-from statejump.kinds.truss.arrays import distances
+from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath
@@ -42,28 +42,24 @@ def parameters(truss: ResolvedTruss) -> list[tuple[str, str, np.ndarray]]:
     """Return section, key and the values (items,) of every parameter that a jump may follow."""
     found = [(joint.section, key, values) for joint in JOINTS
              for key, values in joint.parameters(truss.joints[joint.section])]
-    parts = (
-        ("link", truss.links, ("young_modulus_Pa", "cross_section_area_m2")),
-        ("spring", truss.springs, ("stiffness_N_per_m", "preload_N")),
-        ("torsion_spring", truss.torsion_springs, ("stiffness_N_m_per_rad", "bias_rad")),
-    )
-    return found + [(section, key, getattr(part, key)) for section, part, keys in parts for key in keys]
+    found += [("link", key, getattr(truss.links, key)) for key in ("young_modulus_Pa", "cross_section_area_m2")]
+    return found + [(element.section, key, getattr(truss.elements[element.section], key)) for element in ELEMENTS
+                    for key in element.varied]
 
 
 def _part(truss: ResolvedTruss, section: str) -> Any:
     """Return the arrays of a section."""
-    return truss.joints[section] if section in truss.joints else getattr(truss, f"{section}s")
+    return {**truss.joints, **truss.elements, "link": truss.links}[section]
 
 
 def changed(truss: ResolvedTruss, section: str, key: str, factor: np.ndarray) -> ResolvedTruss:
-    """Return the truss with one parameter of every item times a factor (items,). The stiffness of a spring
-    changes at constant preload, the preload at constant stiffness."""
+    """Return the truss with one parameter of every item times a factor (items,)."""
     part = _part(truss, section)
     part = replace(part, **{key: getattr(part, key) * factor})
-    if section == "spring":
-        drawn = distances(truss.nodes.position_m, part.nodes)
-        part = replace(part, free_length_m=drawn - part.preload_N / part.stiffness_N_per_m)
-    return truss.with_joints(**{section: part}) if section in truss.joints else replace(truss, **{f"{section}s": part})
+    for element in ELEMENTS:
+        if element.section == section:
+            return truss.with_elements(**{section: element.changed(truss, part)})
+    return truss.with_joints(**{section: part}) if section in truss.joints else replace(truss, links=part)
 
 
 def histories_of(found: TrussPath) -> dict[tuple[str, str], list[str]]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""VTK files of a truss' path: lines of links and springs and points of joints, a series with true times."""
+"""VTK files of a truss' path: lines of links and elements and points of joints, a series with true times."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -11,11 +11,16 @@ from vtkmodules.vtkCommonDataModel import VTK_LINE, VTK_VERTEX, vtkUnstructuredG
 
 from statejump.core.progress import Tell
 from statejump.results.vtk_data import add_array, cells, file_time, frames_of, points, write, write_series
+from statejump.kinds.truss.elements import ELEMENTS
+from statejump.kinds.truss.elements.protocol import BetweenNodes
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, engine_programs
 
-LINK, SPRING, FIRST_JOINT = range(3)  # "kind" of a cell; joints in the order of JOINTS
+# "kind" of a cell: links, elements between nodes in the order of ELEMENTS, joints in the order of JOINTS.
+LINK = 0
+BETWEEN_NODES = [element for element in ELEMENTS if isinstance(element, BetweenNodes)]
+FIRST_JOINT = 1 + len(BETWEEN_NODES)
 # Columns that have one name in files for all types.
 SHARED = {"slider_force_N": "friction_force_N"}
 
@@ -30,7 +35,7 @@ def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,
            tell: Tell = lambda share: None) -> Path:
     """Write ``<name>.N.vtu`` and ``<name>.vtu.series`` and return the latter.
 
-    Points are the drawn nodes; ``displacement_m`` moves them (Warp By Vector). Cells: links, springs,
+    Points are the drawn nodes; ``displacement_m`` moves them (Warp By Vector). Cells: links, elements between nodes,
     joints as points at their first or bearing node; arrays that a cell lacks are NaN, its status is 255.
 
     :param wanted_frames: how many states of the path, evenly spread; 0: all
@@ -38,13 +43,14 @@ def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,
     truss, states = found.truss, found.states
     frames = frames_of(len(states["time_s"]), wanted_frames)
     temperatures = link_temperatures(truss, states["time_s"])
-    links, springs = len(truss.links.names), len(truss.springs.names)
-    sizes = [links, springs, *(len(truss.joints[joint.section].names) for joint in JOINTS)]
-    lines = np.concatenate((truss.links.nodes, truss.springs.nodes)).ravel()
+    elements = [truss.elements[element.section] for element in BETWEEN_NODES]
+    sizes = [len(truss.links.names), *(len(part.names) for part in elements),
+             *(len(truss.joints[joint.section].names) for joint in JOINTS)]
+    lines = np.concatenate([truss.links.nodes, *(part.nodes for part in elements)])
     places = [joint.place_nodes(truss, truss.joints[joint.section]) for joint in JOINTS]
-    drawn = cells([2] * (links + springs) + [1] * sum(sizes[2:]), np.concatenate((lines, *places)))
+    drawn = cells([2] * len(lines) + [1] * sum(sizes[FIRST_JOINT:]), np.concatenate((lines.ravel(), *places)))
     kinds = np.repeat(np.arange(FIRST_JOINT + len(JOINTS)), sizes).astype(np.int32)
-    names = [*truss.links.names, *truss.springs.names,
+    names = [*truss.links.names, *(own for part in elements for own in part.names),
              *(own for joint in JOINTS for own in truss.joints[joint.section].names)]
     types = np.where(kinds < FIRST_JOINT, VTK_LINE, VTK_VERTEX).astype(np.uint8)
 
@@ -62,7 +68,8 @@ def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,
         add_array(data.GetPointData(), "since_start_m", states["displacement_m"][frame] - states["displacement_m"][0])
         at = {key: values[frame] for key, values in states.items()}
         arrays: dict[str, dict[int, Any]] = {
-            "axial_force_N": {LINK: at["axial_force_N"], SPRING: -at["tension_N"]},
+            "axial_force_N": {LINK: at["axial_force_N"], **{
+                kind: -element.tension_N(at) for kind, element in enumerate(BETWEEN_NODES, 1)}},
             "temperature_change_K": {LINK: temperatures[frame]},
         }
         for kind, joint in enumerate(JOINTS, FIRST_JOINT):
@@ -74,7 +81,7 @@ def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,
             arrays.setdefault("dissipation_J", {})[kind] = at[f"{joint.section}_dissipation_J"]
         for name_of, parts in arrays.items():
             add_array(data.GetCellData(), name_of, column(parts))
-        status = np.concatenate((np.full(links + springs, 255), *(at[f"{joint.section}_status"] for joint in JOINTS)))
+        status = np.concatenate((np.full(len(lines), 255), *(at[f"{joint.section}_status"] for joint in JOINTS)))
         add_array(data.GetCellData(), "status", status.astype(np.uint8))
         add_array(data.GetCellData(), "kind", kinds)
         add_array(data.GetCellData(), "name", names)

@@ -13,6 +13,7 @@ from statejump.core.errors import NotAllowed, UnknownKey
 from statejump.kinds.truss.answers.sensitivity import changed, parameters
 from statejump.kinds.truss.arrays import distances
 from statejump.kinds.truss.case import TrussCase
+from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.references import known_name
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.schema.fields import rule_of
@@ -80,7 +81,7 @@ def with_spring(truss: ResolvedTruss, ends: Sequence[int], stiffness_N_per_m: fl
     if stiffness_N_per_m == 0:
         return truss
     springs, pair = truss.springs, np.array([ends])
-    return replace(truss, springs=replace(
+    return truss.with_elements(spring=replace(
         springs, names=(*springs.names, "added"), nodes=np.concatenate((springs.nodes.reshape(-1, 2), pair)),
         stiffness_N_per_m=np.append(springs.stiffness_N_per_m, stiffness_N_per_m),
         free_length_m=np.append(springs.free_length_m, distances(truss.nodes.position_m, pair)),
@@ -97,10 +98,11 @@ def _spring(case: TrussCase, one: str, two: str) -> Candidate:
         raise NotAllowed("--add-spring", told, code="spring_between_one_place", case=case.name)
     if truss.nodes.fixed[ends].all():
         raise NotAllowed("--add-spring", told, code="spring_between_fixed_nodes", case=case.name)
-    links, springs, turned = truss.links, truss.springs, truss.torsion_springs
+    links, springs = truss.links, truss.springs
     bars = links.young_modulus_Pa * links.cross_section_area_m2 / links.stress_free_length_m
     size = float(np.ptp(truss.nodes.position_m, axis=0).max())
-    every = np.concatenate((bars, springs.stiffness_N_per_m, turned.stiffness_N_m_per_rad / size**2))
+    turned = [element.torsion(truss.elements[element.section]).stiffness_N_m_per_rad / size**2 for element in ELEMENTS]
+    every = np.concatenate((bars, *truss.element_stiffnesses_N_per_m(), *turned))
     stiffest = min(highest(case, STIFFNESS), STIFFER * (bars if len(bars) else every).max(initial=1.0))
     softest = every.min(initial=stiffest) / STIFFER
     return Candidate(

@@ -1,15 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The types of joints of a truss, each in a file of its own; what a type brings, :mod:`.protocol` says."""
+"""The registry of joints of a truss: one file per type. :mod:`.protocol` documents a type."""
 from __future__ import annotations
 
 from typing import Any
 
-from statejump.kinds.truss.joints.ball_joint import BALL_JOINT
-from statejump.kinds.truss.joints.iwan_joint import IWAN_JOINT
-from statejump.kinds.truss.joints.latch_hinge import LATCH_HINGE
+from statejump.kinds.truss.joints.ball_joint import BALL_JOINT, BallJoint
+from statejump.kinds.truss.joints.iwan_joint import IWAN_JOINT, IwanJoint
+from statejump.kinds.truss.joints.latch_hinge import LATCH_HINGE, LatchHinge
 from statejump.kinds.truss.joints.protocol import JointType
-from statejump.kinds.truss.joints.revolute import REVOLUTE
-from statejump.kinds.truss.joints.slider import SLIDER
+from statejump.kinds.truss.joints.revolute import REVOLUTE, Revolute
+from statejump.kinds.truss.joints.slider import SLIDER, Slider
+from statejump.schema.fields import Section, definition, tables
 
-# In the order in which results list them. A case has a list of each: statejump.kinds.truss.sections.TrussSections.
+# In the order in which results list them. A new type is added to this tuple and to the lists.
 JOINTS: tuple[JointType[Any, Any], ...] = (SLIDER, REVOLUTE, LATCH_HINGE, IWAN_JOINT, BALL_JOINT)
+
+
+@definition
+class JointLists(Section):
+    """The lists of joints that a case has."""
+
+    slider: list[Slider] = tables(Slider, "sections [[slider]]")
+    revolute: list[Revolute] = tables(Revolute, "sections [[revolute]]")
+    latch_hinge: list[LatchHinge] = tables(LatchHinge, "sections [[latch_hinge]]")
+    iwan_joint: list[IwanJoint] = tables(IwanJoint, "sections [[iwan_joint]]")
+    ball_joint: list[BallJoint] = tables(BallJoint, "sections [[ball_joint]]")

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from statejump.core.errors import NotAllowed
-from statejump.kinds.truss.arrays import References, columns, having, indices, names
-from statejump.kinds.truss.joints.protocol import BLACK, Contacts, JointColumn, Sampled, Symbol
+from statejump.kinds.truss.arrays import References, having
+from statejump.kinds.truss.joints.protocol import BLACK, Contacts, ItemColumn, Sampled, Symbol
 from statejump.kinds.truss.joints.round_parts import RoundParts
 from statejump.kinds.truss.joints.words import ALUMINIUM, USER, count, scaled, spread
 from statejump.schema.fields import CHOICE, choice, definition, parameter, text
@@ -75,10 +75,11 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
 
     section = "ball_joint"
     Item = BallJoint
-    columns: ClassVar[tuple[JointColumn, ...]] = (
-        JointColumn("ball_eccentricity_m", "ball minus socket centre", vector=True),
-        JointColumn("ball_normal_force_N"),
-        JointColumn("ball_friction_force_N", "on the ball", vector=True),
+    Arrays = BallJoints
+    columns: ClassVar[tuple[ItemColumn, ...]] = (
+        ItemColumn("ball_eccentricity_m", "ball minus socket centre", vector=True),
+        ItemColumn("ball_normal_force_N"),
+        ItemColumn("ball_friction_force_N", "on the ball", vector=True),
     )
     varied = ("friction_coefficient", "radial_clearance_m", "ball_radius_m", "young_modulus_Pa")
     inner, outer = "ball", "socket"
@@ -86,18 +87,8 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
     friction_force = "ball_friction_force_N"
     has_axis = False
 
-    def resolve(self, items: Sequence[BallJoint], known: References) -> BallJoints:
-        return BallJoints(
-            names=names(items),
-            **{key: indices(items, key, known.node) for key in ("socket_node", "ball_node")},
-            **{key: indices(items, key, known.link) for key in ("socket_link", "ball_link")},
-            program=known.programs_of(items),
-            rigid=having(items, "contact", "rigid"),
-            **columns(
-                items, "ball_radius_m", "radial_clearance_m", "friction_coefficient", "ball_thermal_expansion_per_K",
-                "socket_thermal_expansion_per_K", "temperature_fraction", "young_modulus_Pa", "poisson_ratio",
-            ),
-        )
+    def derived(self, items: Sequence[BallJoint], known: References) -> dict[str, Any]:
+        return {"rigid": having(items, "contact", "rigid")}
 
     def check_vectors(self, item: BallJoint, dimension: int) -> None:
         if dimension == 2:
@@ -114,11 +105,14 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
         self.check_parts(truss, joints, ranges_K, np.linalg.norm(self.offset_m(truss, joints), axis=1))
 
     def regularised_refuses(self, joints: BallJoints) -> tuple[str, str] | None:
-        return next(((name, "has contact = 'rigid'") for name in self.rigid_ones(joints)), None)
+        for index in np.flatnonzero(joints.rigid)[:1]:
+            return joints.names[index], "has contact = 'rigid'"
+        return None
 
-    def rigid_ones(self, joints: BallJoints) -> list[str]:
-        """Return the names of those whose contact is rigid."""
-        return [joints.names[index] for index in np.flatnonzero(joints.rigid)]
+    def path_refuses(self, joints: BallJoints) -> tuple[str, str] | None:
+        for index in np.flatnonzero(joints.rigid)[:1]:
+            return joints.names[index], "has contact = 'rigid', of which a path does not say how it begins to slide"
+        return None
 
     def engine_arrays(self, truss: ResolvedTruss, joints: BallJoints) -> dict[str, Any]:
         return {

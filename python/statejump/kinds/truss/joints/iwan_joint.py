@@ -13,9 +13,9 @@ import numpy as np
 
 from statejump import _engine
 from statejump.core.errors import NotAllowed
-from statejump.kinds.truss.arrays import References, column, columns, names, none_of, pairs, unit, vectors
+from statejump.kinds.truss.arrays import none_of
 from statejump.kinds.truss.joints.along_axis import AlongAxis
-from statejump.kinds.truss.joints.protocol import JointColumn, Strokes, Symbol
+from statejump.kinds.truss.joints.protocol import ItemColumn, Strokes, Symbol
 from statejump.kinds.truss.joints.slider import with_sliders
 from statejump.kinds.truss.joints.words import USER, count, scaled, spread
 from statejump.schema.fields import CHOICE, definition, numbers, parameter, texts, whole
@@ -70,19 +70,13 @@ class IwanJointType(AlongAxis[IwanJoint, IwanJoints]):
     section = "iwan_joint"
     noun = "an Iwan joint"
     Item = IwanJoint
-    columns: ClassVar[tuple[JointColumn, ...]] = (
-        JointColumn("iwan_slide_m", "from the drawn shape"),
-        JointColumn("iwan_force_N", "on the first node, against the axis"),
+    Arrays = IwanJoints
+    columns: ClassVar[tuple[ItemColumn, ...]] = (
+        ItemColumn("iwan_slide_m", "from the drawn shape"),
+        ItemColumn("iwan_force_N", "on the first node, against the axis"),
     )
     varied = NUMBERS
     not_in_dem = "is a joint that the DEM does not have"
-
-    def resolve(self, items: Sequence[IwanJoint], known: References) -> IwanJoints:
-        return IwanJoints(
-            names=names(items), nodes=pairs(items, "nodes", known.node),
-            axis=unit(vectors(items, "axis", known.dimension)),
-            elements=column(items, "elements").astype(int), **columns(items, *NUMBERS, "spacing"),
-        )
 
     def check_geometry(self, truss: ResolvedTruss, joints: IwanJoints, ranges_K: np.ndarray) -> None:
         super().check_geometry(truss, joints, ranges_K)

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from statejump.kinds.truss.arrays import GROUND, References, columns, names, pairs
-from statejump.kinds.truss.joints.protocol import JointColumn, JointType, Symbol, Torsion
+from statejump.kinds.truss.arrays import GROUND, References, column
+from statejump.kinds.truss.joints.protocol import ItemColumn, JointType, Symbol, Torsion
 from statejump.kinds.truss.joints.words import USER, count, scaled, spread
 from statejump.kinds.truss.references import (
     Around, axis_of_rotation, known_links, turned_links, wrong_axes, wrong_ends,
@@ -64,9 +64,10 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
     section = "latch_hinge"
     turns = True
     Item = LatchHinge
-    columns: ClassVar[tuple[JointColumn, ...]] = (
-        JointColumn("hinge_rotation_rad", "from the drawn shape"),
-        JointColumn("hinge_moment_N_m", "against the rotation: preload, stiffness beyond the play, friction"),
+    Arrays = LatchHinges
+    columns: ClassVar[tuple[ItemColumn, ...]] = (
+        ItemColumn("hinge_rotation_rad", "from the drawn shape"),
+        ItemColumn("hinge_moment_N_m", "against the rotation: preload, stiffness beyond the play, friction"),
     )
     varied = ("deadband_rad", "stiffness_N_m_per_rad", "friction_moment_N_m", "preload_moment_N_m")
 
@@ -82,14 +83,10 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
     def may_be_wrong_references(self, items: ItemColumns[LatchHinge], around: Around) -> np.ndarray:
         return wrong_ends(around.links.of(items, "links"), 1)
 
-    def resolve(self, items: Sequence[LatchHinge], known: References) -> LatchHinges:
-        found = columns(items, "deadband_rad", "stiffness_N_m_per_rad", "friction_moment_N_m",
-                        "friction_stiffness_N_m_per_rad", "preload_moment_N_m")
-        sticking, beyond = found.pop("friction_stiffness_N_m_per_rad"), found["stiffness_N_m_per_rad"]
-        return LatchHinges(
-            names=names(items), links=pairs(items, "links", known.link), axis=known.axes(items),
-            friction_stiffness_N_m_per_rad=np.where(np.isnan(sticking), beyond, sticking), **found,
-        )
+    def derived(self, items: Sequence[LatchHinge], known: References) -> dict[str, Any]:
+        sticking = column(items, "friction_stiffness_N_m_per_rad")
+        beyond = column(items, "stiffness_N_m_per_rad")
+        return {"friction_stiffness_N_m_per_rad": np.where(np.isnan(sticking), beyond, sticking)}
 
     def check_geometry(self, truss: ResolvedTruss, joints: LatchHinges, ranges_K: np.ndarray) -> None:
         turned_links(truss, self.section, joints)

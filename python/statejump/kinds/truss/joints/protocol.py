@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 import numpy as np
 
 from statejump.core.case import Case
-from statejump.kinds.truss.arrays import References
+from statejump.kinds.truss.arrays import References, arrays_of
 from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
 
@@ -33,8 +33,8 @@ IMPACT = 2 ** (1 / 3)
 
 
 @dataclass(frozen=True)
-class JointColumn:
-    """A column that both models have of every joint of a type, under the name that the engine's output has."""
+class ItemColumn:
+    """A column of every joint or element of a type, under the name of the engine's output."""
 
     name: str  # with its unit
     note: str = ""
@@ -110,7 +110,8 @@ class JointType(Generic[ItemType, ArraysType]):
 
     section: ClassVar[str]
     Item: ClassVar[type[Item]]
-    columns: ClassVar[tuple[JointColumn, ...]] = ()  # the first says where it is: a slide, an offset, a rotation
+    Arrays: ClassVar[type[Any]]  # dataclass: names, and a field of the name of each key that models use
+    columns: ClassVar[tuple[ItemColumn, ...]] = ()  # the first says where it is: a slide, an offset, a rotation
     varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that a jump may follow
     has_temperature: ClassVar[bool] = False  # its items have a program and a temperature_fraction
     has_contacts: ClassVar[bool] = False  # two surfaces touch: it has rows among the contacts of a result
@@ -152,8 +153,13 @@ class JointType(Generic[ItemType, ArraysType]):
         return False
 
     def resolve(self, items: Sequence[ItemType], known: References) -> ArraysType:
-        """Return the joints as a dataclass of arrays: ``names`` and one array per number, axes of length 1."""
-        raise NotImplementedError
+        """Return the joints as arrays: the keys of their items, but for those of :meth:`derived`."""
+        made: ArraysType = arrays_of(self.Arrays, self.Item, items, known, **self.derived(items, known))
+        return made
+
+    def derived(self, items: Sequence[ItemType], known: References) -> dict[str, Any]:
+        """Return the arrays whose values are not those of a key as it is given."""
+        return {}
 
     def check_geometry(self, truss: ResolvedTruss, joints: ArraysType, ranges_K: np.ndarray) -> None:
         """Raise an error for what is wrong with places, directions and clearances.
@@ -170,6 +176,10 @@ class JointType(Generic[ItemType, ArraysType]):
     def engine_arrays(self, truss: ResolvedTruss, joints: ArraysType) -> dict[str, Any]:
         """Return the engine's parameters that are not arrays of the same name."""
         return {}
+
+    def path_refuses(self, joints: ArraysType) -> tuple[str, str] | None:
+        """Return name and reason of a joint that has no quasi-static path: it moves from ``motion.start = "drawn"``."""
+        return None
 
     # ---------------------------------------------------------------- result
 

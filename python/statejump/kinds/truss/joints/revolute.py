@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from statejump.core.errors import NotAllowed
-from statejump.kinds.truss.arrays import References, columns, having, indices, names
-from statejump.kinds.truss.joints.protocol import BLACK, Contacts, JointColumn, Sampled, Symbol
+from statejump.kinds.truss.arrays import References, having
+from statejump.kinds.truss.joints.protocol import BLACK, Contacts, ItemColumn, Sampled, Symbol
 from statejump.kinds.truss.joints.round_parts import RoundParts
 from statejump.kinds.truss.joints.words import ALUMINIUM, USER, count, scaled, spread
 from statejump.kinds.truss.references import axis_of_rotation, wrong_axes
@@ -77,10 +77,11 @@ class RevoluteType(RoundParts[Revolute, Revolutes]):
 
     section = "revolute"
     Item = Revolute
-    columns: ClassVar[tuple[JointColumn, ...]] = (
-        JointColumn("eccentricity_m", "journal minus bearing centre", vector=True),
-        JointColumn("normal_force_N"),
-        JointColumn("friction_force_N", "on the journal, clockwise about the axis"),
+    Arrays = Revolutes
+    columns: ClassVar[tuple[ItemColumn, ...]] = (
+        ItemColumn("eccentricity_m", "journal minus bearing centre", vector=True),
+        ItemColumn("normal_force_N"),
+        ItemColumn("friction_force_N", "on the journal, clockwise about the axis"),
     )
     varied = ("friction_coefficient", "radial_clearance_m", "journal_radius_m")
     inner, outer = "journal", "bearing"
@@ -92,20 +93,8 @@ class RevoluteType(RoundParts[Revolute, Revolutes]):
     def may_be_wrong_vectors(self, items: ItemColumns[Revolute], dimension: int) -> np.ndarray:
         return wrong_axes(items, dimension)
 
-    def resolve(self, items: Sequence[Revolute], known: References) -> Revolutes:
-        return Revolutes(
-            names=names(items),
-            **{key: indices(items, key, known.node) for key in ("bearing_node", "journal_node")},
-            **{key: indices(items, key, known.link) for key in ("bearing_link", "journal_link")},
-            axis=known.axes(items),
-            program=known.programs_of(items),
-            rigid=having(items, "contact", "rigid"),
-            **columns(
-                items, "journal_radius_m", "radial_clearance_m", "friction_coefficient",
-                "journal_thermal_expansion_per_K", "bearing_thermal_expansion_per_K", "temperature_fraction",
-                "young_modulus_Pa", "poisson_ratio",
-            ),
-        )
+    def derived(self, items: Sequence[Revolute], known: References) -> dict[str, Any]:
+        return {"rigid": having(items, "contact", "rigid")}
 
     def check_geometry(self, truss: ResolvedTruss, joints: Revolutes, ranges_K: np.ndarray) -> None:
         slips = (truss.sticking == "partial_slip") & (joints.friction_coefficient > 0)

@@ -13,10 +13,10 @@ from statejump.core import physics
 from statejump.core.errors import NotAllowed
 from statejump.core.start import FRICTIONLESS
 from statejump.core.units import text
-from statejump.kinds.truss.arrays import GROUND, References, columns, names, pairs, unit, vectors
+from statejump.kinds.truss.arrays import GROUND, References, columns
 from statejump.kinds.truss.joints.along_axis import AlongAxis, Axes
 from statejump.kinds.truss.joints.protocol import (
-    IMPACT, ContactPart, Contacts, Drawn, JointColumn, Sampled, Strokes, Symbol,
+    IMPACT, ContactPart, Contacts, Drawn, ItemColumn, Sampled, Strokes, Symbol,
 )
 from statejump.kinds.truss.joints.words import ALUMINIUM, USER, count, scaled, spread
 from statejump.results import scene as drawing
@@ -152,13 +152,13 @@ def with_sliders(truss: ResolvedTruss, joints: Axes) -> ResolvedTruss:
 
 
 def _across_N(path: Course, joints: Sliders, which: np.ndarray) -> np.ndarray:
-    """Return the largest force [N] across the axes of sliders (k,) that links, springs and dead loads put on their
+    """Return the largest force [N] across the axes of sliders (k,) that links, elements and dead loads put on their
     first nodes."""
     truss, states = path.truss, path.states
     largest = []
     for node, axis in zip(joints.nodes[which, 0], joints.axis[which]):
         load = np.tile(truss.nodes.force_N[node], (len(states["time_s"]), 1))
-        for ends, pull in ((truss.links.nodes, -states["axial_force_N"]), (truss.springs.nodes, states["tension_N"])):
+        for ends, pull in zip(truss.ends(), truss.tensions_N(states)):
             for item in np.flatnonzero((ends == node).any(axis=1)):
                 own, other = ends[item] if ends[item, 0] == node else ends[item, ::-1]
                 place = truss.nodes.position_m[[own, other]] + states["displacement_m"][:, [own, other]]
@@ -175,23 +175,18 @@ class SliderType(AlongAxis[Slider, Sliders]):
     section = "slider"
     noun = "a slider"
     Item = Slider
-    columns: ClassVar[tuple[JointColumn, ...]] = (
-        JointColumn("slide_m"),
-        JointColumn("slider_force_N", "friction and stop on the slider, against its axis"),
+    Arrays = Sliders
+    columns: ClassVar[tuple[ItemColumn, ...]] = (
+        ItemColumn("slide_m"),
+        ItemColumn("slider_force_N", "friction and stop on the slider, against its axis"),
     )
     varied = ("friction_coefficient", "normal_force_N", "clearance_minus_m", "clearance_plus_m",
               "stop_stiffness_N_per_m", "play_m")
     has_contacts = True
 
-    def resolve(self, items: Sequence[Slider], known: References) -> Sliders:
+    def derived(self, items: Sequence[Slider], known: References) -> dict[str, Any]:
         stops = columns(items, "clearance_minus_m", "clearance_plus_m", "stop_stiffness_N_per_m")
-        return Sliders(
-            names=names(items), nodes=pairs(items, "nodes", known.node),
-            axis=unit(vectors(items, "axis", known.dimension)),
-            **columns(items, "friction_coefficient", "normal_force_N", "play_m", "pad_radius_m", "young_modulus_Pa",
-                      "poisson_ratio"),
-            **{key: np.where(np.isnan(values), inf, values) for key, values in stops.items()},
-        )
+        return {key: np.where(np.isnan(values), inf, values) for key, values in stops.items()}
 
     def check_geometry(self, truss: ResolvedTruss, joints: Sliders, ranges_K: np.ndarray) -> None:
         super().check_geometry(truss, joints, ranges_K)

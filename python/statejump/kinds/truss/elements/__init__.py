@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The registry of elements of a truss beside links: one file per type. :mod:`.protocol` documents a type."""
+from __future__ import annotations
+
+from typing import Any
+
+from statejump.kinds.truss.elements.protocol import ElementType
+from statejump.kinds.truss.elements.spring import SPRING, Spring
+from statejump.kinds.truss.elements.torsion_spring import TORSION_SPRING, TorsionSpring
+from statejump.schema.fields import Section, definition, tables
+
+# In the order in which results list them. A new type is added to this tuple and to the lists.
+ELEMENTS: tuple[ElementType[Any, Any], ...] = (SPRING, TORSION_SPRING)
+
+
+@definition
+class ElementLists(Section):
+    """The lists of elements that a case has."""
+
+    spring: list[Spring] = tables(Spring, "sections [[spring]]")
+    torsion_spring: list[TorsionSpring] = tables(TorsionSpring, "sections [[torsion_spring]]")

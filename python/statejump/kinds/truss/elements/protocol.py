@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a type of element of a truss brings in Python: one object per type, in a file of its own.
+
+Elements have a conservative law between nodes or links. Links, to which joints and temperatures refer, are part of the
+truss itself. Case, checks, arrays, solver, result, drawing, sensitivities and DEM use the registry
+(:data:`statejump.kinds.truss.elements.ELEMENTS`) and know no type.
+"""
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+
+import numpy as np
+
+from statejump.core.case import Case
+from statejump.core.errors import StatejumpError
+from statejump.kinds.truss.arrays import References, arrays_of, distances
+from statejump.kinds.truss.joints.protocol import ItemColumn, Symbol, Torsion
+from statejump.kinds.truss.references import Around, known_nodes, wrong_ends
+from statejump.schema.item_tables import ItemColumns
+from statejump.schema.items import Item
+
+if TYPE_CHECKING:
+    from statejump.kinds.truss.resolved import ResolvedTruss
+
+ItemType = TypeVar("ItemType", bound=Item)
+ArraysType = TypeVar("ArraysType")
+
+
+@dataclass(frozen=True)
+class Lines:
+    """Elements that drawings show as lines of one style between their nodes."""
+
+    which: np.ndarray  # (elements,) bool
+    colour: str
+    legend: str
+    dashed: bool = False  # else a zigzag, where a drawing has room for it
+
+
+@dataclass(frozen=True)
+class Switch:
+    """An element whose stiffness switches between on and off."""
+
+    element: int
+    is_on: np.ndarray  # (samples,) bool
+    on: str  # kind of the event
+    off: str
+
+
+class ElementType(Generic[ItemType, ArraysType]):
+    """A type of element. ``section`` is its list in a case file and its name in messages."""
+
+    section: ClassVar[str]
+    Item: ClassVar[type[Item]]
+    Arrays: ClassVar[type[Any]]  # dataclass: names, and a field of the name of each key that models use
+    columns: ClassVar[tuple[ItemColumn, ...]] = ()
+    listed_if_none: ClassVar[bool] = False  # results list its items even if a truss has none
+    varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that a jump may follow
+    not_in_dem: ClassVar[str] = ""  # what follows its name where the DEM refuses it; empty: the DEM has it
+
+    @property
+    def items(self) -> str:
+        """Name of its list in results, and of its table in the engine."""
+        return f"{self.section}s"
+
+    def where(self, name: str) -> dict[str, Any]:
+        """Return how failures name one of its elements."""
+        return {"item": f"{self.section} {name!r}"}
+
+    # ---------------------------------------------------------------- case
+
+    def check_vectors(self, item: ItemType, dimension: int) -> None:
+        """Raise NotAllowed for a vector that does not fit the truss' dimension."""
+
+    def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
+        """Raise an error for a name that is not there or does not fit."""
+        raise NotImplementedError
+
+    def check_keys(self, item: ItemType) -> None:
+        """Raise an error for keys that exclude each other."""
+
+    def may_be_wrong_vectors(self, items: ItemColumns[ItemType], dimension: int) -> np.ndarray:
+        """Return which items (n,) :meth:`check_vectors` has to check: it must not miss one that is wrong."""
+        return np.full(len(items), False)
+
+    def may_be_wrong_references(self, items: ItemColumns[ItemType], around: Around) -> np.ndarray:
+        """Return which items (n,) :meth:`check_references` has to check: it must not miss one that is wrong."""
+        raise NotImplementedError
+
+    def may_be_wrong_keys(self, items: ItemColumns[ItemType]) -> np.ndarray:
+        """Return which items (n,) :meth:`check_keys` has to check: it must not miss one that is wrong."""
+        return np.full(len(items), False)
+
+    def resolve(self, items: Sequence[ItemType], known: References) -> ArraysType:
+        """Return the elements as arrays: the keys of their items, but for those of :meth:`derived`."""
+        made: ArraysType = arrays_of(self.Arrays, self.Item, items, known, **self.derived(items, known))
+        return made
+
+    def derived(self, items: Sequence[ItemType], known: References) -> dict[str, Any]:
+        """Return the arrays whose values are not those of a key as it is given."""
+        return {}
+
+    def check_geometry(self, truss: ResolvedTruss, elements: ArraysType) -> None:
+        """Raise an error for wrong positions, directions and lengths."""
+
+    # ---------------------------------------------------------------- mechanics
+
+    def ends(self, elements: ArraysType) -> np.ndarray:
+        """Return the pairs of nodes (k, 2) that it connects: (0, 2) of a type that acts on angles."""
+        return np.zeros((0, 2), dtype=int)
+
+    def stiffness_N_per_m(self, elements: ArraysType) -> np.ndarray:
+        """Return the largest stiffness (k,) [N/m] between the ends."""
+        return np.zeros(0)
+
+    def torsion(self, elements: ArraysType) -> Torsion:
+        """Return the moments by which it rotates links against each other."""
+        return Torsion((), np.zeros((0, 2), dtype=int), np.zeros((0, 3)), np.zeros(0))
+
+    def preload_N(self, elements: ArraysType) -> np.ndarray:
+        """Return the forces (k,) [N] in the reference configuration."""
+        return np.zeros(0)
+
+    def tension_N(self, states: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Return the tension (states, k) [N] between the ends, from its columns."""
+        return np.zeros((len(states["time_s"]), 0))
+
+    def switches(self, elements: ArraysType, columns: Mapping[str, np.ndarray]) -> list[Switch]:
+        """Return the elements whose switching is an event, from its columns at the samples of a run."""
+        return []
+
+    def changed(self, truss: ResolvedTruss, elements: ArraysType) -> ArraysType:
+        """Return elements of which one of the ``varied`` numbers was replaced, with the arrays that depend on it."""
+        return elements
+
+    # ---------------------------------------------------------------- drawing and sentences
+
+    def lines(self, elements: ArraysType) -> list[Lines]:
+        """Return how drawings show the elements between their ends."""
+        return []
+
+    def symbols(self, truss: ResolvedTruss, elements: ArraysType) -> list[Symbol]:
+        """Return its symbols, the first of them for the legend; none of a type that is drawn as lines."""
+        return []
+
+    def legend(self, elements: ArraysType) -> str:
+        """Return the text of the legend for its symbol, with the numbers that a drawing cannot show."""
+        raise NotImplementedError
+
+    def counted(self, items: Sequence[ItemType]) -> list[tuple[Sequence[ItemType], str]]:
+        """Return the items by the noun that a sentence on the case uses for them."""
+        return [(items, self.section.replace("_", " "))]
+
+    # ---------------------------------------------------------------- DEM
+
+    def dem_refuses(self, elements: ArraysType) -> tuple[str, str] | None:
+        """Return name and reason of an element that the DEM does not have, though it has others of the type."""
+        return None
+
+
+class EndsArrays:
+    """Arrays of elements between two nodes."""
+
+    names: Sequence[str]
+    nodes: np.ndarray  # (k, 2) int
+    stiffness_N_per_m: np.ndarray
+
+
+EndsType = TypeVar("EndsType", bound=EndsArrays)
+
+
+class BetweenNodes(ElementType[ItemType, EndsType]):
+    """A type of element between two nodes: its items have ``nodes``, its arrays those of :class:`EndsArrays`."""
+
+    def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
+        known_nodes(getattr(item, "nodes"), 2, nodes, self.where(item.name))
+
+    def may_be_wrong_references(self, items: ItemColumns[ItemType], around: Around) -> np.ndarray:
+        return wrong_ends(around.nodes.of(items, "nodes"), 2)
+
+    def check_geometry(self, truss: ResolvedTruss, elements: EndsType) -> None:
+        check_lengths(truss, self.section, elements.names, elements.nodes)
+
+    def ends(self, elements: EndsType) -> np.ndarray:
+        return elements.nodes
+
+    def stiffness_N_per_m(self, elements: EndsType) -> np.ndarray:
+        return elements.stiffness_N_per_m
+
+
+def check_lengths(truss: ResolvedTruss, section: str, names: Sequence[str], ends: np.ndarray) -> None:
+    """Raise StatejumpError for the first item of a section whose ends (k, 2) have one position."""
+    for index in np.flatnonzero(distances(truss.nodes.position_m, ends) == 0)[:1]:
+        nodes = [truss.nodes.names[node] for node in ends[index]]
+        place = truss.nodes.position_m[ends[index, 0]][: truss.dimension].tolist()
+        raise StatejumpError(code="zero_length", item=f"{section} {names[index]!r}", key="nodes", value=nodes,
+                             nodes=nodes, ends=" and ".join(map(repr, nodes)), place_m=place, part=section)
+
+
+def listed_elements(case: Case, element: ElementType[ItemType, Any]) -> list[ItemType]:
+    """Return the elements of a type that a case has."""
+    found: list[ItemType] = getattr(case, element.section)
+    return found

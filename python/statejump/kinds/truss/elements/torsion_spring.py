@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Springs on the angle between two links, or on the angle of one link in space."""
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import pi
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from statejump.kinds.truss.elements.protocol import ElementType
+from statejump.kinds.truss.joints.protocol import Strokes, Symbol, Torsion
+from statejump.kinds.truss.joints.words import USER, scaled
+from statejump.kinds.truss.references import (
+    Around, axis_of_rotation, known_links, turned_links, wrong_axes, wrong_ends,
+)
+from statejump.schema.fields import definition, numbers, parameter, texts
+from statejump.schema.item_tables import ItemColumns
+from statejump.schema.items import Item
+
+if TYPE_CHECKING:
+    from statejump.kinds.truss.resolved import ResolvedTruss
+
+SPIRAL: Strokes = (tuple((0.28 * t * np.cos(5.2 * t), 0.28 * t * np.sin(5.2 * t)) for t in np.linspace(0.4, 3.6, 60)),)
+PINK = "#CC79A7"
+
+
+@definition
+class TorsionSpring(Item):
+    """A spring on the angle from the first link to the second, or on the angle of one link in space.
+
+    Links point from their first to their second node, angles are anticlockwise about the axis (z in the
+    plane). The moment K (angle - drawn angle - bias) turns the links back to the drawn angle + bias.
+    """
+
+    links: list[str] = texts(..., "two links that share a place, or one")
+    stiffness_N_m_per_rad: float = parameter(..., "N m/rad", 0, 1e12, USER, above=True)
+    bias_rad: float = parameter(0.0, "rad", -pi, pi, "free angle beyond the drawn one")
+    axis: list[float] | None = numbers(None, "-", -1e9, 1e9, "fixed in space; needed in three dimensions")
+
+
+@dataclass(frozen=True)
+class TorsionSprings:
+    """Springs on the angle from the first link to the second, both from their first to their second node,
+    anticlockwise about the axis; moment stiffness · (angle - drawn angle - bias)."""
+
+    names: Sequence[str]
+    links: np.ndarray  # (t, 2) int; (link, GROUND): the angle of one link, from ground to it
+    stiffness_N_m_per_rad: np.ndarray
+    bias_rad: np.ndarray
+    axis: np.ndarray  # (t, 3) unit; z in planar trusses
+
+
+class TorsionSpringType(ElementType[TorsionSpring, TorsionSprings]):
+    """Torsion springs, in the solver and in the DEM."""
+
+    section = "torsion_spring"
+    Item = TorsionSpring
+    Arrays = TorsionSprings
+    varied = ("stiffness_N_m_per_rad", "bias_rad")
+
+    def check_vectors(self, item: TorsionSpring, dimension: int) -> None:
+        axis_of_rotation(item.axis, dimension, self.where(item.name))
+
+    def may_be_wrong_vectors(self, items: ItemColumns[TorsionSpring], dimension: int) -> np.ndarray:
+        return wrong_axes(items, dimension)
+
+    def check_references(self, item: TorsionSpring, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
+        known_links(item.links, links, self.where(item.name))
+
+    def may_be_wrong_references(self, items: ItemColumns[TorsionSpring], around: Around) -> np.ndarray:
+        return wrong_ends(around.links.of(items, "links"), 1)
+
+    def check_geometry(self, truss: ResolvedTruss, elements: TorsionSprings) -> None:
+        turned_links(truss, self.section, elements)
+
+    def torsion(self, elements: TorsionSprings) -> Torsion:
+        return Torsion(elements.names, elements.links, elements.axis, elements.stiffness_N_m_per_rad)
+
+    def symbols(self, truss: ResolvedTruss, elements: TorsionSprings) -> list[Symbol]:
+        # A revolute has its own symbol in the middle: the spring stands around it.
+        return [Symbol(truss.turning_places(elements.links), SPIRAL, 1.6, 1.3, colour=PINK, face="none", order=4.5)]
+
+    def legend(self, elements: TorsionSprings) -> str:
+        return f"torsion spring, {scaled(elements.stiffness_N_m_per_rad, 1.0, 'N m/rad')}"
+
+    def dem_refuses(self, elements: TorsionSprings) -> tuple[str, str] | None:
+        for index in np.flatnonzero(np.abs(elements.bias_rad) > pi / 2)[:1]:
+            return elements.names[index], "has a bias above π/2, beyond what the DEM can tell from its opposite"
+        return None
+
+
+TORSION_SPRING = TorsionSpringType()
