@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``statejump figures``, ``slow``, ``hold`` and ``energy``: the studies of the paper's umbrella rib. The command finds
-them where the repository is; ``python3 -m studies.paper figures`` needs the package alone."""
+"""``statejump figures``, ``slow``, ``hold`` and ``energy``: the studies of the paper's umbrella rib; ``convergence``:
+that of its spring-slider. The command finds them where the repository is; ``python3 -m studies.paper figures``
+needs no more than the package."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
@@ -15,13 +16,16 @@ from rich.console import Console
 from statejump.cli.terminal import (
     CASE, QUIET, RESULTS, CaseFile, counted, loaded, make_console, print_shown, progress, undivided,
 )
+from statejump.core.case import Case
 from statejump.core.errors import NotAllowed
 from statejump.core.results_folder import Results
+from statejump.kinds.spring_slider.case import SpringSliderCase
 from statejump.kinds.umbrella.case import UmbrellaCase
-from studies.paper import energy, hold, slow
+from studies.paper import convergence, energy, hold, slow
 from studies.paper.figures import study
 
 Command = TypeVar("Command", bound=Callable[..., Any])
+CaseType = TypeVar("CaseType", bound=Case)
 
 
 def _case_or(shipped: str) -> Callable[[Command], Command]:
@@ -29,18 +33,18 @@ def _case_or(shipped: str) -> Callable[[Command], Command]:
     return click.argument("case_file", metavar="[CASE]", default=f"cases/{shipped}.toml", type=CaseFile())
 
 
-def _rib(command: str, case_file: Path) -> UmbrellaCase:
-    """Load a case of the paper's rib. :raises NotAllowed: it is of another kind"""
+def _case(kind: type[CaseType], command: str, case_file: Path) -> CaseType:
+    """Load a case. :raises NotAllowed: it is of another kind"""
     case = loaded(case_file)
-    if not isinstance(case, UmbrellaCase):
-        raise NotAllowed("case.kind", case.kind, f"'statejump {command}' is for {UmbrellaCase.KIND!r}",
-                         file=case.origin.file)
+    if not isinstance(case, kind):
+        raise NotAllowed("case.kind", case.kind, code="command_not_for_kind", file=case.origin.file, command=command,
+                         kinds=repr(kind.KIND))
     return case
 
 
 def _study(command: str, make: Callable[..., Any], case_file: Path, results: Results, quiet: bool) -> None:
     console = make_console(quiet)
-    case = _rib(command, case_file)
+    case = _case(UmbrellaCase, command, case_file)
     with undivided(console, "runs") as tell:
         done = make(case, results, tell)
     _print(done, console)
@@ -74,7 +78,7 @@ def figures_command(case_file: Path, results: Results, quiet: bool) -> None:
       statejump figures cases/umbrella.toml
     """
     console = make_console(quiet)
-    case = _rib("figures", case_file)
+    case = _case(UmbrellaCase, "figures", case_file)
     _print(study.make(case, results, partial(_part, console)), console)
 
 
@@ -118,3 +122,27 @@ def energy_command(case_file: Path, results: Results, quiet: bool) -> None:
       statejump energy cases/umbrella_damped.toml
     """
     _study("energy", energy.make, case_file, results, quiet)
+
+
+@click.command("convergence")
+@CASE
+@click.option("--decades", type=click.IntRange(0, 3), default=0, show_default=True,
+              help="How much longer than 4 periods cycles last, and how much shorter than 0.025 of the stable one time "
+                   "steps are; every decade takes ten times as long.")
+@RESULTS
+@QUIET
+def convergence_command(case_file: Path, decades: int, results: Results, quiet: bool) -> None:
+    """DEM error of CASE against the duration of the cycle and the time step, as a table.
+
+    \b
+    Example:
+      statejump convergence cases/table1.toml
+    """
+    console = make_console(quiet)
+    case = _case(SpringSliderCase, "convergence", case_file)
+    case.check_dem()
+    with results.folder(case.name, case) as folder:
+        with progress(console, "convergence") as tell:
+            found = convergence.convergence(case, tell, decades)
+        _, text = folder.publish(found.write(folder.staged))
+    console.print(text.read_text(encoding="utf-8"))

@@ -4,7 +4,8 @@
 
 A module imports from its own layer and from layers to its left; imports for type checkers count. No more than
 LARGEST_CIRCLE modules import each other in a circle. An import inside a function has a comment with its reason, on its
-line or on the line before it. Places that a string names, ``"statejump.present.figures:drawn"``, exist.
+line or on the line before it. Places that a string names, ``"statejump.present.figures:drawn"``, exist. No attribute is
+queried by a literal name: a Protocol declares it. A function has at most LONGEST_FUNCTION lines, its docstring aside.
 
     python3 tests/lint/layers.py [--graph] [FOLDER]
 """
@@ -20,6 +21,8 @@ from pathlib import Path
 PACKAGE = "statejump"
 LARGEST_CIRCLE = 3
 FUNCTION_IMPORTS = 40
+LONGEST_FUNCTION = 60
+BY_NAME = ("getattr", "hasattr", "setattr", "delattr")
 # From left to right; the longest name that fits decides. A package stands for all of its modules that have no entry.
 LAYERS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("model", (
@@ -35,8 +38,7 @@ LAYERS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("campaigns", ("statejump.campaign", "statejump.schema.json_schema")),
     ("design", (
         "statejump.bores", "statejump.control", "statejump.identification", "statejump.orbit",
-        "statejump.kinds.spring_slider.control", "statejump.kinds.spring_slider.convergence",
-        "statejump.kinds.truss.answers", "statejump.kinds.truss.control",
+        "statejump.kinds.spring_slider.control", "statejump.kinds.truss.answers", "statejump.kinds.truss.control",
         "statejump.kinds.umbrella.control", "statejump.kinds.umbrella.control_ensemble",
         "statejump.kinds.umbrella.control_loaded", "statejump.kinds.umbrella.control_parameters",
         "statejump.kinds.umbrella.quasi_static",
@@ -81,6 +83,8 @@ class Sources:
     imports: list[Import] = field(default_factory=list)
     places: list[tuple[str, int, str]] = field(default_factory=list)
     names: dict[str, set[str]] = field(default_factory=dict)
+    lengths: list[tuple[int, str, int, str]] = field(default_factory=list)  # lines, module, line and name of functions
+    by_name: list[tuple[str, int, str]] = field(default_factory=list)  # attributes that are queried by literal names
 
     def graph(self) -> dict[str, set[str]]:
         """Return the modules that each module imports."""
@@ -136,7 +140,25 @@ def read(folder: Path) -> Sources:
                                             in_function, for_types, reason))
             elif isinstance(node, ast.Constant) and isinstance(node.value, str) and PLACE.fullmatch(node.value):
                 found.places.append((module, node.lineno, node.value))
+            elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
+                found.lengths.append((_lines(node), module, node.lineno, node.name))
+            elif _is_by_name(node):
+                found.by_name.append((module, node.lineno, ast.unparse(node)))
     return found
+
+
+def _lines(function: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
+    """Return the lines of a function without those of its docstring."""
+    assert function.end_lineno is not None
+    lines, first = function.end_lineno - function.lineno + 1, function.body[0]
+    if ast.get_docstring(function, clean=False) is not None and first.end_lineno is not None:
+        lines -= first.end_lineno - first.lineno + 1
+    return lines
+
+
+def _is_by_name(node: ast.AST) -> bool:
+    return (isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in BY_NAME
+            and len(node.args) > 1 and isinstance(node.args[1], ast.Constant))
 
 
 def _defined(tree: ast.Module) -> set[str]:
@@ -223,6 +245,10 @@ def violations(sources: Sources) -> list[str]:
         if len(circle) > LARGEST_CIRCLE:
             found.append(f"{len(circle)} modules import each other in a circle, {LARGEST_CIRCLE} may: "
                          f"{', '.join(circle)}")
+    found += [f"{module}:{line}: {name} has {lines} lines, {LONGEST_FUNCTION} may be; split it"
+              for lines, module, line, name in sources.lengths if lines > LONGEST_FUNCTION]
+    found += [f"{module}:{line}: {text} names an attribute by a string; declare it in a Protocol"
+              for module, line, text in sources.by_name]
     inside = [one for one in sources.imports if one.in_function]
     if len(inside) > FUNCTION_IMPORTS:
         found.append(f"{len(inside)} imports are inside functions, {FUNCTION_IMPORTS} may be; move them to the top")
@@ -260,7 +286,8 @@ def main(arguments: list[str]) -> int:
     inside = sum(one.in_function for one in sources.imports)
     functions = sum(":" in place for _, _, place in sources.places)
     print(f"{len(sources.files)} modules, largest circle {largest}, {inside} imports inside functions, "
-          f"{functions} functions of later layers named by strings")
+          f"{functions} functions of later layers named by strings, longest function {max(sources.lengths)[0]} lines, "
+          f"{len(sources.by_name)} attributes queried by literal names")
     wrong = violations(sources)
     print("\n".join(wrong), end="\n" if wrong else "")
     return 1 if wrong else 0

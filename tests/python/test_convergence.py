@@ -13,8 +13,9 @@ import pytest
 import statejump as sj
 from statejump.core.case_files import made_by
 from statejump.core.run import Column, Run
-from statejump.kinds.spring_slider import convergence, result
+from statejump.kinds.spring_slider import result
 from statejump.kinds.spring_slider.case import SpringSliderCase
+from studies.paper import convergence
 
 
 def dem_like(case: SpringSliderCase, error_m: float) -> Run:

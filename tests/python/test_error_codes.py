@@ -77,7 +77,9 @@ def test_every_declared_code_is_used() -> None:
     from_engine = {text for path in (REPOSITORY / "engine" / "src" / "failure.cpp",
                                      REPOSITORY / "geometry" / "include" / "statejump" / "geometry" / "mesh_failure.hpp")
                    for text in path.read_text(encoding="utf-8").split('"')}
-    used = texts | from_engine | {"out_of_range"}
+    from_studies = {text for path in (REPOSITORY / "studies").rglob("*.py")
+                    for text in path.read_text(encoding="utf-8").split('"')}
+    used = texts | from_engine | from_studies | {"out_of_range"}
     assert not [code for code in CODES if code not in used and code.removeprefix("bore_") not in used]
 
 

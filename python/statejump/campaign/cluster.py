@@ -111,7 +111,7 @@ def restarts_workers(client: Client) -> bool:
 def kill_workers(cluster: LocalCluster) -> None:
     """End the workers at once, also in the middle of a run."""
     for nanny in list(cluster.workers.values()):
-        process = getattr(getattr(nanny, "process", None), "process", None)
+        process = None if nanny.process is None else nanny.process.process
         nanny.auto_restart = False
         if process is not None and process.pid:
             try:

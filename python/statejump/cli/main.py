@@ -32,7 +32,6 @@ TASKS: dict[str, dict[str, tuple[str, str]]] = {
         "compare": ("models:compare_command",
                     "Both models of CASE side by side, or two result files of the same case."),
         "fe": ("fe:fe_command", "CASE in finite elements (CalculiX) beside the reduced model."),
-        "convergence": ("convergence:convergence_command", "DEM error of CASE against cycle duration and time step."),
         "control": ("control:control_command", "What makes the state jump of CASE smaller, and by how much."),
         "statics": ("statics:statics_command", "Where the joint of CASE can rest, and the largest jump it can make."),
     },
@@ -66,6 +65,8 @@ if os.path.isfile(os.path.join(SHARE, *STUDIES.split(".")) + ".py"):
         "figures": (f"{STUDIES}:figures_command", "The paper's Figs 13-16 in both models, and its claims in numbers."),
         "slow": (f"{STUDIES}:slow_command", "Slow heating tends to the quasi-static path."),
         "hold": (f"{STUDIES}:hold_command", "Friction that creeps and friction that holds."),
+        "convergence": (f"{STUDIES}:convergence_command",
+                        "DEM error of CASE against cycle duration and time step."),
         "energy": (f"{STUDIES}:energy_command", "Energy account of CASE over time steps."),
     }
 COMMANDS = {name: found for commands in TASKS.values() for name, found in commands.items()}

@@ -58,10 +58,3 @@ class Creaking(Protocol):
     """What a node feels while the truss moves; see :func:`statejump.truss.creak`."""
 
     def creak(self, case: Any, node: str, tell: Tell) -> Any: ...
-
-
-@capability("convergence")
-class ConvergenceStudy(Protocol):
-    """How the DEM approaches the reduced model."""
-
-    def convergence(self, case: Any, tell: Tell, decades: int = 0) -> Any: ...

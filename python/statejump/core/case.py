@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from statejump import _engine
     from statejump.core.run import Run
+    from statejump.core.temperature_files import Histories
     from statejump.core.thermal import MemberProgram, Thermal
 
 __all__ = ["CHOICE", "Case", "CaseHeader", "Origin", "Progress"]
@@ -83,8 +84,6 @@ class Case(Section):
 
     NAMED: ClassVar[bool] = True
     KIND: ClassVar[str]
-    # New paths of moved keys by their old paths; both are accepted, see :func:`statejump.schema.paths.current`.
-    MOVED: ClassVar[Mapping[str, str]] = {}
     # Sections that a file of this kind may not have, and why.
     NOT_IN_FILE: ClassVar[Mapping[str, str]] = {}
 
@@ -118,6 +117,11 @@ class Case(Section):
     def _given_programs(self) -> Sequence[Thermal | MemberProgram]:
         """Return the temperature programs as given, the common one first."""
         return [self.thermal]
+
+    @property
+    def member_histories(self) -> Histories | None:
+        """Temperature histories of members, of a kind that has them."""
+        return None
 
     @property
     def ending(self) -> Ending | None:

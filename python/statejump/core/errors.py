@@ -13,7 +13,7 @@ from copy import copy
 from dataclasses import dataclass
 from math import isfinite
 from os import PathLike, fspath
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Protocol, runtime_checkable
 
 from statejump.core.error_codes import CODES
 
@@ -96,10 +96,16 @@ class Range:
         return {key: end for key, end in ends.items() if isfinite(end)} | {"unit": self.unit}
 
 
+@runtime_checkable
+class _OfNumpy(Protocol):
+    """A number or array of numpy, asked without numpy, which the start of the command does not load."""
+
+    def tolist(self) -> Any: ...
+
+
 def _without_type(value: Any) -> Any:
     """Return a number or array of numpy as what it holds: numpy 2 says the type of a number with it."""
-    held = getattr(value, "tolist", None)
-    return held() if callable(held) else value
+    return value.tolist() if isinstance(value, _OfNumpy) and not isinstance(value, type) else value
 
 
 def shown(value: Any) -> str:

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 from matplotlib import rc_context
@@ -38,6 +38,13 @@ STYLE: dict[str, Any] = {
 Panel = Callable[[Axes], None]
 
 
+@runtime_checkable
+class _Grid(Protocol):
+    """A grid of matplotlib's layout, whose class is private."""
+
+    children: np.ndarray
+
+
 class Constrained(ConstrainedLayoutEngine):
     """matplotlib's constrained layout, of which nothing is left in memory.
 
@@ -48,7 +55,7 @@ class Constrained(ConstrainedLayoutEngine):
     def execute(self, fig: Figure) -> None:
         """Place the axes of a figure; the grids are taken apart."""
         for grid in (super().execute(fig) or {}).values():
-            if hasattr(grid, "children"):
+            if isinstance(grid, _Grid):
                 grid.children.fill(None)
 
 

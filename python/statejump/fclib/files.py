@@ -174,7 +174,7 @@ def _check_indices(group: h5py.Group, name: str, values: NDArray[Any], bound: in
 
 def _text(parent: Any, name: str) -> str:
     found = parent.get(name)
-    if found is None or getattr(found, "shape", None) != ():
+    if not isinstance(found, libraries.h5py().Dataset) or found.shape != ():
         return ""
     value = found[()]
     return value.decode("utf-8", "replace").strip() if isinstance(value, bytes) else ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -66,6 +66,13 @@ class Stored:
     reactions: Vector
 
 
+@runtime_checkable
+class _Sparse(Protocol):
+    """A sparse matrix, asked without SciPy, which a dense problem does not load."""
+
+    def tocsc(self) -> Any: ...
+
+
 @dataclass(frozen=True, eq=False)
 class Problem:
     """Velocities u = W r + q with Coulomb's law at every contact, the normal component first in a contact's block.
@@ -99,7 +106,7 @@ class Problem:
             object.__setattr__(self, "_problem", self._made())
 
     def _made(self) -> _engine.FrictionProblem:
-        if not hasattr(self.delassus, "tocsc"):
+        if not isinstance(self.delassus, _Sparse):
             dense = np.asarray(self.delassus, dtype=float)
             if dense.ndim != 2:
                 raise StatejumpError(code="problem_not_square", shape=dense.shape)

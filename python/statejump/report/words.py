@@ -111,5 +111,5 @@ def _temperature(case: Case) -> str:
     way = SHAPES.get(thermal.shape, "changes by up to {peak}").format(peak=text(peak, "K"))
     returned = ", the return to the reference temperature included" if case.ending is not None and (
         case.ending.returns) else ""
-    what = "temperature" if getattr(thermal, "members", None) is None else "mean temperature of the members"
+    what = "temperature" if case.member_histories is None else "mean temperature of the members"
     return f"The {what} {way}, {times}; a cycle lasts {text(case.period_s, 's')}{returned}."

@@ -74,12 +74,11 @@ def _type(item: Any) -> str:
         return "group"
     if isinstance(item, str):
         return "text"
-    kind = getattr(item, "dtype", None)
-    if kind is None:
+    if not isinstance(item, (h5py.Dataset, np.ndarray, np.generic)):
         return type(item).__name__
-    if h5py.check_string_dtype(kind) is not None:
+    if h5py.check_string_dtype(item.dtype) is not None:
         return "text"
-    return str(kind)
+    return str(item.dtype)
 
 
 def _check_form(place: str, item: Any, form: Form, path: Path) -> list[tuple[str, int]]:
@@ -89,7 +88,7 @@ def _check_form(place: str, item: Any, form: Form, path: Path) -> list[tuple[str
         raise _damaged(path, f"{place} is {found}, must be {' or '.join(form.types)}")
     if found == "group":
         return []
-    shape = getattr(item, "shape", ())
+    shape = () if isinstance(item, str) else item.shape
     for axes in form.shapes:
         if shape is not None and len(shape) == len(axes):
             pairs = list(zip(axes, shape))

@@ -21,8 +21,7 @@ def provenance(case: Case, dem: Run | None) -> dict[str, Any]:
     """
     found: dict[str, Any] = {
         "statejump_version": __version__,
-        # A copy of the package that was configured by an older build has none.
-        "git_commit": getattr(_paths, "GIT_COMMIT", ""),
+        "git_commit": _paths.GIT_COMMIT,
         "python_version": platform.python_version(),
         "numpy_version": np.__version__,
         "h5py_version": h5py.__version__,

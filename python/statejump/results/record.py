@@ -50,7 +50,7 @@ def result_of(
         reasons=[] if comparison is None else list(comparison.reasons),
         warnings=warnings_of(runs.values()),
         answers=answers,
-        members=getattr(case.thermal, "members", None),
+        members=case.member_histories,
     )
 
 

@@ -174,6 +174,8 @@ class Section:
     GOES_WITH: ClassVar[dict[str, dict[str, tuple[str, ...]]]] = {}
     # Choice of the section: groups of keys, one of which a name needs as a whole; the other names refuse all of them.
     ONE_OF: ClassVar[dict[str, dict[str, tuple[tuple[str, ...], ...]]]] = {}
+    # New paths of moved keys by their old paths; both are accepted, see :func:`statejump.schema.paths.current`.
+    MOVED: ClassVar[Mapping[str, str]] = {}
     # Whether its name stands for it: ``repr`` and ``hash`` are its own and not those of all keys.
     NAMED: ClassVar[bool] = False
 

@@ -2,11 +2,11 @@
 """Lists of tables in case files, [[node]] and the like: items with a name, checked one by one."""
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import inf, isfinite
-from typing import Any, TypeVar
+from typing import Any, Generic, TypeVar
 
-from statejump.core.errors import ABSENT, MissingKey, NotAllowed, UnknownKey
+from statejump.core.errors import ABSENT, MissingKey, NotAllowed, StatejumpError, UnknownKey
 from statejump.schema.fields import Section, default_of, definition, fields_of, is_required, rule_of, text
 from statejump.schema.item_tables import ItemColumns, ItemTable, where
 from statejump.schema.rules import NUMBER, NUMBERS, TEXT, TEXTS, suggestion
@@ -28,8 +28,8 @@ class Item(Section):
 def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[ItemType]:
     """Return the items of a list of tables, as they are given: one by one, or by columns.
 
-    A truss of 10 000 joints has some 100 000 items. A number that is one and in its range is told by a
-    comparison, and items are made without going through the checks of their class once more.
+    A truss of 10 000 joints has some 100 000 items. Comparisons check a number that is in its range, and items are
+    made without going through the checks of their class once more.
 
     :param model: what an item is
     :param section: name of the list
@@ -41,23 +41,8 @@ def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[Ite
     if not isinstance(value, list) or not value or not all(isinstance(table, dict) for table in value):
         given = ABSENT if isinstance(value, (list, dict)) else value
         raise NotAllowed(section, given, code="no_table", table=section)
-    fields = fields_of(model)
-    rules = {key: rule_of(field) for key, field in fields.items()}
-    needed = [key for key, field in fields.items() if is_required(field)]
-    optional = {key: field for key, field in fields.items() if not is_required(field)}
-    ranges = {
-        key: (rule.allowed.low, rule.allowed.high, rule.allowed.above)
-        for key, rule in rules.items() if rule.form == NUMBER and rule.allowed is not None
-    }
-    lists = {
-        key: (rule.allowed.low, rule.allowed.high, rule.length) for key, rule in rules.items()
-        if rule.form == NUMBERS and rule.allowed is not None and not rule.allowed.above
-    }
-    free = {key for key, rule in rules.items() if rule.form == TEXT and rule.known is None and rule.expression is None}
-    free_lists = {key for key, rule in rules.items() if rule.form == TEXTS and rule.known is None}
-    # Of texts with rules of their own many items have the same: what a key took once, it takes again.
-    taken: dict[str, set[str]] = {key: set() for key, rule in rules.items() if rule.form == TEXT and key not in free}
-    set_value = object.__setattr__
+    quick = _Quick(model)
+    ranges, lists, free, free_lists, taken = quick.ranges, quick.lists, quick.free, quick.free_lists, quick.taken
     items = []
     for number, table in enumerate(value, start=1):
         values: dict[str, Any] = {}
@@ -73,36 +58,72 @@ def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[Ite
                     continue
             elif type(given) is list and key in lists and set(map(type, given)) == {float}:
                 low, high, length = lists[key]
-                # Of no number, wherever it stands, the sum tells.
+                # The sum is not finite if any element is not.
                 if low <= min(given) and max(given) <= high and isfinite(sum(given)) and length in (None, len(given)):
                     values[key] = given.copy()
                     continue
             elif type(given) is list and key in free_lists and set(map(type, given)) == {str}:
                 values[key] = given.copy()
                 continue
-            field = fields.get(key)
-            if field is None:
-                raise UnknownKey(key, item=where(section, table, number), **suggestion(key, list(fields)))
-            convert: Any = field.converter  # attrs gives it a type of its own, by its version
-            converted = given if convert is None else convert(given)
             try:
-                rules[key].check(key, converted)
-                if key == "name" and not given:
-                    raise NotAllowed(key, given, code="empty_text")
-            except NotAllowed as refused:
-                refused.value = given
+                values[key] = quick.checked(key, given)
+            except StatejumpError as refused:
                 refused.item = where(section, table, number)
                 raise
-            values[key] = converted
-            if type(given) is str and key in taken and converted is given:
-                taken[key].add(given)
-        for key in needed:
+        for key in quick.needed:
             if key not in table:
-                raise MissingKey(key, rules[key].needs(), item=where(section, table, number),
-                                 allowed=rules[key].allowed)
-        item = model.__new__(model)
-        # One by one and always in one order: then all items share the names of their keys, in a third of the memory.
-        for key in fields:
-            set_value(item, key, values[key] if key in values else default_of(optional[key]))
-        items.append(item)
+                rule = quick.rules[key]
+                raise MissingKey(key, rule.needs(), item=where(section, table, number), allowed=rule.allowed)
+        items.append(quick.made(values))
     return items
+
+
+class _Quick(Generic[ItemType]):
+    """What lets a value pass without its rule: ranges of numbers, texts without a rule, texts that passed before.
+
+    :param model: what an item is
+    """
+
+    def __init__(self, model: type[ItemType]) -> None:
+        self.model = model
+        self.fields = fields_of(model)
+        self.rules = {key: rule_of(field) for key, field in self.fields.items()}
+        self.needed = [key for key, field in self.fields.items() if is_required(field)]
+        self.optional = {key: field for key, field in self.fields.items() if not is_required(field)}
+        ranged = {key: (rule, rule.allowed) for key, rule in self.rules.items() if rule.allowed is not None}
+        self.ranges = {key: (allowed.low, allowed.high, allowed.above)
+                       for key, (rule, allowed) in ranged.items() if rule.form == NUMBER}
+        self.lists = {key: (allowed.low, allowed.high, rule.length)
+                      for key, (rule, allowed) in ranged.items() if rule.form == NUMBERS and not allowed.above}
+        unruled = [key for key, rule in self.rules.items() if rule.known is None and rule.expression is None]
+        self.free = {key for key in unruled if self.rules[key].form == TEXT}
+        self.free_lists = {key for key, rule in self.rules.items() if rule.form == TEXTS and rule.known is None}
+        # Many items have the same text under a rule: what a key took once, it takes again.
+        self.taken: dict[str, set[str]] = {
+            key: set() for key, rule in self.rules.items() if rule.form == TEXT and key not in self.free}
+
+    def checked(self, key: str, given: Any) -> Any:
+        """Return a value as its key keeps it. :raises StatejumpError: the key does not exist or refuses the value"""
+        field = self.fields.get(key)
+        if field is None:
+            raise UnknownKey(key, **suggestion(key, list(self.fields)))
+        convert: Any = field.converter  # attrs gives it a type of its own, by its version
+        converted = given if convert is None else convert(given)
+        try:
+            self.rules[key].check(key, converted)
+            if key == "name" and not given:
+                raise NotAllowed(key, given, code="empty_text")
+        except NotAllowed as refused:
+            refused.value = given
+            raise
+        if type(given) is str and key in self.taken and converted is given:
+            self.taken[key].add(given)
+        return converted
+
+    def made(self, values: Mapping[str, Any]) -> ItemType:
+        """Return the item of checked values, the others by default."""
+        item = self.model.__new__(self.model)
+        # One by one and always in one order: then all items share the names of their keys, in a third of the memory.
+        for key in self.fields:
+            object.__setattr__(item, key, values[key] if key in values else default_of(self.optional[key]))
+        return item

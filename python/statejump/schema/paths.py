@@ -65,7 +65,7 @@ def current(model: type[Section], path: str, file: str = "") -> str:
 
     :param file: in which it is found, for the warning
     """
-    now: str | None = getattr(model, "MOVED", {}).get(path)
+    now: str | None = model.MOVED.get(path)
     if now is None:
         return path
     where = f"{file}: " if file else ""
@@ -79,7 +79,7 @@ def with_keys_moved(model: type[Section], data: Mapping[str, Any], file: str = "
     :param file: its name, for warnings
     :raises NotAllowed: a key stands at its old place and at its new one
     """
-    for old in getattr(model, "MOVED", {}):
+    for old in model.MOVED:
         section, _, key = split_path(old)
         part = data.get(section)
         if not isinstance(part, Mapping) or key not in part:
@@ -100,7 +100,7 @@ def attribute_of(model: type[Section], path: str) -> attrs.Attribute[Any]:
     """Return the declaration of a key. :raises UnknownKey: there is none"""
     known, pattern = keys_of(model), pattern_of(path)
     if pattern not in known:
-        now = getattr(model, "MOVED", {}).get(path)
+        now = model.MOVED.get(path)
         raise UnknownKey(path, **(suggestion(path, list(known)) if now is None else {"code": "key_moved", "now": now}))
     return known[pattern]
 

@@ -7,10 +7,8 @@ objects only while somebody looks at them.
 from __future__ import annotations
 
 from array import array
-from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import count
 from typing import Any, overload
 
 import numpy as np
@@ -63,78 +61,24 @@ class Words:
         places = zip(numbers.tolist(), begins[:-1][numbers].tolist(), begins[1:][numbers].tolist())
         return [self._bytes[begin:end].decode(errors=_AS_IT_IS) if number else None for number, begin, end in places]
 
-    def are(self, numbers: np.ndarray, texts: Sequence[bytes]) -> np.ndarray:
-        """Return which numbers (n,) are of these texts, n of them and none empty."""
-        begins = np.asarray(self._begins)
-        length = np.fromiter(map(len, texts), np.int64, len(texts))
-        found = np.asarray(begins[1:][numbers] - begins[numbers] == length)
-        if not found.all():
-            found[found] = self.are(numbers[found], [text for text, same in zip(texts, found) if same])
-            return found
-        ends = np.cumsum(length)
-        where = np.repeat(begins[numbers] - (ends - length), length) + np.arange(length.sum())
-        same = np.frombuffer(self._bytes, np.uint8)[where] == np.frombuffer(b"".join(texts), np.uint8)
-        return found if same.all() else np.asarray(np.logical_and.reduceat(same, ends - length))
-
 
 class Numbering:
-    """Gives texts their numbers among words, new ones to those that are new: a table of hashes with open addresses,
-    in arrays. It is let go when all texts are read.
+    """Gives texts their numbers among words, new ones to those that are new; discarded when all texts are read."""
 
-    :param of: returns the hash of a text
-    """
-
-    def __init__(self, of: Any = hash) -> None:
+    def __init__(self) -> None:
         self.words = Words()
-        self._of = of
-        self._hash = array("I", (0,))  # of every word
-        self._table = np.zeros(1 << 10, np.int32)  # numbers of words, from the place of their hash on; 0: free
+        self._numbers = {b"": 0}
 
     def numbers(self, texts: Sequence[bytes]) -> np.ndarray:
         """Return the numbers of texts, 0 of those that are empty.
 
         :raises UnicodeDecodeError: a text is not UTF-8
         """
-        own: defaultdict[bytes, int] = defaultdict(count().__next__)
-        places = np.fromiter(map(own.__getitem__, texts), np.int32, len(texts))
-        return self._found(list(own))[places]
-
-    def _found(self, texts: list[bytes]) -> np.ndarray:
-        """Return the numbers of texts that are all different."""
-        hashes = np.fromiter(map(self._of, texts), np.int64, len(texts)).astype(np.uint32)
-        found = np.zeros(len(texts), np.int32)
-        left = np.flatnonzero(np.fromiter(map(len, texts), np.int64, len(texts)))
-        new = [left[:0]]
-        place = self._place(hashes[left])
-        while len(left):
-            there = self._table[place]
-            new.append(left[there == 0])
-            left, place, there = (part[there != 0] for part in (left, place, there))
-            same = np.frombuffer(self._hash, np.uint32)[there] == hashes[left]
-            same[same] = self.words.are(there[same], [texts[text] for text in left[same]])
-            found[left[same]] = there[same]
-            left, place = left[~same], self._place(place[~same] + 1)
-        added = np.sort(np.concatenate(new))
-        first = len(self.words)
-        self.words.add([texts[text] for text in added])
-        self._hash.frombytes(hashes[added].tobytes())
-        found[added] = np.arange(first, len(self.words))
-        self._insert(found[added])
-        return found
-
-    def _place(self, hashes: np.ndarray) -> np.ndarray:
-        return hashes & np.uint32(len(self._table) - 1)
-
-    def _insert(self, numbers: np.ndarray) -> None:
-        if 2 * len(self.words) > len(self._table):
-            self._table = np.zeros(2 << len(self.words).bit_length(), np.int32)
-            numbers = np.arange(1, len(self.words), dtype=np.int32)
-        place = self._place(np.frombuffer(self._hash, np.uint32)[numbers])
-        while len(numbers):
-            free = self._table[place] == 0
-            self._table[place[free]] = numbers[free]
-            others = self._table[place] != numbers  # of several for one place the last has it
-            numbers, place = numbers[others], self._place(place[others] + 1)
+        known, first = self._numbers, len(self.words)
+        new = [text for text in dict.fromkeys(texts) if text not in known]
+        self.words.add(new)
+        known.update(zip(new, range(first, len(self.words))))
+        return np.fromiter(map(known.__getitem__, texts), np.int32, len(texts))
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,6 +2,7 @@
 """Reading TOML files: what is wrong with one in a sentence, with its line."""
 from __future__ import annotations
 
+import sys
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -43,7 +44,7 @@ def read_toml(path: str | Path, what: str) -> tuple[str, dict[str, Any]]:
 def _reason(failure: tomllib.TOMLDecodeError, text: str) -> tuple[str, int]:
     """Return what the parser says and in which line. Python 3.14 gives both as attributes; before, they are the
     two halves of its message."""
-    if hasattr(failure, "msg") and hasattr(failure, "lineno"):
+    if sys.version_info >= (3, 14):
         return str(failure.msg), int(failure.lineno)
     reason, _, place = str(failure).rpartition(" (at ")
     words = place.replace(",", " ").split()

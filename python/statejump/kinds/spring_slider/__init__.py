@@ -66,7 +66,6 @@ class SpringSlider(Kind[SpringSliderCase]):
     fe = Later("statejump.kinds.spring_slider.fe:answer")
     statics = Later("statejump.kinds.spring_slider.statics:statics")
     control = Later("statejump.kinds.spring_slider.control:answer")
-    convergence = Later("statejump.kinds.spring_slider.convergence:convergence")
     sheet = Later("statejump.kinds.spring_slider.figure:sheet")
     told = Later("statejump.kinds.spring_slider.words:told")
     describe = Later("statejump.kinds.spring_slider.words:describe")

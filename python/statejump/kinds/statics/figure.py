@@ -232,23 +232,41 @@ def spatial(statics: Statics) -> Figure:
 def _space(panel: Any, statics: Statics) -> list[Any]:
     """Draw positions in space into three-dimensional axes; return what the legend shows."""
     polygons = [polygon * MICRO for polygon in statics.pieces["polygons_m"]]
+    points = np.concatenate(polygons)
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    reach = float(np.abs(points - middle).max())
+    azimuth, rise = _viewpoint(statics, middle)
+    view = np.array([cos(np.radians(rise)) * cos(np.radians(azimuth)),
+                     cos(np.radians(rise)) * sin(np.radians(azimuth)), sin(np.radians(rise))])
+    handles = [*_shaded_surface(panel, statics, polygons, view), *_rest_sets(panel, statics, middle, view),
+               *_forces_around(panel, statics, middle, reach)]
+    for setter, value in zip((panel.set_xlim, panel.set_ylim, panel.set_zlim), middle):
+        setter(value - 1.15 * reach, value + 1.15 * reach)
+    panel.set_box_aspect((1, 1, 1))
+    panel.view_init(elev=rise, azim=azimuth)
+    panel.set_xlabel("x [µm]")
+    panel.set_ylabel("y [µm]")
+    panel.set_zlabel("z [µm]")
+    return handles
+
+
+def _viewpoint(statics: Statics, middle: np.ndarray) -> tuple[float, float]:
+    """Return azimuth and elevation [°] from outside, somewhat beside the middle of the rest set."""
+    forces = np.array([load.force_N for load in statics.loads])
+    mean = (forces / np.linalg.norm(forces, axis=1)[:, None]).sum(axis=0)
+    centre = np.mean([part["representative_m"] for part in statics.any["parts"]] or [mean], axis=0) * MICRO
+    azimuth = degrees(atan2(centre[1] - middle[1], centre[0] - middle[0])) + 25
+    rise = degrees(atan2(centre[2] - middle[2], hypot(*(centre[:2] - middle[:2]))))
+    return azimuth, min(38.0, max(-38.0, rise + 12.0))
+
+
+def _shaded_surface(panel: Any, statics: Statics, polygons: list[np.ndarray], view: np.ndarray) -> list[Any]:
+    """Draw the positions, coloured by the forces that hold them; return what the legend shows."""
     counts = np.array(statics.pieces["polygon_forces"])
     every = len(statics.loads)
     colours = np.where((counts == 0)[:, None], _rgb(SURFACE), np.where(
         ((counts == every) & (every > 1))[:, None], _rgb(HELD_BY_ALL), _rgb(HELD)))
     outwards = np.array([_facing(polygon) for polygon in polygons])
-    points = np.concatenate(polygons)
-    middle = (points.min(axis=0) + points.max(axis=0)) / 2
-    reach = float(np.abs(points - middle).max())
-    forces = np.array([load.force_N for load in statics.loads])
-    mean = (forces / np.linalg.norm(forces, axis=1)[:, None]).sum(axis=0)
-    # Look at the surface from outside, somewhat beside the middle of the rest set.
-    centre = np.mean([part["representative_m"] for part in statics.any["parts"]] or [mean], axis=0) * MICRO
-    azimuth = degrees(atan2(centre[1] - middle[1], centre[0] - middle[0])) + 25
-    rise = degrees(atan2(centre[2] - middle[2], hypot(*(centre[:2] - middle[:2]))))
-    rise = min(38.0, max(-38.0, rise + 12.0))
-    view = np.array([cos(np.radians(rise)) * cos(np.radians(azimuth)),
-                     cos(np.radians(rise)) * sin(np.radians(azimuth)), sin(np.radians(rise))])
     side = np.cross(view, (0.0, 0.0, 1.0))
     lamp = view + 0.5 * side / max(float(np.linalg.norm(side)), 1e-9) + np.array([0, 0, 0.5])
     light = 0.55 + 0.45 * np.abs(outwards @ (lamp / np.linalg.norm(lamp)))
@@ -260,6 +278,11 @@ def _space(panel: Any, statics: Statics) -> list[Any]:
                Patch(facecolor=HELD, label="at rest" if every == 1 else "at rest under at least one force")]
     if every > 1:
         handles.append(Patch(facecolor=HELD_BY_ALL, label="at rest under every force"))
+    return handles
+
+
+def _rest_sets(panel: Any, statics: Statics, middle: np.ndarray, view: np.ndarray) -> list[Any]:
+    """Draw the outlines of the rest sets and their farthest two positions; return what the legend shows."""
     for part in statics.any["parts"]:
         line = part["points_m"] * MICRO
         if len(line):
@@ -268,13 +291,19 @@ def _space(panel: Any, statics: Statics) -> list[Any]:
             facing = (rim * MICRO - middle) @ view > 0  # the surface hides the others
             line = np.where(facing[:, None], rim * MICRO, np.nan)
             panel.plot(*line.T, color=HELD, linewidth=3, zorder=3)
-    if statics.any["parts"]:
-        ends = middle + 1.01 * (statics.any["farthest_m"] * MICRO - middle)
-        panel.plot(*ends.T, "o", color="black", markersize=5, zorder=4)
-        panel.plot(*ends.T, color="black", linewidth=1.2, linestyle=(0, (3, 2)), zorder=4)
-        jump = statics.any["diameter_m"] * MICRO
-        handles.append(Line2D([], [], color="black", marker="o", markersize=4, linestyle=(0, (3, 2)),
-                              label=f"farthest two, {jump:.4g} µm"))
+    if not statics.any["parts"]:
+        return []
+    ends = middle + 1.01 * (statics.any["farthest_m"] * MICRO - middle)
+    panel.plot(*ends.T, "o", color="black", markersize=5, zorder=4)
+    panel.plot(*ends.T, color="black", linewidth=1.2, linestyle=(0, (3, 2)), zorder=4)
+    jump = statics.any["diameter_m"] * MICRO
+    return [Line2D([], [], color="black", marker="o", markersize=4, linestyle=(0, (3, 2)),
+                   label=f"farthest two, {jump:.4g} µm")]
+
+
+def _forces_around(panel: Any, statics: Statics, middle: np.ndarray, reach: float) -> list[Any]:
+    """Draw the forces as arrows outside the surface; return what the legend shows."""
+    every, handles = len(statics.loads), []
     shown = statics.loads if every <= MOST_DRAWN else [statics.loads[0], statics.loads[-1]]
     for index, load in enumerate(shown, start=1):
         force = np.array(load.force_N) / hypot(*load.force_N)
@@ -285,13 +314,6 @@ def _space(panel: Any, statics: Statics) -> list[Any]:
                    bbox=dict(boxstyle="round,pad=0.15", facecolor="white", edgecolor="none", alpha=0.8))
         if every > 1:
             handles.append(Line2D([], [], color="0.15", marker=">", markersize=4, label=f"{index}: {load.name}"))
-    for setter, value in zip((panel.set_xlim, panel.set_ylim, panel.set_zlim), middle):
-        setter(value - 1.15 * reach, value + 1.15 * reach)
-    panel.set_box_aspect((1, 1, 1))
-    panel.view_init(elev=rise, azim=azimuth)
-    panel.set_xlabel("x [µm]")
-    panel.set_ylabel("y [µm]")
-    panel.set_zlabel("z [µm]")
     return handles
 
 

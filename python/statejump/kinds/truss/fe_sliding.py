@@ -9,7 +9,8 @@ strains, which CalculiX takes as large with plasticity, STRETCH times smaller.
 """
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,8 @@ Numbers = NDArray[np.float64]
 STRETCH = 1000.0
 STICK = 1e5  # stiffness of friction that sticks and of stops, over that of the stiffest bar
 INCREMENTS = 20  # of a branch
+# Corners of a brick in the order of its nodes.
+CORNERS = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
 MOST_BRANCHES = 40
 STEP = 1e-3  # of the solver's temperatures, loads, friction and play, so that its displacements are small as well
 # Displacements that are small are so to STEP of strains of a few thousandths, friction sticks to 1/STICK.
@@ -101,103 +104,129 @@ def corners(case: TrussCase, truss: ResolvedTruss) -> list[float]:
     return times
 
 
-def deck(truss: ResolvedTruss, times: list[float]) -> list[str]:
-    """Return the deck of a truss with sliders, heated along its programs."""
-    nodes, links, sliders = truss.nodes, truss.links, truss.sliders
-    stiffness = links.young_modulus_Pa * links.cross_section_area_m2 / links.stress_free_length_m
-    rigid = STICK * float(stiffness.max())
-    friction = sliders.friction_coefficient * sliders.normal_force_N
-    sticks = np.full(len(friction), rigid)
-    if truss.sticking != "rigid":
-        sticks = np.where(sliders.normal_force_N > 0, pads(sliders).tangential_N_per_m, rigid)
-    count = len(nodes.names)
-    lines = ["*HEADING", f"statejump fe {truss.name}, sliders slip", "*NODE, NSET=JOINTS",
-             *(f"{place}, " + ", ".join(map(number, where)) for place, where in enumerate(nodes.position_m, start=1))]
-    after: list[str] = []  # materials and sections
-    bricks: list[str] = []
-    ties: list[str] = []
-    held: list[str] = [f"{node + 1}, {axis + 1}" for node, axis in zip(*np.nonzero(nodes.fixed))]
-    first, element = count + 1, 0
+@dataclass
+class Bricks:
+    """Bricks of section 1 m² and equations of their ends.
 
-    def brick(length: float, modulus: float, expansion: float, bound: float | None) -> int:
-        """Add one of section 1 m²; return the node at its end that is moved along x."""
-        nonlocal first, element
-        element += 1
-        corner = first
-        first += 8
-        for place, (x, y, z) in enumerate(((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1),
-                                           (0, 1, 1))):
-            bricks.append(f"{corner + place}, {number(x * length)}, {y}, {z}")
-        after.extend([f"*ELEMENT, TYPE=C3D8, ELSET=E{element}",
-                      ", ".join(str(node) for node in (element, *range(corner, corner + 8))),
-                      f"*MATERIAL, NAME=M{element}", "*ELASTIC", f"{number(modulus)}, 0.", "*EXPANSION, ZERO=0.",
-                      f"{expansion:.12E}"])
+    :param truss: its nodes come first
+    """
+
+    truss: ResolvedTruss
+    nodes: list[str] = field(default_factory=list)
+    sections: list[str] = field(default_factory=list)  # elements, materials and sections
+    equations: list[str] = field(default_factory=list)
+    held: list[str] = field(default_factory=list)
+    element: int = 0
+
+    def __post_init__(self) -> None:
+        self.first = len(self.truss.nodes.names) + 1
+        self.held += [f"{node + 1}, {axis + 1}" for node, axis in zip(*np.nonzero(self.truss.nodes.fixed))]
+
+    def brick(self, length: float, modulus: float, expansion: float, bound: float | None) -> int:
+        """Add a brick; return the node at its end that is moved along x.
+
+        :param bound: force [N] at which it flows; None: it is elastic
+        """
+        self.element += 1
+        corner, element = self.first, self.element
+        self.first += 8
+        self.nodes += [f"{corner + place}, {number(x * length)}, {y}, {z}" for place, (x, y, z) in enumerate(CORNERS)]
+        self.sections += [f"*ELEMENT, TYPE=C3D8, ELSET=E{element}",
+                          ", ".join(str(node) for node in (element, *range(corner, corner + 8))),
+                          f"*MATERIAL, NAME=M{element}", "*ELASTIC", f"{number(modulus)}, 0.", "*EXPANSION, ZERO=0.",
+                          f"{expansion:.12E}"]
         if bound is not None:  # flows sideways as well
-            after.extend(["*PLASTIC", f"{number(bound)}, 0.", f"{number(bound)}, 1."])
-        after.append(f"*SOLID SECTION, ELSET=E{element}, MATERIAL=M{element}")
-        held.extend(f"{corner + place}, 1" for place in (0, 3, 4, 7))
-        held.extend(f"{corner + place}, 2" for place in ((0, 1, 4, 5) if bound is not None else range(8)))
-        held.extend(f"{corner + place}, 3" for place in ((0, 1, 2, 3) if bound is not None else range(8)))
+            self.sections += ["*PLASTIC", f"{number(bound)}, 0.", f"{number(bound)}, 1."]
+        self.sections.append(f"*SOLID SECTION, ELSET=E{element}, MATERIAL=M{element}")
+        sides = {1: (0, 3, 4, 7), 2: (0, 1, 4, 5), 3: (0, 1, 2, 3)}
+        for axis, places in sides.items():
+            self.held += [f"{corner + place}, {axis}" for place in (range(8) if bound is None and axis > 1 else places)]
         for place in (2, 5, 6):
-            ties.extend(["*EQUATION", "2", f"{corner + place}, 1, 1., {corner + 1}, 1, -1."])
+            self.equations += ["*EQUATION", "2", f"{corner + place}, 1, 1., {corner + 1}, 1, -1."]
         return corner + 1
 
-    def tie(end: int | None, ends: list[tuple[int, float]], along: Numbers) -> None:
+    def tie(self, end: int | None, ends: Sequence[tuple[int, float]], along: Numbers) -> None:
         """Let the end of a brick (None: nothing) move as nodes with their signs do along a direction."""
-        terms = [(node + 1, axis + 1, -sign * float(along[axis])) for node, sign in ends for axis in range(3)
-                 if along[axis] and not nodes.fixed[node, axis]]
+        terms = [(int(node) + 1, axis + 1, -sign * float(along[axis])) for node, sign in ends for axis in range(3)
+                 if along[axis] and not self.truss.nodes.fixed[node, axis]]
         if end is None:
             terms.sort(key=lambda term: -abs(term[2]))
         else:
             terms.insert(0, (end, 1, 1.0))
         if terms:
-            ties.extend(["*EQUATION", str(len(terms)), *(f"{node}, {axis}, {number(factor)}"
-                                                         for node, axis, factor in terms)])
+            self.equations += ["*EQUATION", str(len(terms)),
+                               *(f"{node}, {axis}, {number(factor)}" for node, axis, factor in terms)]
 
-    heated = []
+
+def _bars(bricks: Bricks, stiffness: Numbers) -> list[int]:
+    """Add the bricks of the links; return the first corner of each."""
+    links, positions = bricks.truss.links, bricks.truss.nodes.position_m
+    corners_of = []
     for place, (one, two) in enumerate(links.nodes):
-        along = nodes.position_m[two] - nodes.position_m[one]
+        along = positions[two] - positions[one]
         length = float(links.stress_free_length_m[place])
-        end = brick(STRETCH * length, float(stiffness[place]) * STRETCH * length,
-                    float(links.thermal_expansion_per_K[place]) / STRETCH, None)
-        heated.append(end - 1)
-        tie(end, [(int(two), 1.0), (int(one), -1.0)], along / np.linalg.norm(along))
-    springs: list[tuple[int, float, float]] = []
-    longest = float(links.stress_free_length_m.max())
+        end = bricks.brick(STRETCH * length, float(stiffness[place]) * STRETCH * length,
+                           float(links.thermal_expansion_per_K[place]) / STRETCH, None)
+        corners_of.append(end - 1)
+        bricks.tie(end, [(two, 1.0), (one, -1.0)], along / np.linalg.norm(along))
+    return corners_of
+
+
+def _sliders(bricks: Bricks, rigid: float) -> list[tuple[int, float, float]]:
+    """Add the bricks of friction; return of each slider with a stop the end of its brick and both clearances [m]."""
+    truss, sliders = bricks.truss, bricks.truss.sliders
+    friction = sliders.friction_coefficient * sliders.normal_force_N
+    sticks = np.full(len(friction), rigid)
+    if truss.sticking != "rigid":
+        sticks = np.where(sliders.normal_force_N > 0, pads(sliders).tangential_N_per_m, rigid)
+    longest = float(truss.links.stress_free_length_m.max())
+    stopped: list[tuple[int, float, float]] = []
     for place, (one, two) in enumerate(sliders.nodes):
         axis = sliders.axis[place]
-        ends = [(int(one), 1.0), *([(int(two), -1.0)] if two != GROUND else [])]
-        end = brick(STRETCH * longest, float(sticks[place]) * STRETCH * longest, 0.0,
-                    max(float(friction[place]), 1e-12 * rigid * longest))
-        tie(end, ends, axis)
+        ends = [(one, 1.0), *([(two, -1.0)] if two != GROUND else [])]
+        end = bricks.brick(STRETCH * longest, float(sticks[place]) * STRETCH * longest, 0.0,
+                           max(float(friction[place]), 1e-12 * rigid * longest))
+        bricks.tie(end, ends, axis)
         if two != GROUND:
             for across in np.linalg.svd(axis[None])[2][1:]:
-                tie(None, ends, across)
+                bricks.tie(None, ends, across)
         minus, plus = float(sliders.clearance_minus_m[place]), float(sliders.clearance_plus_m[place])
         if np.isfinite((minus, plus)).any():
-            springs.append((end, min(minus, longest), min(plus, longest)))
+            stopped.append((end, min(minus, longest), min(plus, longest)))
+    return stopped
+
+
+def deck(truss: ResolvedTruss, times: list[float]) -> list[str]:
+    """Return the deck of a truss with sliders, heated along its programs."""
+    nodes, links = truss.nodes, truss.links
+    stiffness = links.young_modulus_Pa * links.cross_section_area_m2 / links.stress_free_length_m
+    rigid, longest = STICK * float(stiffness.max()), float(links.stress_free_length_m.max())
+    bricks = Bricks(truss)
+    heated = _bars(bricks, stiffness)
+    stopped = _sliders(bricks, rigid)
     for place, normal in enumerate(nodes.guide_normal):
         if normal.any():
-            tie(None, [(place, 1.0)], normal)
+            bricks.tie(None, [(place, 1.0)], normal)
     stops: list[str] = []
-    for end, minus, plus in springs:  # from the held end of the brick to the other
-        element += 1
-        stops.extend([f"*ELEMENT, TYPE=SPRINGA, ELSET=E{element}", f"{element}, {end - 1}, {end}",
-                      f"*SPRING, ELSET=E{element}, NONLINEAR",
-                      f"{number(-rigid * longest)}, {number(-minus - longest)}", f"0., {number(-minus)}",
-                      f"0., {number(plus)}", f"{number(rigid * longest)}, {number(plus + longest)}"])
-    lines += ["*NODE, NSET=BRICKS", *bricks, *after, *stops, *ties, "*INITIAL CONDITIONS, TYPE=TEMPERATURE",
-              "BRICKS, 0.", "*BOUNDARY", *held]
+    for element, (end, minus, plus) in enumerate(stopped, start=bricks.element + 1):
+        # from the held end of the brick to the other
+        stops += [f"*ELEMENT, TYPE=SPRINGA, ELSET=E{element}", f"{element}, {end - 1}, {end}",
+                  f"*SPRING, ELSET=E{element}, NONLINEAR",
+                  f"{number(-rigid * longest)}, {number(-minus - longest)}", f"0., {number(-minus)}",
+                  f"0., {number(plus)}", f"{number(rigid * longest)}, {number(plus + longest)}"]
+    lines = ["*HEADING", f"statejump fe {truss.name}, sliders slip", "*NODE, NSET=JOINTS",
+             *(f"{place}, " + ", ".join(map(number, where)) for place, where in enumerate(nodes.position_m, start=1)),
+             "*NODE, NSET=BRICKS", *bricks.nodes, *bricks.sections, *stops, *bricks.equations,
+             "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "BRICKS, 0.", "*BOUNDARY", *bricks.held]
     loads = [f"{node + 1}, {axis + 1}, {number(nodes.force_N[node, axis])}"
              for node, axis in zip(*np.nonzero(nodes.force_N)) if not nodes.fixed[node, axis]]
     changes = np.array([[program.temperature_change(time) for program in engine_programs(truss)] for time in times])
-    fraction = links.temperature_fraction
     for step in range(1, len(times)):
         lines += [f"*STEP, INC={2 * INCREMENTS}", "*STATIC, DIRECT", f"{1 / INCREMENTS}, 1."]
         lines += ["*CLOAD", *loads] if loads and step == 1 else []
         lines.append("*TEMPERATURE")
         for place, corner in enumerate(heated):
-            change = float(changes[step, links.program[place]]) * float(fraction[place])
+            change = float(changes[step, links.program[place]]) * float(links.temperature_fraction[place])
             lines += [f"{node}, {number(change)}" for node in range(corner, corner + 8)]
         lines += [f"*NODE PRINT, NSET=JOINTS, FREQUENCY={INCREMENTS}", "U", "*END STEP"]
     return lines

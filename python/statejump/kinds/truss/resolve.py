@@ -12,7 +12,7 @@ from statejump.kinds.truss.arrays import (
 )
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.elements.protocol import listed_elements
-from statejump.kinds.truss.expansions import link_temperatures
+from statejump.kinds.truss.expansions import LinkTemperatures, link_temperatures
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.mechanism import resolve_bodies, resolve_drives, weights_N
@@ -34,42 +34,15 @@ def resolve(case: TrussSections) -> ResolvedTruss:
 
     known = References(dimension, positions, node_places, link_places, Places(case.program), member_number)
 
-    fixed = np.stack([having(case.node, "fixed", axis) for axis in "xyz"], axis=1)
-    fixed[:, dimension:] = True
-    nodes = Nodes(
-        names=names(case.node),
-        position_m=positions,
-        fixed=fixed,
-        guide_normal=unit(vectors(case.node, "guide_normal", dimension)),
-        force_N=vectors(case.node, "force_N", dimension),
-        mass_kg=column(case.node, "mass_kg"),
-    )
-
-    link_nodes = pairs(case.link, "nodes", node_places)
-    length = column(case.link, "stress_free_length_m")
-    length = given_or(length, distances(positions, link_nodes))
-    link = columns(
-        case.link, "young_modulus_Pa", "cross_section_area_m2", "thermal_expansion_per_K", "poisson_ratio",
-    )
+    nodes = _nodes(case, positions)
     program_names = ("thermal", *names(case.program), *(() if members is None else members.names))
     warmed = link_temperatures(case, known.programs_of(case.link), program_names)
-    if warmed.expanding.any():
-        link["thermal_expansion_per_K"] = np.where(
-            warmed.expanding, warmed.largest_per_K, link["thermal_expansion_per_K"])
-    moment, strength = column(case.link, "second_moment_of_area_m4"), column(case.link, "yield_strength_Pa")
-    mass = column(case.link, "mass_kg")
-    mass = given_or(mass, column(case.link, "density_kg_per_m3") * link["cross_section_area_m2"] * length)
-    bodies = resolve_bodies(case.link, length, mass)
+    links = _links(case, pairs(case.link, "nodes", node_places), positions, warmed)
+    bodies = resolve_bodies(case.link, links.stress_free_length_m, links.mass_kg)
     gravity = in_space(case.truss.gravity_m_per_s2, dimension)
     if gravity.any():
-        nodes = replace(nodes, force_N=nodes.force_N + weights_N(gravity, link_nodes, mass, bodies, nodes.mass_kg))
-    links = Links(
-        names=names(case.link), nodes=link_nodes, stress_free_length_m=length, mass_kg=mass, program=warmed.program,
-        temperature_fraction=warmed.temperature_fraction, shown_program=warmed.shown_program,
-        shown_fraction=warmed.shown_fraction, **link,
-        second_moment_of_area_m4=once(given_or(moment, link["cross_section_area_m2"] ** 2 / 12)),
-        ends=texts(case.link, "ends"), yield_strength_Pa=given_or(strength, inf),
-    )
+        weights = weights_N(gravity, links.nodes, links.mass_kg, bodies, nodes.mass_kg)
+        nodes = replace(nodes, force_N=nodes.force_N + weights)
 
     reflector = None
     if case.reflector is not None:
@@ -90,4 +63,37 @@ def resolve(case: TrussSections) -> ResolvedTruss:
         start_friction=case.start.friction,
         types=JOINTS,
         element_types=ELEMENTS,
+    )
+
+
+def _nodes(case: TrussSections, positions: np.ndarray) -> Nodes:
+    dimension = case.truss.dimension
+    fixed = np.stack([having(case.node, "fixed", axis) for axis in "xyz"], axis=1)
+    fixed[:, dimension:] = True
+    return Nodes(
+        names=names(case.node),
+        position_m=positions,
+        fixed=fixed,
+        guide_normal=unit(vectors(case.node, "guide_normal", dimension)),
+        force_N=vectors(case.node, "force_N", dimension),
+        mass_kg=column(case.node, "mass_kg"),
+    )
+
+
+def _links(case: TrussSections, nodes: np.ndarray, positions: np.ndarray, warmed: LinkTemperatures) -> Links:
+    length = given_or(column(case.link, "stress_free_length_m"), distances(positions, nodes))
+    link = columns(
+        case.link, "young_modulus_Pa", "cross_section_area_m2", "thermal_expansion_per_K", "poisson_ratio",
+    )
+    if warmed.expanding.any():
+        link["thermal_expansion_per_K"] = np.where(
+            warmed.expanding, warmed.largest_per_K, link["thermal_expansion_per_K"])
+    area = link["cross_section_area_m2"]
+    return Links(
+        names=names(case.link), nodes=nodes, stress_free_length_m=length,
+        mass_kg=given_or(column(case.link, "mass_kg"), column(case.link, "density_kg_per_m3") * area * length),
+        program=warmed.program, temperature_fraction=warmed.temperature_fraction, shown_program=warmed.shown_program,
+        shown_fraction=warmed.shown_fraction, **link,
+        second_moment_of_area_m4=once(given_or(column(case.link, "second_moment_of_area_m4"), area**2 / 12)),
+        ends=texts(case.link, "ends"), yield_strength_Pa=given_or(column(case.link, "yield_strength_Pa"), inf),
     )

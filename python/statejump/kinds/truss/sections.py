@@ -241,6 +241,11 @@ class TrussSections(ElementLists, JointLists, TrussParts):
         return self.output.samples_per_cycle
 
     @property
+    def member_histories(self) -> Histories | None:
+        """Temperature histories of members, where the case has a file of them."""
+        return self.thermal.members
+
+    @property
     def programs(self) -> list[TrussThermal | MemberProgram]:
         """The temperature programs, the common one first, cycles and period filled in; then those of members."""
         members = self.thermal.members

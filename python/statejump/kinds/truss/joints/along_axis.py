@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar, cast
 
 import numpy as np
 
@@ -17,6 +17,13 @@ from statejump.schema.items import Item
 if TYPE_CHECKING:
     from statejump.kinds.truss.joints.friction_loads import Loads
     from statejump.kinds.truss.resolved import ResolvedTruss
+
+
+class Directed(Protocol):
+    """What their items have."""
+
+    nodes: list[str]
+    axis: list[float]
 
 
 class Axes(Protocol):
@@ -45,10 +52,10 @@ class AlongAxis(JointType[ItemType, ArraysType]):
     noun: ClassVar[str]  # in sentences
 
     def check_vectors(self, item: ItemType, dimension: int) -> None:
-        vector("axis", getattr(item, "axis"), "-", dimension, True, **self.where(item.name))
+        vector("axis", cast(Directed, item).axis, "-", dimension, True, **self.where(item.name))
 
     def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
-        known_nodes(getattr(item, "nodes"), 1, nodes, self.where(item.name))
+        known_nodes(cast(Directed, item).nodes, 1, nodes, self.where(item.name))
 
     def may_be_wrong_vectors(self, items: ItemColumns[ItemType], dimension: int) -> np.ndarray:
         return wrong_vectors(items, "axis", dimension, True)

@@ -17,9 +17,7 @@ from statejump.core.progress import Tell, one_of
 from statejump.core.run import Run
 from statejump.core.tables import markdown, write_rows, write_markdown
 from statejump.core.units import plain
-from statejump.kinds import require
-from statejump.kinds.protocol import DemModel
-from statejump.kinds.spring_slider import compare, dem, reduced, stable_step
+from statejump.kinds.spring_slider import KIND, compare, dem, reduced, stable_step
 from statejump.kinds.spring_slider.case import SpringSliderCase
 
 PERIOD_FACTORS = (1 / 256, 1 / 64, 1 / 16, 1 / 4, 1, 4)
@@ -116,7 +114,7 @@ def convergence(case: SpringSliderCase, tell: Tell = lambda share: None, decades
     runs: list[Run] = []
     for place, variant in enumerate(every):
         try:
-            runs.append(require(case, DemModel).dem(variant, one_of(tell, place, len(every))))
+            runs.append(KIND.dem(variant, one_of(tell, place, len(every))))
         except Interrupted:
             raise Interrupted(code="table_interrupted") from None
     found = compared(case, (slower, finer), (runs[: len(slower)], runs[len(slower) :]))
