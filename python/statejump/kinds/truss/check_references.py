@@ -12,6 +12,7 @@ import numpy as np
 from statejump.core.errors import ABSENT, MissingKey, NotAllowed
 from statejump.kinds.truss import check_mechanism
 from statejump.kinds.truss.arrays import having, said
+from statejump.kinds.truss.check_constraints import check_constraints
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.references import Around, known_links, known_name, known_nodes, wrong_ends
@@ -41,6 +42,7 @@ def check_references(case: TrussSections) -> None:
             joint.check_references(item, nodes, links)
     for spring in where_wrong(case.torsion_spring, lambda items: wrong_ends(link_places.of(items, "links"), 1)):
         known_links(spring.links, links, {"item": f"torsion_spring {spring.name!r}"})
+    check_constraints(case, nodes)
     check_mechanism.check(case, links)
     if case.reflector is not None:
         if not case.reflector.nodes:

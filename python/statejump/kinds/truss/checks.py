@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from statejump.kinds.truss.sections import Node, TrussSections
 
 SECTIONS = ("node", "link", "program", "expansion", *(joint.section for joint in JOINTS), "spring", "torsion_spring",
-            "drive")
+            "constraint", "drive")
 
 
 def check(case: TrussSections, resolve: Callable[[], ResolvedTruss]) -> None:

@@ -95,7 +95,8 @@ def _refuse(truss: ResolvedTruss) -> None:
         raise NotAllowed("link", code="fe_no_links")
     of_angles = [(joint.section, truss.joints[joint.section].names) for joint in JOINTS
                  if not isinstance(joint, (AlongAxis, RoundParts))]
-    of_springs = [("spring", truss.springs.names), ("torsion_spring", truss.torsion_springs.names)]
+    of_springs = [("constraint", truss.constraints.names), ("spring", truss.springs.names),
+                  ("torsion_spring", truss.torsion_springs.names)]
     for section, names in of_springs + of_angles:
         if names:
             raise NotAllowed(section, code="fe_other_parts")

@@ -10,6 +10,7 @@ import numpy as np
 from statejump.kinds.truss.arrays import (
     References, column, columns, distances, given_or, having, in_space, names, pairs, texts, unit, values, vectors,
 )
+from statejump.kinds.truss.constraints import resolve_constraints
 from statejump.kinds.truss.expansions import link_temperatures
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
@@ -96,7 +97,8 @@ def resolve(case: TrussSections) -> ResolvedTruss:
     return ResolvedTruss(
         name=case.name, dimension=dimension, nodes=nodes, links=links, bodies=bodies,
         joints={joint.section: joint.resolve(listed_joints(case, joint), known) for joint in JOINTS},
-        springs=springs, torsion_springs=torsion_springs, drives=resolve_drives(case.drive, known),
+        springs=springs, torsion_springs=torsion_springs,
+        constraints=resolve_constraints(case.constraint, node_places), drives=resolve_drives(case.drive, known),
         programs=warmed.programs,
         program_names=warmed.program_names,
         reflector=reflector,

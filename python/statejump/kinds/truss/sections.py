@@ -16,6 +16,7 @@ from statejump.core.expansion import Expansion
 from statejump.core.start import Start
 from statejump.core.temperature_files import Histories
 from statejump.core.thermal import CaseThermal, MemberProgram, Thermal, returns_s
+from statejump.kinds.truss.constraints import AXES, Constraint
 from statejump.kinds.truss.joints.ball_joint import BallJoint
 from statejump.kinds.truss.joints.iwan_joint import IwanJoint
 from statejump.kinds.truss.joints.latch_hinge import LatchHinge
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-AXES = ("x", "y", "z")
 LARGEST_LENGTH_M = 1e6
 MOST_EXPANSION_PER_K = 1e-3
 MOST_DENSITY_KG_PER_M3 = 1e5
@@ -263,6 +263,7 @@ class TrussSections(Case):
     latch_hinge: list[LatchHinge] = tables(LatchHinge, "sections [[latch_hinge]]")
     iwan_joint: list[IwanJoint] = tables(IwanJoint, "sections [[iwan_joint]]")
     ball_joint: list[BallJoint] = tables(BallJoint, "sections [[ball_joint]]")
+    constraint: list[Constraint] = tables(Constraint, "sections [[constraint]]")
     drive: list[Drive] = tables(Drive, "sections [[drive]]")
     thermal: TrussThermal = section(TrussThermal, required=True)
     start: Start = section(Start)

@@ -73,6 +73,7 @@ def _tied(case: TrussCase) -> list[str]:
     springs = [spring for spring in case.spring if not spring.cable]
     kinds: tuple[tuple[Sequence[object], str], ...] = (
         (springs, "spring"), (cables, "cable"), (case.torsion_spring, "torsion spring"),
+        (case.constraint, "constraint"),
     )
     tied = [count(found, name) for found, name in kinds if found]
     return [f"It has {' and '.join(filter(None, [', '.join(tied[:-1]), tied[-1]]))}."] if tied else []
