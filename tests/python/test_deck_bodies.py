@@ -135,6 +135,38 @@ def test_an_equation_of_one_displacement_is_a_support(tmp_path: Path) -> None:
     assert moved(document, "N4")[0] == pytest.approx(1e-3, rel=1e-9)
 
 
+@pytest.mark.parametrize("name, cards, moves", [
+    ("equal", "MPC,7,2,1,1.,3,1,-1.\n", 2e-3),
+    ("opposite", "MPC,7,2,1,1.,3,1,1.\n", 2e-3),
+    ("half as far", "MPC,7,2,1,2.,3,1,-1.\n", 5e-3),
+    ("what is held drops out", "MPC,7,1,1,1.,4,2,1.,,\n,,3,1,1.,2,1,1.\n", 2e-3),
+    ("apart", "".join(f"MPC,7,2,{at},1.,4,{at},-1.\n" for at in (1, 2, 3)) + "SPC1,1,23,3\n", 1e-3),
+    ("rigid rod", "RROD,9,2,4\n", 1e-3),
+])
+def test_equations_between_nodes_at_which_bars_end_are_constraints(name: str, cards: str, moves: float,
+                                                                   tmp_path: Path) -> None:
+    """The first rod ends at node 2, the second pulls node 3 with 7000 N, each stretches by 1 mm for 7000 N."""
+    document = made(tmp_path, HEAD + RODS + END + cards)
+    assert document["constraint"]
+    assert moved(document, "N4")[0] == pytest.approx(moves, rel=1e-9)
+
+
+def test_a_mass_moves_with_the_node_of_an_equation(tmp_path: Path) -> None:
+    document = made(tmp_path, HEAD + RODS + END + "MPC,7,4,1,1.,5,1,-1.\nCONM2,9,5,,1.\nMPC,7,2,1,1.,3,1,-1.\n")
+    masses = {node["name"]: node.get("mass_kg") for node in document["node"]}
+    assert masses["N5"] == 1
+    assert moved(document, "N5") == pytest.approx(moved(document, "N4"))
+
+
+def test_a_mean_shares_its_load_by_weights_and_levers(tmp_path: Path) -> None:
+    """Of the weights 1 and 3 on nodes 2 and 4 a force along both has 1/4 and 3/4."""
+    rest = RODS.replace("CROD,2,1,3,4", "CROD,2,1,2,4").replace("GRID,3,,1.,0.,0.\n", "").replace("2.,.5,0.", "9.,0.,0.")
+    cards = "RBE3,9,,5,12,1.,123,2,3.,\n,123,4\nFORCE,5,5,,7000.,1.,0.,0.\n"
+    document = made(tmp_path, HEAD + rest + cards)
+    assert moved(document, "N2")[0] == pytest.approx(1e-3, rel=1e-9)
+    assert moved(document, "N4")[0] == pytest.approx(1.75e-3, rel=1e-9)
+
+
 ARM = "RBE2,9,4,123456,5\n"
 REFUSED = {
     "apart": ("RBAR,9,1,2,123456\n", "RBAR is not supported: it holds nodes together at which bars end and that are apart"),
@@ -145,12 +177,11 @@ REFUSED = {
     "warm": ("RBE2,9,2,123456,3,1.-5\n", "RBE2.ALPHA is not supported: thermal expansion of a rigid body"),
     "warm bar": ("RBAR,9,2,3,123456,,,,1.-5\n", "RBAR.ALPHA is not supported: thermal expansion of a rigid bar"),
     "supported arm": (ARM + "SPC1,1,2,5\n", "RBE2 is not supported: a support beside the place at which bars end"),
-    "equation": ("MPC,7,1,1,1.,4,2,1.,,\n,,3,1,1.,2,1,1.\n", "MPC is not supported: an equation between nodes at which bars"),
-    "one direction of three": ("MPC,7,2,1,1.,3,1,-1.\n", "MPC is not supported: an equation between nodes at which bars end"),
-    "equal apart": ("".join(f"MPC,7,2,{at},1.,4,{at},-1.\n" for at in (1, 2, 3)), "MPC is not supported"),
-    "opposite": ("".join(f"MPC,7,2,{at},1.,3,{at},1.\n" for at in (1, 2, 3)), "MPC is not supported"),
-    "mass in one direction": ("MPC,7,4,1,1.,5,1,-1.\nCONM2,9,5,,1.\n", "MPC is not supported"),
-    "force aside": ("MPC,7,4,1,1.,5,1,-1.\nFORCE,5,5,,1.,1.,1.,0.\n", "MPC is not supported"),
+    "force aside": ("MPC,7,4,1,1.,5,1,-1.\nFORCE,5,5,,1.,1.,1.,0.\n",
+                    "FORCE is not supported: a force on node 5 in a direction in which no bar is stiff"),
+    "equation of an arm": (ARM + "MPC,7,2,1,1.,5,1,-1.\n", "MPC is not supported: an equation of a node on a rigid arm"),
+    "warm rod": ("RROD,9,2,4,,,1.-5\n", "RROD.ALPHA is not supported"),
+    "rod without length": ("RROD,9,2,3\n", "nodes 2 and 3 are at one place"),
     "turning equation": ("MPC,7,4,1,1.,3,5,-1.\n", "MPC is not supported: an equation of a rotation"),
     "loaded mean": ("RBE3,9,,5,123,1.,123,2,4\nFORCE,5,5,,1.,1.,0.,0.\n", "RBE3 is not supported: it distributes the loads"),
     "turned mean": ("RBE3,9,,5,123,1.,123,2,4\nMOMENT,5,5,,1.,1.,0.,0.\n", "RBE3 is not supported: it distributes the loads"),
@@ -275,8 +306,16 @@ def test_equations_of_calculix_pass_on_loads(tmp_path: Path) -> None:
     assert moved(document, "N4")[0] == pytest.approx(8e-3, rel=1e-9)  # 7000 N and three times 7000 N
 
 
+def test_equations_of_calculix_between_nodes_are_constraints(tmp_path: Path) -> None:
+    held = "2, 2, 3\n3, 2, 3\n"
+    document = made(tmp_path, INP + held + "*EQUATION\n2\n2, 1, 1., 3, 1, -2.\n" + STEP.format(more=""))
+    assert document["constraint"] == [
+        {"name": "C1", "nodes": ["N2", "N3"], "directions": ["x", "x"], "coefficients": [1.0, -2.0]}]
+    # The first rod has half of 7000 N and stretches by 0.5 mm: node 3 moves by half of that.
+    assert moved(document, "N4")[0] == pytest.approx(1.25e-3, rel=1e-9)
+
+
 @pytest.mark.parametrize("equation, sentence", [
-    ("2\n2, 1, 1., 3, 1, -1.\n", "line 19: *EQUATION is not supported: an equation between nodes at which bars end"),
     ("2\n2, 5, 1., 3, 1, -1.\n", "*EQUATION is not supported: an equation of a rotation or a temperature"),
     ("2\nNALL, 1, 1., 3, 1, -1.\n", "*EQUATION is not supported: an equation of sets of nodes"),
     ("3\n2, 1, 1., 3, 1, -1.\n", "*EQUATION has not 3 terms"),

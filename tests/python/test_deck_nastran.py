@@ -349,7 +349,7 @@ def test_sets_of_supports_are_combined(tmp_path: Path) -> None:
 REFUSED = {  # cards beside the rod and what the refusal says
     "shell": ("CQUAD4,2,1,1,2,2,1\n", "line 14: CQUAD4 is not supported: shells are no part of a truss; --ignore CQUAD4"),
     "unknown": ("CNEW,2,1\n", "CNEW is not supported: the card is unknown"),
-    "rigid": ("RROD,9,1,2,1\n", "RROD is not supported: rigid elements"),
+    "rigid": ("RJOINT,9,1,2,1\n", "RJOINT is not supported: rigid elements"),
     "across": ("GRID,3,,1.,1.,0.\nSPC1,1,23,3\nCELAS2,2,7.+6,2,1,3,1\n", "CELAS2 is not supported: it acts across"),
     "at one place": ("GRID,3,,1.,0.,0.\nSPC1,1,23,3\nCELAS2,2,7.+6,2,1,3,1\n", "CELAS2 is not supported: its nodes are at"),
     "rotation": ("CELAS2,2,7.+6,2,4,1,1\n", "CELAS2 is not supported: it joins a rotation"),

@@ -61,6 +61,22 @@ def test_a_row_for_every_deck(tmp_path: Path) -> None:
     assert done.stdout.endswith("2 decks, 1 imported, 1 ran, 0 faults\n")
 
 
+# A second pair of bars beside the first one, and an equation between both.
+TIED = TRUSS.replace("3, 0., 1., 0.\n", "3, 0., 1., 0.\n4, .5, 2., 0.\n").replace(
+    "2, 2, 3\n", "2, 2, 3\n3, 3, 4\n4, 1, 4\n").replace("3, 1, 3\n", "3, 1, 3\n4, 3, 3\n").replace(
+    "*STEP,", "*EQUATION\n3\n2, 1, 1., 2, 2, .4, 4, 1, -1.5\n*STEP,")
+
+
+@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not here: not every Debian has it")
+def test_equations_are_those_of_calculix(tmp_path: Path) -> None:
+    (tmp_path / "tied.inp").write_text(TIED)
+    done = subprocess.run([sys.executable, SCRIPTS / "decks.py", tmp_path, "-j", "1"], capture_output=True, text=True,
+                          env={**os.environ, "PYTHONPATH": os.environ["STATEJUMP_PYTHON_DIR"]})
+    row = [cell.strip() for cell in done.stdout.splitlines()[2].split("|")[1:-1]]
+    assert row[2:4] == ["yes", "yes"], done.stdout
+    assert float(row[6]) < 1e-6  # CalculiX prints seven digits
+
+
 def test_the_deck_of_calculix_ends_with_a_step_and_is_linear() -> None:
     again = TRUSS + 2 * TRUSS[TRUSS.index("*STEP"):]
     text = decks_ccx.printing(again, 2, [2, 1])

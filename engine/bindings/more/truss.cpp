@@ -142,8 +142,25 @@ std::vector<Type> items_of(const Table& table) {
   return items;
 }
 
+std::vector<truss::Constraint> constraints_of(const py::dict& arrays) {
+  std::vector<truss::Constraint> made;
+  if (!arrays.contains("names")) return made;
+  using Coefficients = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+  const auto names = arrays["names"].cast<std::vector<std::string>>();
+  const auto nodes = arrays["nodes"].cast<std::vector<std::vector<int>>>();
+  const auto coefficients = arrays["coefficients"].cast<std::vector<Coefficients>>();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    truss::Constraint one{names[i], {}};
+    for (std::size_t k = 0; k < nodes.at(i).size(); ++k) {
+      one.terms.push_back({nodes[i][k], coefficients.at(i).row(static_cast<Eigen::Index>(k))});
+    }
+    made.push_back(std::move(one));
+  }
+  return made;
+}
+
 truss::Model make_model(const py::dict& nodes_, const py::dict& elements_, const py::dict& joints_,
-                        std::vector<thermal::Program> programs) {
+                        const py::dict& constraints_, std::vector<thermal::Program> programs) {
   truss::Model model;
   model.programs = std::move(programs);
   {
@@ -185,6 +202,7 @@ truss::Model make_model(const py::dict& nodes_, const py::dict& elements_, const
       for (Type& joint : items_of<Type>(table)) model.joints.emplace_back(std::move(joint));
     }
   });
+  model.constraints = constraints_of(constraints_);
   return model;
 }
 
@@ -469,6 +487,14 @@ py::dict path_dict(const truss::Model& model, const truss::Path& path) {
     one["value"] = note.value;
     notes.append(one);
   }
+  for (const int which : model.redundant_constraints()) {
+    py::dict one;
+    one["kind"] = "redundant_constraint";
+    for (const char* key : {"time_s", "temperature_change_K", "value"}) one[key] = 0.0;
+    one["joints"] = std::vector<std::pair<std::string, std::string>>{
+        {truss::Constraint::kind, model.constraints[static_cast<std::size_t>(which)].name}};
+    notes.append(one);
+  }
   result["notes"] = notes;
   result["complete"] = path.complete;
   result["solves"] = path.solves;
@@ -504,7 +530,8 @@ constexpr const char* about_path =
     "Every kind of item is a dict of arrays, one entry per item, and 'names'. Index -1: ground.\n"
     "nodes: position_m (n, 3), fixed (n, 3), guide_normal (n, 3), force_N (n, 3)\n"
     "elements: table -> such a dict, with the arrays that truss_elements() lists for it\n"
-    "joints: kind -> such a dict, with the arrays that truss_joints() lists for it\n\n"
+    "joints: kind -> such a dict, with the arrays that truss_joints() lists for it\n"
+    "constraints: names, nodes (terms,) and coefficients (terms, 3) of each: a sum that is 0\n\n"
     "Returns states and cycle_ends (dicts of arrays, first axis the state; axial force positive\n"
     "in compression), events, problems (frictional contact problems of the first steps that end "
     "at\n"
@@ -523,8 +550,8 @@ py::dict path_of(const py::dict& nodes, const py::dict& elements, const py::dict
                  bool locate_events, double event_tolerance, double energy_tolerance,
                  bool cycle_ends_only, std::vector<double> problem_times,
                  const std::string& start_friction, const py::object& progress,
-                 const py::object& trace) {
-  const truss::Model model = make_model(nodes, elements, joints, std::move(programs));
+                 const py::object& trace, const py::dict& constraints) {
+  const truss::Model model = make_model(nodes, elements, joints, constraints, std::move(programs));
   truss::Options options;
   options.start_friction = start_friction_of(start_friction);
   options.increments_per_branch = increments_per_branch;
@@ -567,8 +594,8 @@ py::dict motion_of(const py::dict& nodes, const py::dict& elements, const py::di
                    long sample_every, double theta, double displacement_tolerance_m,
                    double restitution, int watched_node, const py::list& drives, bool start_drawn,
                    const std::string& start_friction, const std::string& friction_law,
-                   const py::object& progress) {
-  const truss::Model model = make_model(nodes, elements, joints, std::move(programs));
+                   const py::object& progress, const py::dict& constraints) {
+  const truss::Model model = make_model(nodes, elements, joints, constraints, std::move(programs));
   const auto numbers = [&](const char* key) { return inertia[key].cast<Eigen::VectorXd>(); };
   const truss::Inertia masses{numbers("link_mass_kg"),
                               numbers("node_mass_kg"),
@@ -655,7 +682,8 @@ void bind_path(py::module_& module) {
              py::arg("energy_tolerance") = truss::Options().energy_tolerance,
              py::arg("cycle_ends_only") = truss::Options().cycle_ends_only,
              py::arg("problem_times") = std::vector<double>(), py::arg("start_friction") = "stuck",
-             py::arg("progress") = py::none(), py::arg("trace") = py::none(), about_path);
+             py::arg("progress") = py::none(), py::arg("trace") = py::none(),
+             py::arg("constraints") = py::dict(), about_path);
 }
 
 void bind_motion(py::module_& module) {
@@ -665,7 +693,8 @@ void bind_motion(py::module_& module) {
              py::arg("displacement_tolerance_m") = 0.0, py::arg("restitution") = 0.0,
              py::arg("watched_node") = -1, py::arg("drives") = py::list(),
              py::arg("start_drawn") = false, py::arg("start_friction") = "stuck",
-             py::arg("friction_law") = "", py::arg("progress") = py::none(), about_motion);
+             py::arg("friction_law") = "", py::arg("progress") = py::none(),
+             py::arg("constraints") = py::dict(), about_motion);
 }
 
 }  // namespace

@@ -181,7 +181,7 @@ VectorXd System::slide_rates(const VectorXd& z, double time, const StepStart& st
     for (int k = 0; k < most_joint_nodes; ++k) {
       const NodeDofs& place = dofs_.at(frame.nodes[index(k)]);
       places[index(k)] = {3 * k, place.freedoms, place.directions};
-      own_rate.segment(3 * k, place.freedoms) = rate.segment(place.row, place.freedoms);
+      own_rate.segment<3>(3 * k) = DofMap::along_directions(place, rate);
     }
     own_rate.segment(forces_from, frame.forces) = rate.segment(force_row_[index(i)], frame.forces);
     Assembly moving(own_rate);

@@ -2,7 +2,12 @@
 #include "dof_map.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <utility>
 
+#include "elimination.hpp"
 #include "parallel.hpp"
 #include "statejump/truss/model.hpp"
 
@@ -12,6 +17,8 @@ namespace {
 
 /// Copying as many displacements takes some ten times as long as starting a thread.
 constexpr std::size_t nodes_at_once = 50000;
+/// Motion of a node by a dof that counts as none, as in moves_along().
+constexpr double least_motion = 1e-9;
 
 /// Whether an element at a node has 6 dofs per node, for every node.
 std::vector<bool> rotating_nodes(const Model& model) {
@@ -34,13 +41,47 @@ std::vector<bool> rotating_nodes(const Model& model) {
 DofMap::DofMap(const Model& model) : DofMap(model, rotating_nodes(model)) {}
 
 DofMap::DofMap(const Model& model, const std::vector<bool>& rotates) {
+  const Elimination eliminated = eliminate(model);
+  const auto is_dependent = [&](int node, int direction) {
+    return eliminated.sums.count(place_of(node, direction)) > 0;
+  };
   nodes_.reserve(model.nodes.size() + 1);
   for (const Node& node : model.nodes) {
+    const auto which = static_cast<int>(nodes_.size());
     const int rotations = rotates[nodes_.size()] ? 3 : 0;
     nodes_.push_back({dofs_, node.freedoms, &node.free_directions.matrix(), rotations});
-    dofs_ += node.freedoms + rotations;
+    for (int i = 0; i < node.freedoms; ++i) dofs_ += is_dependent(which, i) ? 0 : 1;
+    dofs_ += rotations;
   }
   nodes_.emplace_back();
+  if (!eliminated.sums.empty()) add_sums(eliminated);
+}
+
+void DofMap::add_sums(const Elimination& eliminated) {
+  const auto row_of = [&](int place) {
+    int row = nodes_[static_cast<std::size_t>(place / 3)].row;
+    for (int before = place - place % 3; before < place; ++before) {
+      row += eliminated.sums.count(before) > 0 ? 0 : 1;
+    }
+    return row;
+  };
+  std::map<int, DofSums> of_nodes;
+  for (const auto& [place, unused] : eliminated.sums) of_nodes[place / 3] = {};
+  for (auto& [node, sums] : of_nodes) {
+    for (int i = 0; i < nodes_[static_cast<std::size_t>(node)].freedoms; ++i) {
+      const int own = place_of(node, i);
+      const auto dependent = eliminated.sums.find(own);
+      if (dependent == eliminated.sums.end()) {
+        sums[static_cast<std::size_t>(i)] = {{row_of(own), 1.0}};
+        continue;
+      }
+      for (const auto& [place, factor] : dependent->second) {
+        sums[static_cast<std::size_t>(i)].push_back({row_of(place), factor});
+      }
+    }
+  }
+  sums_ = std::make_shared<const std::map<int, DofSums>>(std::move(of_nodes));
+  for (const auto& [node, sums] : *sums_) nodes_[static_cast<std::size_t>(node)].sums = &sums;
 }
 
 int DofMap::node_of(int dof) const {
@@ -52,6 +93,7 @@ int DofMap::node_of(int dof) const {
 
 Eigen::Vector3d DofMap::displacement(int node, const Eigen::VectorXd& z) const {
   const NodeDofs& at = nodes_[static_cast<std::size_t>(node)];
+  if (at.sums != nullptr) return *at.directions * along_directions(at, z);
   const double* along = z.data() + at.row;
   switch (at.freedoms) {
     case 3:
@@ -71,6 +113,47 @@ void DofMap::displacements(const Eigen::VectorXd& z, Eigen::Matrix3Xd& moved) co
   each_in_parallel(nodes_.size() - 1, nodes_at_once, [&](std::size_t i) {
     moved.col(static_cast<Eigen::Index>(i)) = displacement(static_cast<int>(i), z);
   });
+}
+
+Eigen::VectorXd DofMap::dofs_at(const Eigen::Matrix3Xd& moved) const {
+  Eigen::VectorXd found = Eigen::VectorXd::Zero(dofs_);
+  for (Eigen::Index n = 0; n < moved.cols(); ++n) {
+    const NodeDofs& at = nodes_[static_cast<std::size_t>(n)];
+    int row = at.row;
+    for (int i = 0; i < at.freedoms; ++i) {
+      if (at.is_own(i, row)) found[row++] = at.directions->col(i).dot(moved.col(n));
+    }
+  }
+  return found;
+}
+
+void DofMap::add_force(int node, const Eigen::Vector3d& force, Eigen::VectorXd& to) const {
+  const NodeDofs& dofs = at(node);
+  for (int i = 0; i < dofs.freedoms; ++i) {
+    const double along = dofs.directions->col(i).dot(force);
+    dofs.each_term(i, [&](int row, double factor) { to[row] += factor * along; });
+  }
+}
+
+bool DofMap::moves_apart(int first, int second, const Eigen::Vector3d& direction) const {
+  std::map<int, double> gradient;
+  for (const auto& [node, sign] : {std::pair(first, 1.0), std::pair(second, -1.0)}) {
+    const NodeDofs& dofs = at(node);
+    for (int i = 0; i < dofs.freedoms; ++i) {
+      const double along = sign * dofs.directions->col(i).dot(direction);
+      dofs.each_term(i, [&](int row, double factor) { gradient[row] += factor * along; });
+    }
+  }
+  return std::any_of(gradient.begin(), gradient.end(),
+                     [](const auto& term) { return std::abs(term.second) > least_motion; });
+}
+
+Eigen::Vector3d DofMap::along_directions(const NodeDofs& at, const Eigen::VectorXd& z) {
+  Eigen::Vector3d along = Eigen::Vector3d::Zero();
+  for (int i = 0; i < at.freedoms; ++i) {
+    at.each_term(i, [&](int row, double factor) { along[i] += factor * z[row]; });
+  }
+  return along;
 }
 
 }  // namespace statejump::truss::detail

@@ -2,24 +2,56 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <map>
+#include <memory>
 #include <vector>
 
 namespace statejump::truss {
 
 struct Model;
 
+/// Part of a sum of dofs.
+struct DofTerm {
+  int row;
+  double factor;
+};
+/// The translations of a node in its free directions as sums of dofs.
+using DofSums = std::array<std::vector<DofTerm>, 3>;
+
 /// Degrees of freedom of one node: translations in the first `freedoms` of its free directions,
 /// then its rotations. None by default, as of the ground.
 struct NodeDofs {
-  int row = 0;       ///< Of the first dof.
+  int row = 0;       ///< Of its first own dof.
   int freedoms = 0;  ///< Translations.
   const Eigen::Matrix3d* directions = nullptr;
   int rotations = 0;  ///< 3 where an element has 6 dofs per node, else 0.
+  /// Of a node of which constraints give translations; none: all translations are own dofs.
+  const DofSums* sums = nullptr;
+
+  /// Whether a translation is a dof, not a sum of several or a multiple.
+  bool is_own(int direction, int dof) const {
+    if (sums == nullptr) return true;
+    const auto& terms = (*sums)[static_cast<std::size_t>(direction)];
+    return terms.size() == 1 && terms.front().row == dof && terms.front().factor == 1.0;
+  }
+
+  /// Calls `use(row, factor)` for the dofs in the translation along a free direction.
+  template <class Use>
+  void each_term(int direction, Use&& use) const {
+    if (sums == nullptr) return use(row + direction, 1.0);
+    for (const DofTerm& term : (*sums)[static_cast<std::size_t>(direction)]) {
+      use(term.row, term.factor);
+    }
+  }
 };
 
 namespace detail {
 
-/// Numbering of the degrees of freedom of all nodes, node after node.
+struct Elimination;
+
+/// Numbering of the independent degrees of freedom of all nodes, node after node. Constraints give
+/// the other ones, see Elimination.
 class DofMap {
  public:
   /// The model must outlive it.
@@ -32,15 +64,26 @@ class DofMap {
   const NodeDofs& at(int node) const {
     return node < 0 ? nodes_.back() : nodes_[static_cast<std::size_t>(node)];
   }
-  /// Node of a dof.
+  /// Node that has a dof of its own.
   int node_of(int dof) const;
   /// Translation of a node at unknowns z [m].
   Eigen::Vector3d displacement(int node, const Eigen::VectorXd& z) const;
   /// Those of all nodes.
   void displacements(const Eigen::VectorXd& z, Eigen::Matrix3Xd& moved) const;
+  /// The dofs at displacements of all nodes that agree with the constraints.
+  Eigen::VectorXd dofs_at(const Eigen::Matrix3Xd& moved) const;
+  /// Adds a force on a node to the forces on the dofs [N].
+  void add_force(int node, const Eigen::Vector3d& force, Eigen::VectorXd& to) const;
+  /// Whether some motion changes the distance of two nodes along a direction.
+  bool moves_apart(int first, int second, const Eigen::Vector3d& direction) const;
+  /// Translations of a node along its free directions at unknowns z.
+  static Eigen::Vector3d along_directions(const NodeDofs& at, const Eigen::VectorXd& z);
 
  private:
-  std::vector<NodeDofs> nodes_;  // then the ground
+  void add_sums(const Elimination& eliminated);
+
+  std::vector<NodeDofs> nodes_;                         // then the ground
+  std::shared_ptr<const std::map<int, DofSums>> sums_;  // of constrained nodes
   int dofs_ = 0;
 };
 

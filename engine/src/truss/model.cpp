@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <variant>
 
+#include "dof_map.hpp"
+#include "elimination.hpp"
 #include "statejump/kernel/require.hpp"
 
 namespace statejump::truss {
@@ -108,6 +111,39 @@ TemperatureRange range_of(const thermal::Program& program) {
   return range;
 }
 
+void check_constraint(const Constraint& constraint, const Model& model) {
+  const std::string item = named(Constraint::kind, constraint.name);
+  check(!constraint.terms.empty(), item, "number of terms", 0.0, ">= 1");
+  double largest = 0.0;
+  for (const ConstraintTerm& term : constraint.terms) {
+    check_index(term.node, model.nodes.size(), item, "node");
+    check(term.factor.allFinite(), item, "factor", term.factor.norm(), "finite");
+    largest = std::max(largest, term.factor.norm());
+  }
+  for (const ConstraintTerm& term : constraint.terms) {
+    const double size = term.factor.norm();
+    check(size > 0.0 && size >= Constraint::least_factor * largest, item, "factor", size,
+          "not 0, at least 1e-9 of the largest factor");
+  }
+}
+
+/// Refuses joints whose nodes cannot move apart where the joint holds them: two forces would hold
+/// one direction.
+void check_held_directions(const Model& model) {
+  const detail::DofMap dofs(model);
+  for (const Joint& joint : model.joints) {
+    const JointFrame frame = std::visit([&](const auto& one) { return one.frame(model); }, joint);
+    for (int k = 0; k < 3; ++k) {
+      if (!frame.holds[static_cast<std::size_t>(k)]) continue;
+      const Eigen::Vector3d along = frame.axes.col(k);
+      if (dofs.moves_apart(frame.nodes[0], frame.nodes[1], along)) continue;
+      throw std::invalid_argument(named(kind_of(joint), name_of(joint)) +
+                                  ": constraints hold its nodes in a direction that it holds "
+                                  "itself; leave out the constraint of its nodes");
+    }
+  }
+}
+
 }  // namespace
 
 void Model::validate() const {
@@ -149,6 +185,12 @@ void Model::validate() const {
         },
         joint);
   }
+  for (const Constraint& constraint : constraints) check_constraint(constraint, *this);
+  if (!constraints.empty()) check_held_directions(*this);
+}
+
+std::vector<int> Model::redundant_constraints() const {
+  return detail::eliminate(*this).redundant;
 }
 
 double Model::lowest_strain(int program, double per_kelvin) const {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <set>
 
 #include "numerics/lists.hpp"
 #include "parts.hpp"
@@ -18,6 +19,15 @@ constexpr std::size_t least_parts = 2000;
 /// Regions at most: enough to share them out evenly, few enough to have little between them.
 constexpr std::size_t most_regions = 64;
 
+/// The nodes whose dofs move a constrained node.
+std::set<int> moving_with(const DofMap& dofs, const NodeDofs& at) {
+  std::set<int> found;
+  for (int i = 0; i < at.freedoms; ++i) {
+    at.each_term(i, [&](int row, double) { found.insert(dofs.node_of(row)); });
+  }
+  return found;
+}
+
 /// The nodes that move of every part: of the elements type by type, then of the joints.
 Lists moving_nodes(const DofMap& dofs, const ElementFrames& elements,
                    const std::vector<JointFrame>& joints) {
@@ -25,7 +35,13 @@ Lists moving_nodes(const DofMap& dofs, const ElementFrames& elements,
   const auto add = [&](const auto& frames) {
     for (const auto& frame : frames) {
       for (const int node : frame.nodes) {
-        if (dofs.at(node).freedoms + dofs.at(node).rotations > 0) made.push_back(node);
+        const NodeDofs& at = dofs.at(node);
+        if (at.sums == nullptr) {
+          if (at.freedoms + at.rotations > 0) made.push_back(node);
+          continue;
+        }
+        // What is added there goes to the nodes whose dofs move it.
+        for (const int other : moving_with(dofs, at)) made.push_back(other);
       }
       made.end_list();
     }
@@ -85,7 +101,8 @@ Regions regions_of(const Model& model, const DofMap& dofs, const ElementFrames& 
   share_out(joints.size(), [](Region& at) -> std::vector<int>& { return at.joints; });
   for (std::size_t n = 0; n < model.nodes.size(); ++n) {
     if (model.nodes[n].load.isZero(0.0)) continue;
-    region(region_of_node[n]).loaded.push_back(static_cast<int>(n));
+    const bool is_constrained = dofs.at(static_cast<int>(n)).sums != nullptr;
+    region(is_constrained ? -1 : region_of_node[n]).loaded.push_back(static_cast<int>(n));
   }
   return made;
 }

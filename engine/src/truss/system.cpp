@@ -293,7 +293,11 @@ void System::apply(int joint, const Seat& seat, VectorXd& z) const {
   const JointFrame& frame = frames_[index(joint)];
   const NodeDofs& place = dofs_.at(frame.nodes[0]);
   for (int i = 0; i < place.freedoms; ++i) {
-    z[place.row + i] += place.directions->col(i).dot(seat.moved);
+    const double along = place.directions->col(i).dot(seat.moved);
+    double squared = 0.0;
+    place.each_term(i, [&](int, double factor) { squared += factor * factor; });
+    // The shortest step of the dofs that moves the node so.
+    place.each_term(i, [&](int row, double factor) { z[row] += factor / squared * along; });
   }
   for (int k = 0; k < frame.forces; ++k) z[force_row_[index(joint)] + k] = seat.force[index(k)];
 }

@@ -97,7 +97,6 @@ class System {
 
   int unknowns() const { return unknowns_; }
   int displacements() const { return displacements_; }
-  int first_displacement(int node) const { return dofs_.at(node).row; }
   const Model& model() const { return *model_; }
   const DofMap& dofs() const { return dofs_; }
   /// Calls `use(elements, frames, k)` for every type k of element.

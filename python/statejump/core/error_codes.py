@@ -579,6 +579,9 @@ CODES: dict[str, Code] = {
         cause="too small beside {part}_radius_m = {radius_m:g} [m], the radii come out equal",
     ),
     "column_of_several": Code(cause="its column {column!r} is of {kinds}"),
+    "constraint_coefficient": Code(cause="must not be 0, and at least 1e-9 of the largest one"),
+    "constraint_length": Code(cause="must be {terms}, one for each node of 'nodes'"),
+    "constraint_term_twice": Code(cause="node {node!r} is there twice in direction {direction!r}"),
     "dem_cannot_run": Code(remedy="'statejump reduced' can run the case"),
     "dem_of_control": Code(
         cause="a truss with what is found goes into a case of its own, which 'statejump compare' checks",
@@ -644,7 +647,9 @@ CODES: dict[str, Code] = {
             "{clearance_m:g} [m]"
         ),
     ),
-    "node_unused": Code(what="node {node!r} is not allowed", cause="no link, spring, joint or support uses it"),
+    "node_unused": Code(
+        what="node {node!r} is not allowed", cause="no link, spring, joint, constraint or support uses it",
+    ),
     "nodes_not_different": Code(cause="must be two different nodes"),
     "not_read_by_scheme": Code(cause="it is not read {scheme}"),
     "nothing_to_scale": Code(cause="it has no value but 0 in this case: there is nothing to scale"),

@@ -45,10 +45,28 @@ struct Node {
   Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< Dead load [N].
 };
 
+/// A part of a sum of displacements: that of a node along a vector, times its length.
+struct ConstraintTerm {
+  int node = 0;                                      ///< Number.
+  Eigen::Vector3d factor = Eigen::Vector3d::Zero();  ///< [-]
+};
+
+/// A sum of displacements that is always zero: Σ factor · displacement = 0.
+struct Constraint {
+  std::string name;                   ///< For messages.
+  std::vector<ConstraintTerm> terms;  ///< At least one.
+
+  static constexpr const char* kind = "constraint";  ///< In messages.
+  /// Factors below this fraction of the largest one of their constraint are refused [-]. What
+  /// elimination leaves of a factor that cancels is below a thousandth of it.
+  static constexpr double least_factor = 1e-9;
+};
+
 /// Structure of elements, frictional joints and loads, for quasi-static paths.
 struct Model : Elements {
   std::vector<Node> nodes;
   std::vector<Joint> joints;
+  std::vector<Constraint> constraints;
   std::vector<thermal::Program> programs;  ///< At least one; all of one duration.
 
   /// Share of the duration below which two times are one [-]: programs of 3 x 0.1 s and 1 x 0.3 s
@@ -57,8 +75,12 @@ struct Model : Elements {
   static constexpr double same_time = 1e-9;
 
   /// Throws std::invalid_argument that names the item, its value and the range: indices, numbers
-  /// out of range, links without length somewhere in their program, joints whose parts do not fit.
+  /// out of range, links without length somewhere in their program, joints whose parts do not fit,
+  /// directions that both a joint and constraints hold.
   void validate() const;
+
+  /// Constraints that follow from supports and the constraints before them. They change nothing.
+  std::vector<int> redundant_constraints() const;
 
   /// Largest value of `per_kelvin` · ΔT over a program, downwards.
   double lowest_strain(int program, double per_kelvin) const;

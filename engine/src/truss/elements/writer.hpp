@@ -22,16 +22,14 @@ class ElementWriter {
   void force(int node, const Eigen::Vector3d& value) {
     const NodeDofs& dofs = at(node);
     for (int i = 0; i < dofs.freedoms; ++i) {
-      to_->residual(dofs.row + i, dofs.directions->col(i).dot(value));
+      to_->residual(dofs, i, dofs.directions->col(i).dot(value));
     }
   }
   /// Derivative of a node's force by another node's displacement: `value(direction of the force,
   /// direction of the displacement)`.
   template <class Value>
   void block(int row_node, int column_node, Value&& value) {
-    const NodeDofs& rows = at(row_node);
-    const NodeDofs& columns = at(column_node);
-    to_->block(rows.row, rows.freedoms, columns.row, columns.freedoms, value);
+    to_->block(at(row_node), at(column_node), value);
   }
   /// A vector along the directions in which a node moves.
   Eigen::Vector3d seen(int node, const Eigen::Vector3d& vector) const {
@@ -60,7 +58,12 @@ class MatrixWriter {
     for (int j = 0; j < columns.freedoms; ++j) {
       const Eigen::Vector3d image = value * columns.directions->col(j);
       for (int i = 0; i < rows.freedoms; ++i) {
-        to_->emplace_back(rows.row + i, columns.row + j, rows.directions->col(i).dot(image));
+        const double entry = rows.directions->col(i).dot(image);
+        rows.each_term(i, [&](int row, double by_row) {
+          columns.each_term(j, [&](int column, double by_column) {
+            to_->emplace_back(row, column, by_row * by_column * entry);
+          });
+        });
       }
     }
   }

@@ -120,6 +120,10 @@ class AssemblyStrand {
   bool residual_only() const { return to_->residual_only_; }
   const Eigen::Matrix3Xd& moved() const { return to_->moved; }
   void residual(int row, double value) { to_->residual[row] += value; }
+  /// A force along a free direction of a node.
+  void residual(const NodeDofs& at, int direction, double value) {
+    at.each_term(direction, [&](int row, double factor) { residual(row, factor * value); });
+  }
   void unit(int row, RowUnit unit) { to_->units[static_cast<std::size_t>(row)] = unit; }
   /// A force that rounding and balance are measured by [N].
   void carries(double force) { largest_force_ = std::max(largest_force_, std::abs(force)); }
@@ -155,6 +159,31 @@ class AssemblyStrand {
       add_up(rows, columns);
     }
     slot_ += columns;
+  }
+  /// A block of the free directions of two nodes: `value(direction of rows, of columns)`.
+  template <class Value>
+  void block(const NodeDofs& rows, const NodeDofs& columns, Value&& value) {
+    if (rows.sums == nullptr && columns.sums == nullptr) {
+      return block(rows.row, rows.freedoms, columns.row, columns.freedoms, value);
+    }
+    if (residual_only()) return;
+    for (int j = 0; j < columns.freedoms; ++j) {
+      for (int i = 0; i < rows.freedoms; ++i) {
+        const double entry = value(i, j);
+        rows.each_term(i, [&](int row, double by_row) {
+          columns.each_term(j, [&](int column, double by_column) {
+            add(row, column, by_row * by_column * entry);
+          });
+        });
+      }
+    }
+  }
+  /// The same that is zero.
+  void zeros(const NodeDofs& rows, const NodeDofs& columns) {
+    if (rows.sums == nullptr && columns.sums == nullptr) {
+      return zeros(rows.row, rows.freedoms, columns.row, columns.freedoms);
+    }
+    block(rows, columns, [](int, int) { return 0.0; });
   }
   /// A block that is zero: its places are passed. (A sum that begins at +0 is never −0, so that
   /// adding zeros would change nothing.)
@@ -207,7 +236,7 @@ class JointWriter {
   void force(std::size_t node, const Eigen::Vector3d& value) {
     const NodeDofs& at = places[node];
     for (int i = 0; i < at.freedoms; ++i) {
-      to_->residual(at.row + i, at.directions->col(i).dot(value));
+      to_->residual(at, i, at.directions->col(i).dot(value));
     }
   }
   bool residual_only() const { return to_->residual_only(); }
@@ -218,22 +247,20 @@ class JointWriter {
     const NodeDofs& columns = places[of_node];
     Eigen::Matrix3d image;
     for (int j = 0; j < columns.freedoms; ++j) image.col(j) = value * columns.directions->col(j);
-    to_->block(rows.row, rows.freedoms, columns.row, columns.freedoms,
+    to_->block(rows, columns,
                [&](int i, int j) { return rows.directions->col(i).dot(image.col(j)); });
   }
   /// Derivative of a row by a node's displacement.
   void row(int row, std::size_t node, const Eigen::Vector3d& gradient) {
     if (to_->residual_only()) return;
     const NodeDofs& at = places[node];
-    to_->block(first_force + row, 1, at.row, at.freedoms,
-               [&](int, int j) { return at.directions->col(j).dot(gradient); });
+    to_->block(own(row), at, [&](int, int j) { return at.directions->col(j).dot(gradient); });
   }
   /// Derivative of a node's force by one of the joint's.
   void column(std::size_t node, int force, const Eigen::Vector3d& gradient) {
     if (to_->residual_only()) return;
     const NodeDofs& at = places[node];
-    to_->block(at.row, at.freedoms, first_force + force, 1,
-               [&](int i, int) { return at.directions->col(i).dot(gradient); });
+    to_->block(at, own(force), [&](int i, int) { return at.directions->col(i).dot(gradient); });
   }
   /// Derivative of a row by one of the joint's forces.
   void corner(int row, int force, double value) {
@@ -262,6 +289,8 @@ class JointWriter {
 
  private:
   friend class PlanarWriter;
+  /// The dof of a force.
+  NodeDofs own(int force) const { return {first_force + force, 1}; }
   void set(int row, double value, RowUnit unit) {
     to_->residual(first_force + row, value);
     to_->unit(first_force + row, unit);
@@ -285,7 +314,7 @@ class PlanarWriter {
   void force(std::size_t node, const Eigen::Vector2d& value) {
     const NodeDofs& at = to_->places[node];
     for (int i = 0; i < at.freedoms; ++i) {
-      to_->to_->residual(at.row + i, seen_[node].col(i).dot(value));
+      to_->to_->residual(at, i, seen_[node].col(i).dot(value));
     }
   }
   void block(std::size_t by_node, std::size_t of_node, const Eigen::Matrix2d& value) {
@@ -293,22 +322,18 @@ class PlanarWriter {
     const NodeDofs& columns = to_->places[of_node];
     Directions image;
     for (int j = 0; j < columns.freedoms; ++j) image.col(j) = value * seen_[of_node].col(j);
-    to_->to_->block(rows.row, rows.freedoms, columns.row, columns.freedoms,
+    to_->to_->block(rows, columns,
                     [&](int i, int j) { return seen_[by_node].col(i).dot(image.col(j)); });
   }
   void no_block(std::size_t by_node, std::size_t of_node) {
-    const NodeDofs& rows = to_->places[by_node];
-    const NodeDofs& columns = to_->places[of_node];
-    to_->to_->zeros(rows.row, rows.freedoms, columns.row, columns.freedoms);
+    to_->to_->zeros(to_->places[by_node], to_->places[of_node]);
   }
   void row(int row, std::size_t node, const Eigen::Vector2d& gradient) {
-    const NodeDofs& at = to_->places[node];
-    to_->to_->block(to_->first_force + row, 1, at.row, at.freedoms,
+    to_->to_->block(to_->own(row), to_->places[node],
                     [&](int, int j) { return seen_[node].col(j).dot(gradient); });
   }
   void column(std::size_t node, int force, const Eigen::Vector2d& gradient) {
-    const NodeDofs& at = to_->places[node];
-    to_->to_->block(at.row, at.freedoms, to_->first_force + force, 1,
+    to_->to_->block(to_->places[node], to_->own(force),
                     [&](int i, int) { return seen_[node].col(i).dot(gradient); });
   }
 

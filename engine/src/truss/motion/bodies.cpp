@@ -101,10 +101,7 @@ VectorXd Bodies::force(const VectorXd& q, const VectorXd& v, const Step& step) c
                           dashpot.turning / (now.length * now.length) * now.across;
     for (const auto& [node, sign] :
          {std::pair{dashpot.first, 1.0}, std::pair{dashpot.second, -1.0}}) {
-      const NodeDofs& dofs = system_->dofs().at(node);
-      for (int i = 0; i < dofs.freedoms; ++i) {
-        found[dofs.row + i] += sign * dofs.directions->col(i).dot(pull);
-      }
+      system_->dofs().add_force(node, sign * pull, found);
     }
   }
   return found;
@@ -177,17 +174,6 @@ Bodies::Work Bodies::work(const VectorXd& q0, const VectorXd& v0, const VectorXd
     sum.heat += h * turned.dot(0.5 * (before.across + after.across));
   }
   return sum;
-}
-
-VectorXd Bodies::free_part(const Eigen::Matrix3Xd& of_nodes) const {
-  VectorXd found = VectorXd::Zero(mass_.rows());
-  for (Eigen::Index n = 0; n < of_nodes.cols(); ++n) {
-    const NodeDofs& dofs = system_->dofs().at(static_cast<int>(n));
-    for (int i = 0; i < dofs.freedoms; ++i) {
-      found[dofs.row + i] = dofs.directions->col(i).dot(of_nodes.col(n));
-    }
-  }
-  return found;
 }
 
 }  // namespace statejump::truss::detail

@@ -44,8 +44,10 @@ class Bodies {
   Work work(const VectorXd& q0, const VectorXd& v0, const VectorXd& q1, const VectorXd& v1,
             const Step& step, double theta) const;
 
-  /// Free displacements of node vectors, and back.
-  VectorXd free_part(const Eigen::Matrix3Xd& of_nodes) const;
+  /// Free displacements of displacements or velocities of the nodes, and back.
+  VectorXd free_part(const Eigen::Matrix3Xd& of_nodes) const {
+    return system_->dofs().dofs_at(of_nodes);
+  }
   Eigen::Matrix3Xd of_nodes(const VectorXd& free) const { return system_->displacements(free); }
 
  private:

@@ -74,10 +74,11 @@ std::vector<Eigen::Triplet<double>> Drives::directions(const VectorXd& q, double
         Vector3d(-std::sin(angle), std::cos(angle), 0.0) / along(drive, q).norm();
     const Bar& link = model.links[index(drive.link)];
     for (const auto& [end, sign] : {std::pair{link.second, 1.0}, std::pair{link.first, -1.0}}) {
-      const Node& node = model.nodes[index(end)];
-      for (int i = 0; i < node.freedoms; ++i) {
-        entries.emplace_back(system_->first_displacement(end) + i, k,
-                             sign * node.free_directions.col(i).dot(across));
+      const NodeDofs& dofs = system_->dofs().at(end);
+      for (int i = 0; i < dofs.freedoms; ++i) {
+        const double along = sign * dofs.directions->col(i).dot(across);
+        dofs.each_term(
+            i, [&](int row, double factor) { entries.emplace_back(row, k, factor * along); });
       }
     }
   }

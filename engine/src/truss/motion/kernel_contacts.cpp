@@ -170,9 +170,7 @@ Vector3d KernelContacts::at(int node, const VectorXd& free) const {
 
 void KernelContacts::push(int node, const Vector3d& by, VectorXd& force) const {
   if (node < 0) return;
-  const Node& part = system_->model().nodes[index(node)];
-  const int row = system_->first_displacement(node);
-  for (int k = 0; k < part.freedoms; ++k) force[row + k] += part.free_directions.col(k).dot(by);
+  system_->dofs().add_force(node, by, force);
 }
 
 void KernelContacts::push(int node, int far, const Vector3d& by, const Vector3d& torque,
@@ -404,19 +402,29 @@ double KernelContacts::stored() const {
   return sum;
 }
 
+/// Inverse of the smallest mass with which a node resists along its free directions [1/kg].
+double KernelContacts::mobility(int node, const VectorXd& inverse_mass) const {
+  const NodeDofs& at = system_->dofs().at(node);
+  double largest = 0.0;
+  for (int i = 0; i < at.freedoms; ++i) {
+    double along = 0.0;
+    at.each_term(i, [&](int row, double factor) { along += factor * factor * inverse_mass[row]; });
+    largest = std::max(largest, along);
+  }
+  return largest;
+}
+
 double KernelContacts::stiffest(const VectorXd& q, const VectorXd& inverse_mass) const {
   double found = 0.0;
   for (const Slider* slider : soft_stops_) {
     const double slide = slider->axis.dot(at(slider->first, q));
     if (slider->soft_stop_force(slide) == 0.0) continue;
-    found = std::max(
-        found, slider->stop_stiffness * inverse_mass[system_->first_displacement(slider->first)]);
+    found = std::max(found, slider->stop_stiffness * mobility(slider->first, inverse_mass));
   }
   for (const KernelContact& contact : all_) {
     double inverse = 0.0;
     for (const int node : {contact.first, contact.second}) {
-      if (node < 0 || system_->model().nodes[index(node)].freedoms == 0) continue;
-      inverse += inverse_mass[system_->first_displacement(node)];
+      inverse += mobility(node, inverse_mass);
     }
     const double stiffness =
         std::max(contact.response.normal_stiffness, contact.response.tangential_stiffness);

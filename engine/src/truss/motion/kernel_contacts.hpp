@@ -113,6 +113,7 @@ class KernelContacts {
   void push_soft_stops(const VectorXd& q, VectorXd& force) const;
   Vector3d at(int node, const VectorXd& free) const;
   void push(int node, const Vector3d& by, VectorXd& force) const;
+  double mobility(int node, const VectorXd& inverse_mass) const;
   /// Pushes a part, and turns the link that carries it.
   void push(int node, int far, const Vector3d& by, const Vector3d& torque, const VectorXd& q,
             VectorXd& force) const;

@@ -20,14 +20,16 @@ Rods::Rods(const System& system, const Inertia& inertia) {
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     const Bar& link = model.links[i];
     Rod rod;
+    rod.first_move = moves_.size();
     for (const auto& [end, sign] : {std::pair{link.second, 1.0}, std::pair{link.first, -1.0}}) {
-      const Node& node = model.nodes[index(end)];
-      for (int k = 0; k < node.freedoms; ++k) {
-        const auto to = static_cast<std::size_t>(rod.count++);
-        rod.rows[to] = system.first_displacement(end) + k;
-        rod.moves[to] = sign * node.free_directions.col(k);
+      const NodeDofs& dofs = system.dofs().at(end);
+      for (int k = 0; k < dofs.freedoms; ++k) {
+        dofs.each_term(k, [&](int row, double factor) {
+          moves_.push_back({row, sign * factor * dofs.directions->col(k)});
+        });
       }
     }
+    rod.last_move = moves_.size();
     rod.drawn = model.nodes[index(link.second)].position - model.nodes[index(link.first)].position;
     rod.drawn_length = rod.drawn.norm();
     rod.stress_free_length = link.stress_free_length;
@@ -40,12 +42,14 @@ Rods::Rods(const System& system, const Inertia& inertia) {
   }
 }
 
-inline Rods::State Rods::state(const Rod& rod, const double* q, const double* v, const Heat& heat) {
+inline Rods::State Rods::state(const Rod& rod, const double* q, const double* v,
+                               const Heat& heat) const {
   Vector3d moved = Vector3d::Zero();
   Vector3d speed = Vector3d::Zero();
-  for (std::size_t k = 0; k < static_cast<std::size_t>(rod.count); ++k) {
-    moved += q[rod.rows[k]] * rod.moves[k];
-    speed += v[rod.rows[k]] * rod.moves[k];
+  for (std::size_t k = rod.first_move; k < rod.last_move; ++k) {
+    const Move& move = moves_[k];
+    moved += q[move.row] * move.by;
+    speed += v[move.row] * move.by;
   }
   State now;
   const Vector3d along = rod.drawn + moved;
@@ -73,8 +77,8 @@ void Rods::add_force(const ConstColumn& q, const ConstColumn& v, const Heat& hea
     if (rod.turning_damping > 0.0) {
       pull += rod.turning_damping / (now.length * now.length) * now.across;
     }
-    for (std::size_t k = 0; k < static_cast<std::size_t>(rod.count); ++k) {
-      force[rod.rows[k]] -= rod.moves[k].dot(pull);
+    for (std::size_t k = rod.first_move; k < rod.last_move; ++k) {
+      force[moves_[k].row] -= moves_[k].by.dot(pull);
     }
   }
 }

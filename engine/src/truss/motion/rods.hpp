@@ -2,7 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "statejump/truss/motion.hpp"
@@ -34,11 +34,14 @@ class Rods {
   Power power(const ConstColumn& q, const ConstColumn& v, const Heat& heat) const;
 
  private:
+  /// A free displacement, and by how much it moves the second end of a rod from its first.
+  struct Move {
+    int row;
+    Vector3d by;
+  };
   struct Rod {
-    /// Free displacements of its ends, and what they move its second end from its first.
-    std::array<int, 6> rows{};
-    std::array<Vector3d, 6> moves;
-    int count = 0;
+    std::size_t first_move;
+    std::size_t last_move;  ///< After the last one.
     Vector3d drawn;
     double drawn_length;
     double stress_free_length;
@@ -50,9 +53,10 @@ class Rods {
   };
   /// A rod as it is.
   struct State;
-  static inline State state(const Rod& rod, const double* q, const double* v, const Heat& heat);
+  inline State state(const Rod& rod, const double* q, const double* v, const Heat& heat) const;
 
   std::vector<Rod> rods_;
+  std::vector<Move> moves_;  // of all rods, one rod after the other
 };
 
 }  // namespace statejump::truss::detail

@@ -58,10 +58,10 @@ SmoothStepper::SmoothStepper(const System& system, const Bodies& bodies, const I
       pair_factors_(radau_.pairs.size()),
       z_(VectorXd::Zero(system.unknowns())) {
   account_.friction = VectorXd::Zero(static_cast<Eigen::Index>(system.model().joints.size()));
-  Eigen::Matrix3Xd loads(3, static_cast<Eigen::Index>(system.model().nodes.size()));
-  Eigen::Index column = 0;
-  for (const Node& node : system.model().nodes) loads.col(column++) = node.load;
-  loads_ = bodies.free_part(loads);
+  loads_ = VectorXd::Zero(system.displacements());
+  int loaded = 0;
+  for (const Node& node : system.model().nodes)
+    system.dofs().add_force(loaded++, node.load, loads_);
   for (const thermal::Program& program : system.model().programs) {
     for (const thermal::Branch& branch : thermal::monotone_branches(program)) {
       corners_.push_back(branch.end_time);

@@ -52,16 +52,18 @@ class NoSupport(StatejumpError):
 
 
 def supported(truss: ResolvedTruss) -> np.ndarray:
-    """Return which nodes (n,) have a support."""
+    """Return which nodes (n,) have a support, or a constraint that acts as one."""
     nodes = truss.nodes
     held, guided = nodes.fixed[:, : truss.dimension].any(axis=1), nodes.guide_normal.any(axis=1)
-    return np.asarray(held | guided)
+    found = np.asarray(held | guided)
+    found[truss.constraints.grounded()] = True
+    return found
 
 
 def _supports(truss: ResolvedTruss) -> None:
     names = truss.nodes.names
     held = supported(truss)
-    pairs = *truss.ends(), truss.joined()
+    pairs = *truss.ends(), truss.joined(), truss.constraints.pairs()
     used = held.copy()
     for ends in pairs:
         used[ends.ravel()] = True

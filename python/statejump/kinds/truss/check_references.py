@@ -12,6 +12,7 @@ import numpy as np
 from statejump.core.errors import ABSENT, MissingKey, NotAllowed
 from statejump.kinds.truss import check_mechanism
 from statejump.kinds.truss.arrays import having, said
+from statejump.kinds.truss.check_constraints import check_constraints
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.elements.protocol import listed_elements
 from statejump.kinds.truss.joints import JOINTS
@@ -43,6 +44,7 @@ def check_references(case: TrussSections) -> None:
         items = listed_elements(case, element)
         for item in where_wrong(items, partial(element.may_be_wrong_references, around=around)):
             element.check_references(item, nodes, links)
+    check_constraints(case, nodes)
     check_mechanism.check(case, links)
     if case.reflector is not None:
         if not case.reflector.nodes:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from statejump.kinds.truss.sections import Node, TrussSections
 
 SECTIONS = ("node", "link", "program", "expansion", *(joint.section for joint in JOINTS),
-            *(element.section for element in ELEMENTS), "drive")
+            *(element.section for element in ELEMENTS), "constraint", "drive")
 
 
 def check(case: TrussSections, resolve: Callable[[], ResolvedTruss]) -> None:

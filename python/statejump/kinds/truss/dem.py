@@ -140,6 +140,8 @@ def check(case: TrussCase) -> None:
         raise StatejumpError(cause=refused, case=case.name)
     for index in np.flatnonzero(truss.bodies.own)[:1]:
         raise refuse(case, f"link {truss.links.names[index]!r} is a body of its own, the DEM has rods")
+    for name in truss.constraints.names[:1]:
+        raise refuse(case, f"constraint {name!r} holds displacements together, the DEM has no constraints")
     mass = lumped_mass_kg(truss)
     nodes = truss.nodes
     for joint in JOINTS:

@@ -97,7 +97,7 @@ def _refuse(truss: ResolvedTruss) -> None:
     of_angles = [(joint.section, truss.joints[joint.section].names) for joint in JOINTS
                  if not isinstance(joint, (AlongAxis, RoundParts))]
     of_elements = [(element.section, truss.elements[element.section].names) for element in ELEMENTS]
-    for section, names in of_elements + of_angles:
+    for section, names in [("constraint", truss.constraints.names), *of_elements, *of_angles]:
         if names:
             raise NotAllowed(section, code="fe_other_parts")
     ends = truss.nodes.position_m[truss.links.nodes]

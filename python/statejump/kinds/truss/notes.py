@@ -23,6 +23,8 @@ def _sentence(truss: ResolvedTruss, note: Mapping[str, Any]) -> str:
         size_m = float(np.ptp(truss.nodes.position_m, axis=0).max())
         return (f"the loads move the structure by {note['value']:.3g} m at the start, {note['value'] / size_m:.1%} of "
                 "its size: the path belongs to that configuration, not to the drawn one")
+    if note["kind"] == "redundant_constraint":
+        return f"{_named(note['joints'])}: follows from supports and the constraints before it; it changes nothing"
     if note["kind"] == "slack":
         return (f"{_named(note['joints'])}: no contact {at}; the element carries no force and keeps its position in "
                 "the play until the clearance closes")

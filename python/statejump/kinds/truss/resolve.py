@@ -10,6 +10,7 @@ import numpy as np
 from statejump.kinds.truss.arrays import (
     References, column, columns, distances, given_or, having, in_space, names, pairs, texts, unit, vectors,
 )
+from statejump.kinds.truss.constraints import resolve_constraints
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.elements.protocol import listed_elements
 from statejump.kinds.truss.expansions import LinkTemperatures, link_temperatures
@@ -55,7 +56,7 @@ def resolve(case: TrussSections) -> ResolvedTruss:
         name=case.name, dimension=dimension, nodes=nodes, links=links, bodies=bodies,
         joints={joint.section: joint.resolve(listed_joints(case, joint), known) for joint in JOINTS},
         elements={element.section: element.resolve(listed_elements(case, element), known) for element in ELEMENTS},
-        drives=resolve_drives(case.drive, known),
+        constraints=resolve_constraints(case.constraint, node_places), drives=resolve_drives(case.drive, known),
         programs=warmed.programs,
         program_names=warmed.program_names,
         reflector=reflector,

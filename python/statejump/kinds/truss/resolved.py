@@ -15,6 +15,7 @@ import numpy as np
 
 from statejump.core.thermal import MemberProgram, Thermal, range_K
 from statejump.kinds.truss.arrays import GROUND
+from statejump.kinds.truss.constraints import Constraints
 from statejump.kinds.truss.mechanism import Bodies, Drives
 
 # Euler's load over that of pinned ends, by how the ends of a link are held: 4.493... is the first root of tan x = x.
@@ -116,6 +117,7 @@ class ResolvedTruss:
     bodies: Bodies  # shapes of the links
     joints: Mapping[str, Any]  # by section: the arrays of every type of joint
     elements: Mapping[str, Any]  # by section: the arrays of every type of element beside links
+    constraints: Constraints
     drives: Drives
     programs: tuple[Thermal | MemberProgram, ...]
     program_names: tuple[str, ...]  # "thermal", those of the file, those of members, "EXPANSION of PROGRAM"

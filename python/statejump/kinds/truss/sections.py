@@ -15,6 +15,7 @@ from statejump.core.expansion import Expansion
 from statejump.core.start import Start
 from statejump.core.temperature_files import Histories
 from statejump.core.thermal import CaseThermal, MemberProgram, Thermal, returns_s
+from statejump.kinds.truss.constraints import AXES, Constraint
 from statejump.kinds.truss.elements import ElementLists
 from statejump.kinds.truss.joints import JointLists
 from statejump.kinds.truss.joints.words import ALUMINIUM, USER
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-AXES = ("x", "y", "z")
 LARGEST_LENGTH_M = 1e6
 MOST_EXPANSION_PER_K = 1e-3
 MOST_DENSITY_KG_PER_M3 = 1e5
@@ -224,6 +224,7 @@ class TrussSections(ElementLists, JointLists, TrussParts):
 
     KIND: ClassVar[str] = "truss"
 
+    constraint: list[Constraint] = tables(Constraint, "sections [[constraint]]")
     drive: list[Drive] = tables(Drive, "sections [[drive]]")
     thermal: TrussThermal = section(TrussThermal, required=True)
     start: Start = section(Start)

@@ -146,6 +146,7 @@ def engine_items(truss: ResolvedTruss) -> dict[str, Any]:
         "nodes": _table(truss.nodes, "position_m", "fixed", "guide_normal", "force_N"),
         "elements": {table: _elements(truss, table) for table in _engine.truss_elements()},
         "joints": {joint.section: _joints(truss, joint) for joint in JOINTS},
+        "constraints": _table(truss.constraints, "nodes", "coefficients"),
         "programs": engine_programs(truss),
     }
 

@@ -71,8 +71,8 @@ def _joints(case: TrussCase) -> list[str]:
 
 
 def _tied(case: TrussCase) -> list[str]:
-    tied = [count(found, noun) for element in ELEMENTS
-            for found, noun in element.counted(listed_elements(case, element)) if found]
+    found = [(items, noun) for element in ELEMENTS for items, noun in element.counted(listed_elements(case, element))]
+    tied = [count(items, noun) for items, noun in (*found, (case.constraint, "constraint")) if items]
     return [f"It has {' and '.join(filter(None, [', '.join(tied[:-1]), tied[-1]]))}."] if tied else []
 
 

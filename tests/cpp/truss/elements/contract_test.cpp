@@ -101,6 +101,44 @@ class ElementContract : public ::testing::Test {
     return sum;
   }
 
+  void check_gradient_of_energy() const {
+    const VectorXd q = displaced();
+    for (std::size_t i = 0; i < elements().size(); ++i) {
+      const VectorXd found = force(i, q);
+      VectorXd gradient(q.size());
+      for (Eigen::Index k = 0; k < q.size(); ++k) {
+        gradient[k] = derivative(
+            [&](double h) {
+              VectorXd there = q;
+              there[k] += h;
+              return Eigen::Matrix<double, 1, 1>(energy(i, there));
+            },
+            step)[0];
+      }
+      const double scale = energy(i, q) + found.norm();
+      EXPECT_LE((found - gradient).norm(), of_differences * scale) << elements()[i].name;
+    }
+  }
+  void check_tangent() const {
+    const VectorXd q = displaced();
+    for (std::size_t i = 0; i < elements().size(); ++i) {
+      const MatrixXd found = tangent(i, q);
+      MatrixXd gradient(q.size(), q.size());
+      for (Eigen::Index k = 0; k < q.size(); ++k) {
+        gradient.col(k) = derivative(
+            [&](double h) {
+              VectorXd there = q;
+              there[k] += h;
+              return force(i, there);
+            },
+            step);
+      }
+      const double scale = force(i, q).norm() + found.norm();
+      EXPECT_LE((found - gradient).norm(), of_differences * scale) << elements()[i].name;
+      EXPECT_LE((found - found.transpose()).norm(), 16.0 * epsilon * found.norm());
+    }
+  }
+
   Model model;
   std::vector<Vector3d> drawn;
   DofMap dofs;
@@ -118,42 +156,38 @@ using AllTypes = Registered<std::make_index_sequence<element_types>>::Types;
 TYPED_TEST_SUITE(ElementContract, AllTypes);
 
 TYPED_TEST(ElementContract, GradientOfTheEnergyIsTheForce) {
-  const VectorXd q = this->displaced();
-  for (std::size_t i = 0; i < this->elements().size(); ++i) {
-    const VectorXd force = this->force(i, q);
-    VectorXd gradient(q.size());
-    for (Eigen::Index k = 0; k < q.size(); ++k) {
-      gradient[k] = derivative(
-          [&](double h) {
-            VectorXd there = q;
-            there[k] += h;
-            return Eigen::Matrix<double, 1, 1>(this->energy(i, there));
-          },
-          step)[0];
-    }
-    const double scale = this->energy(i, q) + force.norm();
-    EXPECT_LE((force - gradient).norm(), of_differences * scale) << this->elements()[i].name;
-  }
+  this->check_gradient_of_energy();
 }
 
 TYPED_TEST(ElementContract, TangentIsTheGradientOfTheForce) {
-  const VectorXd q = this->displaced();
-  for (std::size_t i = 0; i < this->elements().size(); ++i) {
-    const MatrixXd tangent = this->tangent(i, q);
-    MatrixXd gradient(q.size(), q.size());
-    for (Eigen::Index k = 0; k < q.size(); ++k) {
-      gradient.col(k) = derivative(
-          [&](double h) {
-            VectorXd there = q;
-            there[k] += h;
-            return this->force(i, there);
-          },
-          step);
-    }
-    const double scale = this->force(i, q).norm() + tangent.norm();
-    EXPECT_LE((tangent - gradient).norm(), of_differences * scale) << this->elements()[i].name;
-    EXPECT_LE((tangent - tangent.transpose()).norm(), 16.0 * epsilon * tangent.norm());
-  }
+  this->check_tangent();
+}
+
+/// The sample of a type with constraints between its nodes; one gives a displacement of B, one of
+/// A.
+template <class Type>
+Model constrained_sample() {
+  Model model = testing::sample(std::type_identity<Type>());
+  model.constraints = {{"B", {{1, Vector3d(0.9, 0.2, -0.4)}, {2, Vector3d(0.1, 0.3, 0.2)}}},
+                       {"A", {{0, Vector3d(1.0, -0.5, 0.3)}, {1, Vector3d(-0.2, 0.3, 0.4)}}}};
+  return model;
+}
+
+template <class Type>
+class ConstrainedElements : public ElementContract<Type> {
+ protected:
+  ConstrainedElements() : ElementContract<Type>(constrained_sample<Type>()) {}
+};
+
+TYPED_TEST_SUITE(ConstrainedElements, AllTypes);
+
+TYPED_TEST(ConstrainedElements, GradientOfTheEnergyIsTheForce) {
+  ASSERT_EQ(this->dofs.dofs(), 4);
+  this->check_gradient_of_energy();
+}
+
+TYPED_TEST(ConstrainedElements, TangentIsTheGradientOfTheForce) {
+  this->check_tangent();
 }
 
 TYPED_TEST(ElementContract, ThermalRateIsTheRateOfTheForceWhereNothingMoves) {
@@ -315,7 +349,8 @@ TYPED_TEST(ElementContract, WritesTheSameEntriesAtEveryState) {
     return found;
   };
   for (std::size_t i = 0; i < this->elements().size(); ++i) {
-    const auto reference = places(this->evaluated(i, VectorXd::Zero(this->dofs.dofs()), {0.0, 0.0}));
+    const auto reference =
+        places(this->evaluated(i, VectorXd::Zero(this->dofs.dofs()), {0.0, 0.0}));
     // Ten times as far: cables become taut and slack.
     const auto far = places(this->evaluated(i, 10.0 * this->displaced(), this->changes()));
     EXPECT_EQ(reference, far);

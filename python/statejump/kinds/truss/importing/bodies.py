@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rigid bodies and equations between displacements, where they make nodes one or only pass on loads.
+"""Rigid bodies and equations between displacements.
 
-A truss has no rotations and no equations between nodes. A rigid body is taken if bars and springs end at one place of
-it: its nodes there become one node, and forces and masses of its other nodes act there. An equation is taken if it
-holds a node, makes two nodes at one place one, or says how a node moves where no bar ends, whose loads the others then
-carry. Everything else is refused.
+A truss has no rotations. A rigid body is taken if bars and springs end at one place of it: its nodes there become one
+node, and forces and masses of its other nodes act there. Other rigid bodies are refused. An equation becomes a support
+if it holds a node, and one node of two if it makes nodes at one place one. If it says how a node moves where no bar
+ends, the others carry the loads of that node. All other equations become constraints of the case.
 """
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ import numpy as np
 from statejump.kinds.truss.importing.model import Deck, Equation, RigidBody
 from statejump.kinds.truss.importing.moments import Turning
 from statejump.kinds.truss.importing.springs import ALONG
-from statejump.kinds.truss.importing.supports import SAME, held_directions, is_held
+from statejump.kinds.truss.importing.supports import SAME, basis_of, held_directions, is_held
 
 # Nodes nearer than this share of the size of the truss are at one place: decks have eight digits.
 ONE_PLACE = 1e-9
 APART = "it holds nodes together at which bars end and that are apart, which needs rotations"
-UNSOLVED = "an equation between nodes at which bars end: only nodes at one place become one"
+ON_ARM = "an equation of a node on a rigid arm, which needs rotations"
 
 
 def settle_bodies(deck: Deck) -> None:
@@ -34,7 +34,9 @@ def settle_bodies(deck: Deck) -> None:
     bodies = _Bodies(deck, turning)
     bodies.take()
     _take_followers(deck)
+    _follow_joined(deck, bodies.one)
     _take_equations(deck, bodies.near)
+    _hold_loose(deck)
 
 
 def carriers(deck: Deck) -> set[str]:
@@ -146,18 +148,33 @@ def _move(deck: Deck, kept: str, gone: str) -> None:
 
 
 def _take_followers(deck: Deck) -> None:
-    """Leave out means of other nodes that nothing acts on."""
+    """Make means of other nodes equations. Leave out those that nothing acts on."""
     used = carriers(deck) | {term[0] for one in deck.equations for term in one.terms}
-    used |= {moment.node for moment in deck.moments}
-    for line, card, node in deck.followers:
-        if node in used or any(deck.force.get(node, ())) or deck.mass.get(node) or len(held_directions(deck, node)):
-            deck.refuse(card, "it distributes the loads of a node over others", line)
+    turned = {moment.node for moment in deck.moments}
+    for one in deck.followers:
+        node = one.node
+        if not (node in used | turned or any(deck.force.get(node, ())) or deck.mass.get(node) or
+                len(held_directions(deck, node))):
+            deck.leave(one.card, "nothing acts on its node, which follows the others", one.line)
+        elif node in turned or not one.equations:
+            deck.refuse(one.card, "it distributes the loads of a node over others in a way that needs rotations",
+                        one.line)
         else:
-            deck.leave(card, "nothing acts on its node, which follows the others", line)
+            deck.equations += one.equations
+
+
+def _follow_joined(deck: Deck, joined: Mapping[str, str]) -> None:
+    """Write equations of nodes that became one. Refuse those of nodes that a rigid arm replaced."""
+    for one in deck.equations:
+        one.terms[:] = [(joined.get(node, node), way, factor) for node, way, factor in one.terms]
+    lost = [one for one in deck.equations if any(node not in deck.nodes for node, _, _ in one.terms)]
+    for one in lost:
+        deck.refuse(one.card, ON_ARM, one.line, one.card.lstrip("*"))
+    deck.equations[:] = [one for one in deck.equations if not any(one is other for other in lost)]
 
 
 def _take_equations(deck: Deck, near: Callable[[str, str], bool]) -> None:
-    """Take equations as long as one of them can be taken."""
+    """Take equations as long as one of them can be taken; the others become constraints."""
     waiting = [replace(one, terms=[term for term in one.terms if not is_held(deck, *term[:2])])
                for one in deck.equations]
     taken: list[Equation] | None = waiting
@@ -168,7 +185,30 @@ def _take_equations(deck: Deck, near: Callable[[str, str], bool]) -> None:
         gone = {id(one) for one in taken or ()}
         waiting = [one for one in waiting if id(one) not in gone]
     for one in waiting:
-        deck.refuse(one.card, UNSOLVED, one.line, one.card.lstrip("*"))
+        deck.take(one.card, "constraint")
+    deck.equations[:] = waiting
+
+
+def _hold_loose(deck: Deck) -> None:
+    """Hold nodes at which no bar ends in the directions in which no equation moves them: nothing is stiff there."""
+    ends = carriers(deck)
+    moved: dict[str, list[np.ndarray]] = {}
+    for one in deck.equations:
+        for node, way, _ in one.terms:
+            moved.setdefault(node, []).append(way)
+    for node, ways in moved.items():
+        if node in ends:
+            continue
+        basis = basis_of(np.array(ways))
+        rest = np.eye(3) - basis.T @ basis
+        force = np.array(deck.force.get(node, [0.0] * 3))
+        if np.linalg.norm(rest @ force) > SAME * np.linalg.norm(force):
+            line, card = deck.force_line.get(node, (0, "force"))
+            deck.refuse(card, f"a force on node {node} in a direction in which no bar is stiff", line,
+                        f"{card.lstrip('*')}.UNUSED")
+        for direction in basis_of(rest):
+            if not is_held(deck, node, direction):
+                deck.hold(node, [float(part) for part in direction])
 
 
 def _held_by(deck: Deck, equations: list[Equation]) -> list[Equation]:

@@ -85,6 +85,19 @@ class Equation:
 
 
 @dataclass
+class Follower:
+    """A node that follows others.
+
+    :param equations: how it follows; none: that needs rotations
+    """
+
+    line: int
+    card: str
+    node: str
+    equations: list[Equation]
+
+
+@dataclass
 class Spring:
     """A linear spring along the line between two nodes, or between a node and the ground in a direction.
 
@@ -145,7 +158,7 @@ class Deck:
     moments: list[Moment] = field(default_factory=list)
     rigid: list[RigidBody] = field(default_factory=list)
     equations: list[Equation] = field(default_factory=list)
-    followers: list[tuple[int, str, str]] = field(default_factory=list)  # line, card and node that follows others
+    followers: list[Follower] = field(default_factory=list)
     mass: dict[str, float] = field(default_factory=dict)
     mass_line: dict[str, tuple[int, str]] = field(default_factory=dict)
     mass_scale: float = 1.0

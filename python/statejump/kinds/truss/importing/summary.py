@@ -31,6 +31,7 @@ def summary(made: Mapping[str, Any]) -> Shown:
         ("nodes", str(len(positions))),
         ("links", str(len(links))),
         ("springs", str(len(made.get("spring", ())))),
+        *((("constraints", str(len(made["constraint"]))),) if made.get("constraint") else ()),
         ("supported nodes", str(sum("fixed" in node or "guide_normal" in node for node in made["node"]
                                     if node["name"] in positions))),
         ("total mass [kg]", f"{mass:.6g}" if mass else "none"),

@@ -11,13 +11,15 @@ from statejump.core.errors import MissingKey, StatejumpError
 from statejump.kinds.truss.generate.document import Document, finished
 from statejump.kinds.truss.importing import expansions
 from statejump.kinds.truss.importing.joints import matching, put_in
-from statejump.kinds.truss.importing.model import Bar, Deck, Spring
+from statejump.kinds.truss.importing.model import Bar, Deck, Equation, Spring
 from statejump.kinds.truss.importing.supports import supports
 from statejump.kinds.truss.importing.units import Units, in_units
 from statejump.kinds.truss.sections import MOST_DENSITY_KG_PER_M3, MOST_EXPANSION_PER_K
 
 # A coordinate that differs by less, over the size of the truss, is the same: decks have eight digits.
 FLAT = 1e-9
+# A coefficient that is smaller beside the largest one of its equation comes from the rounding of directions.
+ROUNDING = 1e-12
 # Length of a spring to the ground over the size of the truss: a node that moves across it by a thousandth of the size
 # feels a millionth of its force. Positions keep 13 digits.
 FAR, FARTHEST_M = 1e3, 9e5
@@ -50,6 +52,7 @@ def case_document(
     """
     used = {end for bar in deck.bars for end in bar.nodes}
     used |= {end for spring in deck.springs for end in (spring.first, spring.second) if end}
+    used |= {node for one in deck.equations for node, _, _ in one.terms}
     _check_unused(deck, used)
     dimension = _dimension(deck, used)
     more = dict(sections or {})
@@ -71,6 +74,7 @@ def case_document(
     }
     _springs(deck, made, units, dimension)
     _expansions(deck, made)
+    made["constraint"] = [_constraint(f"C{number}", one) for number, one in enumerate(deck.equations, start=1)]
     _leave_impossible(deck, made, heated=any(changes) or "thermal" in more, weighed=any(gravity))
     deck.settle()
     if check_ignored:
@@ -111,7 +115,8 @@ def _dimension(deck: Deck, used: set[str]) -> int:
     heights = [deck.nodes[node][2] for node in used]
     size = max((abs(value) for node in used for value in deck.nodes[node]), default=0.0)
     if (max(heights) - min(heights) > FLAT * size or any(force[2] for force in deck.force.values()) or deck.gravity[2]
-            or any(spring.direction and abs(spring.direction[2]) > FLAT for spring in deck.springs)):
+            or any(spring.direction and abs(spring.direction[2]) > FLAT for spring in deck.springs)
+            or any(abs(way[2]) > FLAT for one in deck.equations for _, way, _ in one.terms)):
         return 3
     deck.leave("z of nodes", "all nodes are in one plane: the truss is planar", 0)
     return 2
@@ -131,6 +136,18 @@ def _springs(deck: Deck, made: Document, units: Units, dimension: int) -> None:
             made["node"].append(_ground(deck, spring, ends[1], units, min(FAR * size, FARTHEST_M), dimension))
         made["spring"].append({"name": name, "nodes": ends, "stiffness_N_per_m": in_units(
             spring.stiffness, units.force_N / units.length_m)})
+
+
+def _constraint(name: str, equation: Equation) -> dict[str, Any]:
+    """Return the constraint of an equation; what rounding of directions leaves of a coefficient is none."""
+    sums: dict[tuple[str, str], float] = {}
+    for node, way, factor in equation.terms:
+        for axis, part in zip("xyz", way):
+            sums[node, axis] = sums.get((node, axis), 0.0) + factor * float(part)
+    largest = max(abs(value) for value in sums.values())
+    terms = {term: value for term, value in sums.items() if abs(value) > ROUNDING * largest}
+    return {"name": name, "nodes": [node_name(node) for node, _ in terms], "directions": [axis for _, axis in terms],
+            "coefficients": list(terms.values())}
 
 
 def _expansions(deck: Deck, made: Document) -> None:

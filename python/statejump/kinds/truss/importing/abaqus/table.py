@@ -12,7 +12,7 @@ SOLVE = "how a program solves"
 DYNAMIC = "acts in dynamics, buckling or modes only; the import takes structure, static loads and temperatures"
 HEAT = "heat transfer: temperatures are those of *TEMPERATURE"
 CONTACT = "contact"
-TIES = "equations between nodes are not solved"
+TIES = "couplings of nodes, surfaces or rotations: only *EQUATION is supported"
 USER = "a routine of the user"
 # Blanks in names of keywords and parameters are written as "_" here, for blanks separate them.
 KEYWORDS: dict[str, Card] = table(
@@ -56,8 +56,8 @@ KEYWORDS: dict[str, Card] = table(
                   "DEPENDENCIES": TABLE}),
     used("MASS", "mass of nodes", "ELSET ALPHA COMPOSITE TYPE", idle={"ALPHA COMPOSITE": DYNAMIC},
          refused={"TYPE": "a mass of one direction"}),
-    used("EQUATION", "support, one node of two at one place, or loads of a node at which no bar ends; else it is "
-         "refused", "INPUT REMOVE", refused={"INPUT": "a file of its own", "REMOVE": TIME}),
+    used("EQUATION", "support, one node of two at one place, loads of a node at which no bar ends, or constraint",
+         "INPUT REMOVE", refused={"INPUT": "a file of its own", "REMOVE": TIME}),
     used("BOUNDARY", "directions without motion", "OP AMPLITUDE FIXED USER SUBMODEL STEP DATASET LOAD_CASE MASS_FLOW "
          "TYPE REGION_TYPE",
          idle={"AMPLITUDE TYPE": "of motions that are not 0, which are not supported", "REGION_TYPE LOAD_CASE": SOLVE},

@@ -25,7 +25,8 @@ READERS: dict[str, Callable[[Reader, Card], None]] = {
     "PMASS": properties.pmass, "CMASS1": masses.cmass, "CMASS2": masses.cmass, "CONM1": elements.conm1,
     "CONM2": elements.conm2, "FORCE": loads.force, "FORCE1": loads.force, "FORCE2": loads.force, "MOMENT": loads.moment,
     "MOMENT1": loads.moment, "MOMENT2": loads.moment, "PLOAD1": loads.pload1, "GRAV": loads.gravity,
-    "RBAR": bodies.rbar, "RBAR1": bodies.rbar, "RBE2": bodies.rbe2, "RBE3": bodies.rbe3, "MPC": bodies.mpc,
+    "RBAR": bodies.rbar, "RBAR1": bodies.rbar, "RBE2": bodies.rbe2, "RBE3": bodies.rbe3, "RROD": bodies.rrod,
+    "MPC": bodies.mpc,
 }
 # Cards that other functions read, all of a kind at once.
 TOGETHER = ("GRID", "GRDSET", "CORD1R", "CORD1C", "CORD1S", "CORD2R", "CORD2C", "CORD2S", "BAROR", "BEAMOR", "PBUSH",

@@ -2,7 +2,10 @@
 """Rigid elements and equations between displacements."""
 from __future__ import annotations
 
-from statejump.kinds.truss.importing.model import Equation, RigidBody
+import numpy as np
+
+from statejump.kinds.truss.importing.model import Equation, Follower, RigidBody
+from statejump.kinds.truss.importing.nastran import means
 from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.reader import Reader
 
@@ -59,7 +62,18 @@ def rbe2(reader: Reader, card: Card) -> None:
 
 def rbe3(reader: Reader, card: Card) -> None:
     """A node that follows the mean of others."""
-    reader.deck.followers.append((card.line, card.name, reader.node(card, 2)))
+    reader.deck.followers.append(Follower(card.line, card.name, reader.node(card, 2), means.equations(reader, card)))
+
+
+def rrod(reader: Reader, card: Card) -> None:
+    """A rod that keeps its length: one equation of the displacements along it."""
+    first, second = (reader.node(card, place) for place in (1, 2))
+    way = np.subtract(reader.deck.nodes[second], reader.deck.nodes[first])
+    length = float(np.linalg.norm(way))
+    if not length:
+        raise reader.fail(card, f"nodes {first} and {second} are at one place")
+    reader.deck.equations.append(
+        Equation(card.line, card.name, [(second, way / length, 1.0), (first, way / length, -1.0)]))
 
 
 def mpc(reader: Reader, card: Card) -> None:

@@ -33,21 +33,25 @@ def hold_singular(reader: Reader) -> None:
         if spring.direction is not None:
             block = np.outer(spring.direction, spring.direction)
             stiffness[spring.first] = stiffness.get(spring.first, np.zeros((3, 3))) + block
+    tied: dict[str, list[np.ndarray]] = {}
+    for equation in deck.equations:
+        for node, way, _ in equation.terms:
+            tied.setdefault(node, []).append(way)
     for node, block in stiffness.items():
         if node in bent:
             continue
         axes = reader.frames[reader.displacement_frame[node]].directions(deck.nodes[node])
         largest = np.einsum("ij,jk,ik->i", axes, block, axes).max()
-        for free in _left_free(deck, node, axes):
+        for free in _left_free(deck, node, axes, tied.get(node, [])):
             if free @ block @ free > EPZERO * largest:
                 continue
             deck.hold(node, [float(part) for part in free])
             deck.take("AUTOSPC", "directions of nodes without stiffness, held as in Nastran")
 
 
-def _left_free(deck: Deck, node: str, axes: np.ndarray) -> Iterator[np.ndarray]:
-    """Yield the directions of axes, without what supports and equations hold of them."""
-    basis = basis_of(held_directions(deck, node))
+def _left_free(deck: Deck, node: str, axes: np.ndarray, tied: list[np.ndarray]) -> Iterator[np.ndarray]:
+    """Yield the directions of axes, without what supports hold and equations couple of them."""
+    basis = basis_of(np.vstack([held_directions(deck, node), *tied]))
     for axis in axes:
         free = axis - basis.T @ (basis @ axis)
         size = np.linalg.norm(free)

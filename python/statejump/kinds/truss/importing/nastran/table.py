@@ -15,7 +15,7 @@ HEAT = "heat transfer: temperatures are those of TEMP and TEMPD"
 OUTPUT = "output"
 THROUGH = "acts through elements that name it, which are not supported"
 SHELL, SOLID = "shells are no part of a truss", "solids are no part of a truss"
-RIGID = "rigid elements need rotations or equations between nodes"
+RIGID = "rigid elements need rotations"
 SUPORTED = "supports that inertia relief or a rigid body need, but of modes and responses, where they hold nothing"
 EXACT = "reduction, exact in statics"
 BODY = "one node of those at one place, where forces and masses of the others act; apart from that it is refused"
@@ -79,10 +79,12 @@ CARDS: dict[str, Card] = table(
     used("RBAR", BODY, "EID GA GB CNA CNB CMA CMB ALPHA", refused={"ALPHA": EXPANDS}),
     used("RBAR1", BODY, "EID GA GB CB ALPHA", refused={"ALPHA": EXPANDS}),
     used("RBE2", BODY, "EID GN CM GMi ALPHA", refused={"ALPHA": EXPANDS}, own=True),
-    used("RBE3", "nothing where nothing acts on its node REFGRID; else it is refused",
+    used("RBE3", "nothing where nothing acts on its node REFGRID; constraints where all Ci are 123; else it is refused",
          "EID - REFGRID REFC WTi Ci Gi,j UM GMi CMi ALPHA", own=True,
-         idle={"REFC WTi Ci Gi,j UM GMi CMi ALPHA": "motion of a node that nothing acts on"}),
-    used("MPC", "support, one node of two at one place, or loads of a node at which no bar ends; else it is refused",
+         idle={"UM GMi CMi ALPHA": "motion of a node that nothing acts on; else the card is refused"}),
+    used("RROD", "constraint along the line of its nodes", "EID GA GB CMA CMB ALPHA",
+         idle={"CMA CMB": "which displacement is dependent: the solver chooses"}, refused={"ALPHA": EXPANDS}),
+    used("MPC", "support, one node of two at one place, loads of a node at which no bar ends, or constraint",
          "SID G1 C1 A1 G2 C2 A2 - - G3 C3 A3 G4 C4 A4 - -", repeats=8, sets="mpc"),
     used("SPCADD", "several sets of supports", "SID Si", repeats=1),
     used("MPCADD", "several sets of equations", "SID Si", repeats=1),
@@ -99,7 +101,7 @@ CARDS: dict[str, Card] = table(
     used("TEMPD", "temperature of links", "SID1 T1 SID2 T2 SID3 T3 SID4 T4"),
     used("PARAM", "WTMASS: factor of all masses; AUTOSPC", "N V1 V2", own=True),
     # Not supported.
-    refused("RBE1 RBE2GS RROD RJOINT RTRPLT RTRPLT1 RSPLINE RSSCON CRIGD1 CRIGD2 CRIGD3 CRIGDR CRBAR CRBE1 CRBE2 CRBE3 "
+    refused("RBE1 RBE2GS RJOINT RTRPLT RTRPLT1 RSPLINE RSSCON CRIGD1 CRIGD2 CRIGD3 CRIGDR CRBAR CRBE1 CRBE2 CRBE3 "
             "CRROD CRTRPLT", RIGID),
     refused("SUPORT", SUPORTED), refused("SUPORT1", SUPORTED, sets="suport"),
     refused("SPCD", "given displacement, but of SOL 108 to 112, which RLOAD or TLOAD multiplies", sets="load"),

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "elimination.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace statejump::truss::detail {
+
+namespace {
+
+/// What two numbers leave of the larger one where they cancel: each is a sum of at most some
+/// thousand products that are rounded by 1e-16.
+constexpr double rounding_fraction = 1e-12;
+/// Factors that differ by less than rounding are equally large.
+constexpr double equal_fraction = 1.0 - rounding_fraction;
+
+using Sum = std::map<int, double>;
+
+/// Adds to a factor. @returns whether the displacement is still in the sum
+bool add(Sum& sum, int place, double value) {
+  const auto [at, is_new] = sum.try_emplace(place, value);
+  if (is_new) return true;
+  const double larger = std::max(std::abs(at->second), std::abs(value));
+  at->second += value;
+  if (std::abs(at->second) > rounding_fraction * larger) return true;
+  sum.erase(at);
+  return false;
+}
+
+/// Elimination while constraints are added.
+class Eliminating {
+ public:
+  explicit Eliminating(const Model& model) : model_(&model) {}
+
+  void add(int which) {
+    const Constraint& constraint = model_->constraints[static_cast<std::size_t>(which)];
+    Sum sum = independent(constraint);
+    if (sum.empty()) {
+      made_.redundant.push_back(which);
+      return;
+    }
+    const int pivot = pivot_of(sum);
+    const double by = -1.0 / sum.at(pivot);
+    sum.erase(pivot);
+    for (auto& [place, factor] : sum) factor *= by;
+    substitute(pivot, sum);
+    for (const auto& [place, factor] : sum) used_in_[place].insert(pivot);
+    made_.sums.emplace(pivot, std::move(sum));
+  }
+  Elimination take() && { return std::move(made_); }
+
+ private:
+  /// The terms of a constraint, dependent displacements replaced by their sums.
+  Sum independent(const Constraint& constraint) const {
+    Sum sum;
+    for (const ConstraintTerm& term : constraint.terms) {
+      const Node& node = model_->nodes[static_cast<std::size_t>(term.node)];
+      for (int i = 0; i < node.freedoms; ++i) {
+        const double factor = node.free_directions.col(i).dot(term.factor);
+        if (!(std::abs(factor) > rounding_fraction * term.factor.norm())) continue;
+        const int place = place_of(term.node, i);
+        const auto dependent = made_.sums.find(place);
+        if (dependent == made_.sums.end()) {
+          detail::add(sum, place, factor);
+          continue;
+        }
+        for (const auto& [of, share] : dependent->second) detail::add(sum, of, factor * share);
+      }
+    }
+    return sum;
+  }
+
+  int pivot_of(const Sum& sum) const {
+    double largest = 0.0;
+    for (const auto& [place, factor] : sum) largest = std::max(largest, std::abs(factor));
+    int pivot = -1;
+    std::size_t fewest = 0;
+    for (const auto& [place, factor] : sum) {
+      if (std::abs(factor) < equal_fraction * largest) continue;
+      const auto found = used_in_.find(place);
+      const std::size_t uses = found == used_in_.end() ? 0 : found->second.size();
+      if (pivot >= 0 && uses >= fewest) continue;
+      pivot = place;
+      fewest = uses;
+    }
+    return pivot;
+  }
+
+  /// Replaces a displacement in the sums of others.
+  void substitute(int place, const Sum& by) {
+    const auto uses = used_in_.find(place);
+    if (uses == used_in_.end()) return;
+    for (const int dependent : uses->second) {
+      Sum& of = made_.sums.at(dependent);
+      const double share = of.at(place);
+      of.erase(place);
+      for (const auto& [other, factor] : by) {
+        if (detail::add(of, other, share * factor)) {
+          used_in_[other].insert(dependent);
+        } else {
+          used_in_[other].erase(dependent);
+        }
+      }
+    }
+    used_in_.erase(place);
+  }
+
+  const Model* model_;
+  Elimination made_;
+  std::map<int, std::set<int>> used_in_;  // dependent places by the places in their sums
+};
+
+}  // namespace
+
+Elimination eliminate(const Model& model) {
+  Eliminating made(model);
+  for (std::size_t i = 0; i < model.constraints.size(); ++i) made.add(static_cast<int>(i));
+  return std::move(made).take();
+}
+
+}  // namespace statejump::truss::detail

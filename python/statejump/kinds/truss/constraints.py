@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Linear constraints between displacements of a truss: multi-point constraints."""
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from statejump.kinds.truss.arrays import names
+from statejump.schema.fields import definition, numbers, texts
+from statejump.schema.item_tables import Places
+from statejump.schema.items import Item
+
+AXES = ("x", "y", "z")
+# Below this fraction of the largest coefficient of its constraint the solver cannot tell one from rounding: it counts
+# what 1e-12 of two coefficients is left where they cancel as none.
+LEAST_COEFFICIENT = 1e-9
+
+
+@definition
+class Constraint(Item):
+    """A sum of displacements that is always zero: a coefficient times the displacement of a node along an axis, for
+    each term. As ``MPC`` of Nastran and ``*EQUATION`` of CalculiX."""
+
+    nodes: list[str] = texts(..., "the node of each term")
+    directions: list[str] = texts(..., "the direction of each term", AXES)
+    coefficients: list[float] = numbers(..., "-", -1e12, 1e12, "the coefficient of each term, not 0")
+
+
+@dataclass(frozen=True)
+class Constraints:
+    """Constraints as arrays."""
+
+    names: Sequence[str]
+    nodes: tuple[np.ndarray, ...]  # (terms,) int of each
+    coefficients: tuple[np.ndarray, ...]  # (terms, 3) of each: along x, y and z
+
+    def pairs(self) -> np.ndarray:
+        """Return pairs of nodes (k, 2) that connect the nodes of each constraint."""
+        found = [np.stack((one, np.roll(one, 1)), axis=1) for one in self.nodes]
+        return np.concatenate(found) if found else np.zeros((0, 2), dtype=np.int32)
+
+    def grounded(self) -> np.ndarray:
+        """Return the nodes of constraints that a translation of the whole truss violates: they hold it as supports
+        do."""
+        found = [nodes for nodes, of in zip(self.nodes, self.coefficients)
+                 if np.linalg.norm(of.sum(axis=0)) > LEAST_COEFFICIENT * np.abs(of).max()]
+        return np.concatenate(found) if found else np.zeros(0, dtype=np.int32)
+
+
+def resolve_constraints(items: Sequence[Constraint], nodes: Places) -> Constraints:
+    """Return the constraints as arrays."""
+    axes = np.eye(3)
+    return Constraints(
+        names(items), tuple(nodes.called(item.nodes).astype(np.int32) for item in items),
+        tuple(np.array(item.coefficients)[:, None] * axes[[AXES.index(axis) for axis in item.directions]]
+              for item in items))
