@@ -33,8 +33,9 @@ def _lengths(truss: ResolvedTruss) -> None:
         for index in np.flatnonzero(distances(truss.nodes.position_m, items.nodes) == 0)[:1]:
             ends = [truss.nodes.names[node] for node in items.nodes[index]]
             place = truss.nodes.position_m[items.nodes[index, 0]][: truss.dimension].tolist()
-            raise StatejumpError(code="zero_length", item=f"{section} {items.names[index]!r}", key="nodes", value=ends,
-                                 nodes=ends, ends=" and ".join(map(repr, ends)), place_m=place, part=section)
+            raise StatejumpError(code="coincident_nodes", item=f"{section} {items.names[index]!r}", key="nodes",
+                                 value=ends, nodes=ends, ends=" and ".join(map(repr, ends)), place_m=place,
+                                 part=section)
 
 
 def _stretches(springs: Springs) -> None:
@@ -97,5 +98,5 @@ def _supports(truss: ResolvedTruss) -> None:
     if not held.any():
         raise NoSupport(code="no_support", loose=loose)
     first = [names[at] for at in firsts[: MOST_LISTED + 1]]
-    raise NoSupport(code="truss_in_parts", nodes=loose[:1], loose=loose, parts=parts, one_of_each=listed(first),
+    raise NoSupport(code="disconnected_truss", nodes=loose[:1], loose=loose, parts=parts, one_of_each=listed(first),
                     loose_node=loose[0])

@@ -20,8 +20,6 @@ from statejump.kinds.truss.importing.supports import SAME, held_directions, is_h
 
 # Nodes nearer than this share of the size of the truss are at one place: decks have eight digits.
 ONE_PLACE = 1e-9
-APART = "it holds nodes together at which bars end and that are apart, which needs rotations"
-UNSOLVED = "an equation between nodes at which bars end: only nodes at one place become one"
 
 
 def settle_bodies(deck: Deck) -> None:
@@ -84,11 +82,11 @@ class _Bodies:
         others = [node for node in body.nodes if node != kept]
         far = [node for node in others if not self.near(kept, node)]
         if set(far) & ends:
-            deck.refuse(body.card, APART, body.line)
+            deck.refuse(body.card, "separate_rigid_nodes", body.line)
         elif any(len(held_directions(deck, node)) for node in far):
-            deck.refuse(body.card, "a support beside the place at which bars end", body.line)
+            deck.refuse(body.card, "support_off_bar_ends", body.line)
         elif any(of.get(kept) != of.get(node) for node in borne for of in (deck.temperature, deck.initial)):
-            deck.refuse(body.card, "its nodes at one place have different temperatures", body.line)
+            deck.refuse(body.card, "unequal_temperatures", body.line)
         else:
             for node in far:
                 self._move_by_lever(body, kept, node)
@@ -151,7 +149,7 @@ def _take_followers(deck: Deck) -> None:
     used |= {moment.node for moment in deck.moments}
     for line, card, node in deck.followers:
         if node in used or any(deck.force.get(node, ())) or deck.mass.get(node) or len(held_directions(deck, node)):
-            deck.refuse(card, "it distributes the loads of a node over others", line)
+            deck.refuse(card, "load_distribution", line)
         else:
             deck.leave(card, "nothing acts on its node, which follows the others", line)
 
@@ -168,7 +166,7 @@ def _take_equations(deck: Deck, near: Callable[[str, str], bool]) -> None:
         gone = {id(one) for one in taken or ()}
         waiting = [one for one in waiting if id(one) not in gone]
     for one in waiting:
-        deck.refuse(one.card, UNSOLVED, one.line, one.card.lstrip("*"))
+        deck.refuse(one.card, "unsolved_equation", one.line, one.card.lstrip("*"))
 
 
 def _held_by(deck: Deck, equations: list[Equation]) -> list[Equation]:
