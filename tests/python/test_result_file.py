@@ -17,6 +17,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
 from conftest import COMMAND, REPOSITORY, sealed
+from failures import failing, failure
 import statejump as sj
 from statejump.core.errors import StatejumpError
 from statejump.core.run import AT_STOP, GROUPS, SEPARATED, SLIP, STICK, Column, Event, Events, Run
@@ -355,65 +356,63 @@ def shorter(path: Path) -> None:
 
 
 MISTAKES = {
-    "no file": (Path.unlink, "no such result file"),
-    "not HDF5": (not_hdf5, "not a result file: it does not begin with 'statejump HDF5'"),
-    "another program's": (foreign, "not a result file: HDF5, but its attribute format is not 'statejump result'"),
+    "no file": (Path.unlink, failure("result_file_not_found")),
+    "not HDF5": (not_hdf5, failure("no_result_format", begin="statejump HDF5")),
+    "another program's": (foreign, failure("result_other_format")),
     "newer": (lambda path: damage(path, lambda file: file.attrs.__setitem__("layout_version", layout.VERSION + 1)),
-              f"layout version {layout.VERSION + 1} is newer than {layout.VERSION}, the newest that this statejump reads"),
-    "newer as a whole": (newer_head, "version 2 is newer than 1, the newest that this statejump reads"),
-    "without checksum": (without_checksum, "not a result file: HDF5, but without the checksum that this version writes; "
-                         "run what made it again"),
-    "cut off": (shorter, "damaged: its checksum is that of other contents: it was cut off or altered; run what made it again"),
-    "altered": (altered, "damaged: its checksum is that of other contents: it was cut off or altered; run what made it again"),
+              failure("layout_newer", found=2, newest=1)),
+    "newer as a whole": (newer_head, failure("layout_newer", found=2, newest=1)),
+    "without checksum": (without_checksum, failure("result_without_checksum")),
+    "cut off": (shorter, failure("result_checksum")),
+    "altered": (altered, failure("result_checksum")),
     "missing group": (lambda path: damage(path, lambda file: file.__delitem__("models/dem/events")),
-                      "/models/dem/events is missing"),
+                      failure("object_missing", object="/models/dem/events")),
     "missing column": (lambda path: damage(path, lambda file: file.__delitem__("models/dem/history/time_s")),
-                       "/models/dem/history/time_s is missing"),
+                       failure("object_missing", object="/models/dem/history/time_s")),
     "missing attribute": (lambda path: damage(path, lambda file: file["case"].attrs.__delitem__("kind")),
-                          "/case@kind is missing"),
+                          failure("object_missing", object="/case")),
     "group for a data set": (
         lambda path: damage(path, lambda file: (file.__delitem__("scene"), file.create_group("scene"))),
-        "damaged: /scene is group, must be text"),
+        failure("damaged")),
     "column too short": (
         lambda path: damage(path, lambda file: (file.__delitem__("models/dem/energy/elastic_energy_J"),
                                                 file.create_dataset("models/dem/energy/elastic_energy_J", data=[1.0]))),
-        "damaged: /models/dem/energy/elastic_energy_J has 1 samples, time_s has 2001"),
+        failure("damaged", object="/models/dem/energy/elastic_energy_J")),
     "numbers that are not in the file": (
         lambda path: damage(path, lambda file: instead(
             file, "models/dem/energy/elastic_energy_J", shape=(10**12,), dtype="f8", chunks=(1000,))),
-        "damaged: /models/dem/energy/elastic_energy_J claims to hold more than the file does"),
+        failure("result_claims_too_much", object="/models/dem/energy/elastic_energy_J")),
     "numbers of another file": (
         lambda path: damage(path, lambda file: instead(
             file, "models/dem/energy/elastic_energy_J", shape=(64,), dtype="u1", external=[("/dev/zero", 0, 64)])),
-        "damaged: /models/dem/energy/elastic_energy_J has its numbers in another file"),
+        failure("result_external", object="/models/dem/energy/elastic_energy_J")),
     "link": (
         lambda path: damage(path, lambda file: (
             file.__delitem__("provenance"), file.__setitem__("provenance", h5py.ExternalLink("other.h5", "/x")))),
-        "damaged: /provenance is a link out of its place"),
+        failure("result_link", object="/provenance")),
     "circle": (
         lambda path: damage(path, lambda file: (file.__delitem__("models/dem/links"),
                                                 file["models/dem"].__setitem__("links", file["models"]))),
-        "damaged: /models/dem/links is neither a group nor a data set of its own"),
+        failure("result_no_object", object="/models/dem/links")),
     "texts for numbers": (
         lambda path: damage(path, lambda file: instead(file, "models/dem/summary/state_jump_m", data=b"x")),
         "damaged: /models/dem/summary/state_jump_m is text, must be float64"),
     "list for a text": (
         lambda path: damage(path, lambda file: file["case"].attrs.__setitem__("title", ["a", "b"])),
-        "damaged: /case@title has shape (2,), must be text"),
+        failure("damaged")),
     "items without names": (
         lambda path: damage(path, lambda file: file["models/dem/contacts/gap_m"].attrs.__setitem__("items", "x")),
-        "damaged: /models/dem/contacts/gap_m has 3 items, which /names does not name"),
+        failure("damaged")),
     "no label": (
         lambda path: damage(path, lambda file: file["models/dem/contacts/state"].__setitem__((0, 0), 9)),
-        "damaged: /models/dem/contacts/state has values without a label"),
+        failure("damaged")),
     "scene of something else": (
         lambda path: damage(path, lambda file: instead(
             file, "scene", data=file["scene"].asstr()[()].replace("links/axial_force_N", "links/force"))),
-        "damaged: /scene: part bar, values: axial_force_N: reduced: {'data': 'links/force', 'item': 'bar'} refers to nothing "
-        "in the file"),
+        failure("scene_damaged")),
     "case that is no object": (
         lambda path: damage(path, lambda file: instead(file, "case/resolved", data="[]")),
-        "damaged: /case/resolved is no object of JSON"),
+        failure("damaged")),
 }
 
 
@@ -425,7 +424,7 @@ def test_bad_file_is_one_sentence(compared, tmp_path: Path, name: str) -> None:
     spoil(path)
     with pytest.raises(StatejumpError) as raised:
         read(path)
-    assert str(raised.value) == f"{path}: {sentence}"
+    assert raised.value == sentence.at(file=path)
     assert raised.value.exit_status == 2
 
 
@@ -433,9 +432,8 @@ def test_bad_file_is_one_sentence(compared, tmp_path: Path, name: str) -> None:
 def test_commands_refuse_bad_files(compared, tmp_path: Path, command: str) -> None:
     (tmp_path / "bad.h5").write_text("no")
     more = [compared("table1") / "comparison.h5"] if command == "compare" else []
-    done = run(tmp_path, command, "bad.h5", *more)
-    assert done.returncode == 2
-    assert done.stderr == "error: bad.h5: not a result file: it does not begin with 'statejump HDF5'\n"
+    done = run(tmp_path, "--json", command, "bad.h5", *more)
+    assert done.returncode == 2 and done.stderr == failure("no_result_format", file="bad.h5", begin="statejump HDF5")
     assert [entry.name for entry in tmp_path.iterdir()] == ["bad.h5"]
 
 
@@ -458,7 +456,7 @@ def test_random_bytes_never_reach_the_library(compared, tmp_path: Path) -> None:
         for place in rng.integers(0, len(whole), count):
             content[place] ^= int(rng.integers(1, 256))
         path.write_bytes(content)
-        with pytest.raises(StatejumpError, match="damaged: its checksum|not a result file|is newer"):
+        with failing("result_checksum"):
             read(path)
     for command in (["info"], ["export", "--to", "out"], ["report"]):
         done = run(tmp_path, *command, path)
@@ -556,19 +554,19 @@ def test_tolerance_decides_the_exit_status(compared, tmp_path: Path) -> None:
 def test_other_cases_are_not_comparable(compared, tmp_path: Path) -> None:
     result = read(compared("table1") / "comparison.h5")
     write(edited_case(result, "joint", "clearance_plus_m", 2e-3), tmp_path / "wide.h5")
-    done = run(tmp_path, "compare", compared("table1") / "comparison.h5", "wide.h5")
-    assert done.returncode == 2
-    assert done.stderr == "error: not comparable: the cases differ: joint.clearance_plus_m = 0.001 and 0.002\n"
-    done = run(tmp_path, "compare", compared("table1") / "comparison.h5", compared("umbrella_damped") / "comparison.h5")
-    assert done.returncode == 2
-    assert done.stderr == "error: not comparable: kinds spring_slider and umbrella\n"
+    done = run(tmp_path, "--json", "compare", compared("table1") / "comparison.h5", "wide.h5")
+    assert done.returncode == 2 and done.stderr == failure(
+        "cases_differ", key_that_differs="joint.clearance_plus_m = 0.001 and 0.002", more="")
+    done = run(tmp_path, "--json", "compare", compared("table1") / "comparison.h5",
+               compared("umbrella_damped") / "comparison.h5")
+    assert done.returncode == 2 and done.stderr == failure("kinds_differ", first="spring_slider", second="umbrella")
     half = {name: replace(column, values=column.values / 2 if name == "time_s" else column.values)
             for name, column in result.models["dem"].history.items()}
-    with pytest.raises(StatejumpError, match="the runs last 0.1 s and 0.05 s"):
+    with failing("durations_differ", first_s=0.09999999999979499, second_s=0.049999999999897494):
         difference(result, replace(result, models={"dem": replace(result.models["dem"], history=half)}))
     for arguments in (["a.h5"], ["a.h5", "b.h5", "c.h5"]):
-        done = run(tmp_path, "compare", *arguments)
-        assert done.returncode == 2 and "takes a case file or two result files" in done.stderr
+        done = run(tmp_path, "--json", "compare", *arguments)
+        assert done.returncode == 2 and done.stderr == failure("wrong_number_of_files", files=len(arguments))
     assert case_differences(result, result) == ([], [])
 
 

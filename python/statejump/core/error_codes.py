@@ -287,7 +287,7 @@ CODES: dict[str, Code] = {
     "yade_not_started": Code(what="YADE cannot be started: {command}"),
     # Results
     "cases_differ": Code(what="not comparable", cause="the cases differ: {key_that_differs}{more}"),
-    "damaged": Code(what="damaged"),
+    "damaged": Code(what="damaged", further=("object",)),
     "drawing_not_finite": Code(what="cannot be drawn", cause="places or forces are not finite, or too large"),
     "durations_differ": Code(what="not comparable", cause="the runs last {first_s:g} s and {second_s:g} s"),
     "result_items_differ": Code(what="not comparable", cause="the files name other links or contacts"),

@@ -54,7 +54,7 @@ def check(file: h5py.File, path: Path) -> None:
 
 
 def _damaged(path: Path, cause: str) -> Unreadable:
-    return Unreadable(code="damaged", cause=cause, file=path)
+    return Unreadable(code="damaged", cause=cause, file=path, object=cause.split()[0])
 
 
 def _check_missing(found: dict[str, Any], models: list[str], path: Path) -> None:

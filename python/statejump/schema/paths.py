@@ -101,7 +101,7 @@ def attribute_of(model: type[Section], path: str) -> attrs.Attribute[Any]:
     known, pattern = keys_of(model), pattern_of(path)
     if pattern not in known:
         now = getattr(model, "MOVED", {}).get(path)
-        renamed = {"code": "key_renamed", "now": now}
+        renamed = {"code": "key_renamed", "now": str(now)}
         raise UnknownKey(path, **(suggestion(path, list(known)) if now is None else renamed))
     return known[pattern]
 
