@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from conftest import REPOSITORY
-from failures import failing, failure
+from failures import failure
 from statejump import _engine, laws
 from statejump.laws import curves
 from statejump.kinds.loading import load_case
@@ -34,7 +34,7 @@ def test_names() -> None:
     }
     for kind, listed in names.items():
         assert [law.name for law in laws.catalogue(kind)] == listed
-    with failing("out_of_range", raised=ValueError, key="kind", value="rolling"):
+    with pytest.raises(ValueError, match="kind = 'rolling', allowed is one of normal, dissipation, friction"):
         _engine.law_names("rolling")
 
 
@@ -84,7 +84,7 @@ def test_parameters_are_those_of_the_cases() -> None:
 
 
 def test_unstatic_law() -> None:
-    with failing("out_of_range", raised=ValueError, key="friction_law", value="mindlyn"):
+    with pytest.raises(ValueError, match="friction_law = 'mindlyn', allowed is one of none, ambrosio, mindlin"):
         laws.law("friction", "mindlyn")
 
 
@@ -140,19 +140,19 @@ def test_stiffness_and_energy_belong_to_the_force(name: str) -> None:
 @pytest.mark.parametrize("name", LINE_CONTACTS)
 def test_depth_beyond_the_range(name: str) -> None:
     limit = _engine.largest_depth_m(name, R1, R2)
-    with failing("out_of_range", raised=ValueError, item=name, key="penetration_depth", value=limit):
+    with pytest.raises(ValueError, match=f"^{name}: penetration_depth = .* m, allowed is below .* m$"):
         table(name, np.array([limit]))
 
 
 def test_wrong_use() -> None:
     assert _engine.largest_depth_m("hertz_internal", R1, R2) == inf
-    with failing("out_of_range", raised=ValueError, key="normal_law", value="herz"):
+    with pytest.raises(ValueError, match="normal_law = 'herz', allowed is one of hertz_paper, "):
         table("herz", np.array([0.0]))
-    with failing("out_of_range", raised=ValueError, key="bearing_radius"):
+    with pytest.raises(ValueError, match="bearing_radius"):
         _engine.normal_force("johnson", [0.0], R2, R1, LENGTH, MODULUS)
-    with failing("out_of_range", raised=ValueError, key="restitution"):
+    with pytest.raises(ValueError, match="restitution"):
         _engine.damping_ratio_s_per_m("flores", 0.0, 0.1)
-    with failing("out_of_range", raised=ValueError, key="penetration_depth", value=np.nan):
+    with pytest.raises(ValueError, match="penetration_depth = nan"):
         table("hertz_internal", np.array([np.nan]))
 
 
@@ -229,5 +229,5 @@ def test_command_with_a_case_without_laws(statejump, cases: Path, tmp_path: Path
     path = cases / "table1.toml"
     outcome = statejump("laws", path)
     assert outcome.status == 2
-    assert outcome.failure == failure("command_not_for_kind", key="case.kind", value="spring_slider", command="laws", kinds="'umbrella'")
+    assert outcome.failure == failure("command_not_for_kind", key="case.kind", value="spring_slider", command="laws")
     assert list(tmp_path.iterdir()) == []

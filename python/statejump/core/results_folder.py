@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from statejump.core import results_owner
 from statejump.core.errors import NotWritten, size
@@ -205,5 +205,5 @@ def _recover(path: Path) -> None:
             _remove(left)
 
 
-def _unusable(path: Path, code: str, remedy: str, cause: str | None = None, **details: str) -> NotWritten:
+def _unusable(path: Path, code: str, remedy: str, cause: str | None = None, **details: Any) -> NotWritten:
     return NotWritten(code=code, file=path, place=f"results folder {path}", cause=cause, remedy=remedy, **details)
