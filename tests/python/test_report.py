@@ -17,10 +17,10 @@ import numpy as np
 import pytest
 
 from conftest import BUILT, COMMAND, REPOSITORY, Outcome, sealed
-from failures import Failure, failing, failure
 
 from statejump.core import units
 from statejump.core.comparison import models
+from statejump.core.errors import StatejumpError
 from statejump.core.run import CONTACT_STATES, Column, Event, Events, Run
 from statejump.kinds import kind, names
 from statejump.report import page, words
@@ -238,20 +238,20 @@ def test_an_event_has_the_error_of_its_samples_and_the_reason_why_one_model_has_
 @pytest.mark.parametrize(
     ("name", "content", "sentence"),
     [
-        ("missing.h5", None, failure("result_file_not_found", file="missing.h5")),
-        ("text.h5", b"time_s\n0\n", failure("no_result_format", file="text.h5", begin="statejump HDF5")),
-        ("empty", "folder", failure("result_file_missing", suffix=".h5")),
+        ("missing.h5", None, "missing.h5: no such result file"),
+        ("text.h5", b"time_s\n0\n", "text.h5: not a result file: it does not begin with 'statejump HDF5'"),
+        ("empty", "folder", "empty: no result file: no *.h5 in this folder; 'statejump compare CASE' writes one"),
     ],
 )
 def test_bad_runs(
-    statejump: Callable[..., Outcome], tmp_path: Path, name: str, content: bytes | str | None, sentence: Failure
+    statejump: Callable[..., Outcome], tmp_path: Path, name: str, content: bytes | str | None, sentence: str
 ) -> None:
     if content == "folder":
         (tmp_path / name).mkdir()
     elif isinstance(content, bytes):
         (tmp_path / name).write_bytes(content)
     done = statejump("report", name)
-    assert (done.status, done.failure) == (2, sentence)
+    assert (done.status, done.errors) == (2, f"error: {sentence}\n")
     assert not list(tmp_path.rglob("*.html"))
 
 
@@ -259,7 +259,7 @@ def test_other_hdf5(statejump: Callable[..., Outcome], tmp_path: Path) -> None:
     with h5py.File(tmp_path / "other.h5", "w") as file:
         file["x"] = 1
     done = statejump("report", "other.h5")
-    assert done.status == 2 and done.failure == failure("result_other_format", file="other.h5")
+    assert done.status == 2 and done.errors.startswith("error: other.h5: not a result file")
 
 
 def test_case_that_this_version_does_not_know(statejump: Callable[..., Outcome], results: Path, tmp_path: Path) -> None:
@@ -276,13 +276,13 @@ def test_case_that_this_version_does_not_know(statejump: Callable[..., Outcome],
 def test_page_that_cannot_be_written(statejump: Callable[..., Outcome], results: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     done = statejump("report", results / "table1", "-o", "file/page.html")
-    assert done.status == 2 and done.failure == failure("write_failed", file="file/page.html")
+    assert done.status == 2 and done.errors.startswith("error: file/page.html: cannot be written")
     assert "Traceback" not in done.errors
 
 
 def test_script_that_was_not_built(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(page, "HERE", tmp_path)
-    with failing("page_script_missing"):
+    with pytest.raises(StatejumpError, match="`make build` builds it"):
         page.render([])
 
 

@@ -14,7 +14,6 @@ from typing import Any
 import pytest
 
 from conftest import COMMAND, results_in
-from failures import Failure, failing, failure
 from statejump import load
 from statejump.cli import streams
 from statejump.core import errors
@@ -43,7 +42,7 @@ def written(folder: Path) -> list[str]:
     (">&-", 0, ""), ("2>&-", 0, ""), (">&- 2>&- <&-", 0, ""), ("2>/dev/full", 0, ""),
     (">/dev/full", 2, "error: standard output cannot be written: No space left on device\n"),
 ])
-def test_run_survives_what_becomes_of_its_output(cases: Path, tmp_path: Path, output: str, status: int, said: Failure) -> None:
+def test_run_survives_what_becomes_of_its_output(cases: Path, tmp_path: Path, output: str, status: int, said: str) -> None:
     done = shell(f"statejump reduced {cases}/table1.toml {output}", tmp_path)
     assert (done.returncode, done.stderr) == (status, said)
     assert written(tmp_path) == FILES
@@ -65,19 +64,20 @@ def test_run_survives_its_environment(cases: Path, tmp_path: Path, environment: 
     assert (done.returncode, done.stderr) == (0, ""), done.stderr
     assert "state jump: 2.38095" in done.stdout and written(tmp_path) == FILES
     refused = shell("statejump reduced 'time 1-2 s ΔT.toml'", tmp_path, **environment)
-    assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "T.toml: " in refused.stderr
+    assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "no such case file" in refused.stderr
 
 
 def test_folder_that_was_deleted(cases: Path, tmp_path: Path) -> None:
-    done = shell(f"mkdir gone && cd gone && rmdir ../gone && statejump --json dem {cases}/table1.toml --results {tmp_path}", tmp_path)
-    assert done.returncode == 2 and done.stderr == failure("working_folder_gone")
+    done = shell(f"mkdir gone && cd gone && rmdir ../gone && statejump dem {cases}/table1.toml --results {tmp_path}", tmp_path)
+    assert done.returncode == 2
+    assert done.stderr == "error: the folder where the command was started does not exist any more\n"
 
 
 def test_home_that_is_not_set(cases: Path, tmp_path: Path, fake_yade) -> None:
     """YADE does not start without; it gets its own temporary folder."""
     yade = fake_yade('test -d "$HOME" || exit 7\ntest "$HOME" = "$TMPDIR" || exit 8\nexit 9\n')
-    done = shell(f"unset HOME; statejump --json dem {cases}/table1.toml", tmp_path, STATEJUMP_YADE=yade)
-    assert done.stderr == failure("yade_ended", status=9)
+    done = shell(f"unset HOME; statejump dem {cases}/table1.toml", tmp_path, STATEJUMP_YADE=yade)
+    assert "YADE ended with status 9" in done.stderr
 
 
 @pytest.mark.parametrize("number, status", [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
@@ -133,8 +133,9 @@ ODD = "a\x1b[31mred\x9b1m\x07\x00"
 
 @pytest.mark.parametrize("key", ["title", "source"])
 def test_control_characters_are_refused_in_texts(cases: Path, key: str) -> None:
-    with failing("control_characters", raised=errors.NotAllowed, key=f"case.{key}") as refused:
+    with pytest.raises(errors.NotAllowed) as refused:
         load(cases / "table1.toml").changed({f"case.{key}": ODD})
+    assert "must have no control characters" in str(refused.value)
     assert printable(str(refused.value)) == str(refused.value)
 
 
