@@ -222,7 +222,7 @@ def read_members(path: str | Path) -> list[Member]:
     """
     path = Path(path)
     if not is_file(path):
-        raise Unreadable(code="no_such_members_file", file=path)
+        raise Unreadable(code="members_file_not_found", file=path)
     with open_table(path) as table:
         try:
             columns = matched(table.header, COLUMNS)
@@ -230,7 +230,7 @@ def read_members(path: str | Path) -> list[Member]:
             raise refused.located(file=path) from None
         missing = [key for key in COLUMNS if key not in {column.key for column in columns}]
         if missing:
-            raise Unreadable(code="member_column_missing", file=path, column=missing[0], needed=", ".join(COLUMNS))
+            raise Unreadable(code="missing_column", file=path, column=missing[0], needed=", ".join(COLUMNS))
         found: list[Member] = []
         for lines, rows in table.blocks():
             if len(found) + len(rows) > MOST_MEMBERS:

@@ -236,6 +236,8 @@ def _codes() -> list[str]:
         sentence = ": ".join(part for part in (what, declared.cause) if part)
         if declared.remedy:
             sentence += ("; " if declared.cause else ": ") + declared.remedy
+        if declared.further:
+            sentence += f" (details: {', '.join(declared.further)})"
         lines.append(f"| `{code}` | {_cell(sentence if declared.text == '' else f'({declared.text})')} |")
     return [*lines, ""]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import io
+import json
 import os
 import random
 import subprocess
@@ -32,7 +33,7 @@ class Outcome:
     status: int
     output: str
     errors: str
-    failure: Any = None  # of a command that ran in this process: the error that ended it
+    failure: Any = None  # what ended it: the error in this process, the JSON of a process that was run with --json
 
 
 def results_in(folder: Path) -> list[str]:
@@ -74,7 +75,8 @@ def statejump_process(tmp_path: Path) -> Callable[..., Outcome]:
         )
         if not _paths.YADE and WITHOUT_YADE in done.stderr:
             pytest.skip("needs YADE")
-        return Outcome(done.returncode, done.stdout, done.stderr)
+        as_json = "--json" in map(str, arguments) and done.returncode != 0 and done.stderr.startswith("{")
+        return Outcome(done.returncode, done.stdout, done.stderr, json.loads(done.stderr) if as_json else None)
 
     return run
 

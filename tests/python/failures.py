@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from statejump import _engine
 from statejump.core.errors import StatejumpError
 
 # Values of details are copied from the input or follow from it in a few operations of double precision, each with an
@@ -18,7 +19,10 @@ ROUNDING = 1e-12
 
 
 class Failure:
-    """Code and fields of an error. Equal to every error, and to its JSON, that has them; further fields are free."""
+    """Code and fields of an error, equal to every error that has them, of the package, of the engine or as JSON.
+
+    Further fields of the error are free.
+    """
 
     def __init__(self, code: str, **fields: Any) -> None:
         self.code, self.fields = code, fields
@@ -38,6 +42,9 @@ class Failure:
             return error.code == self.code and all(
                 _same(wanted, error.details[name] if name in error.details else getattr(error, name, None), name)
                 for name, wanted in self.fields.items())
+        if isinstance(error, _engine.EngineFailure):
+            return error.kind == self.code and all(
+                _same(wanted, getattr(error, name, None), name) for name, wanted in self.fields.items())
         if isinstance(error, Mapping):
             known = {**error, **error.get("details", {})}
             return known["code"] == self.code and all(
@@ -71,11 +78,11 @@ def _same(wanted: Any, found: Any, name: str = "") -> bool:
 
 
 @contextmanager
-def failing(code: str, kind: type[BaseException] = StatejumpError, **fields: Any) -> Iterator[pytest.ExceptionInfo[Any]]:
+def failing(code: str, raised: type[BaseException] = StatejumpError, **fields: Any) -> Iterator[pytest.ExceptionInfo[Any]]:
     """Inside of this an error with this code and these fields is raised.
 
-    :param kind: class of the error
+    :param raised: class of the error
     """
-    with pytest.raises(kind) as caught:
+    with pytest.raises(raised) as caught:
         yield caught
     assert caught.value == failure(code, **fields)

@@ -49,7 +49,7 @@ MISTAKES = {
     "expansion closes the clearance": (("[thermal]", "pad_thermal_expansion_per_K = 5e-4\n[thermal]"),
                                        failure("clearance_closes", key="joint.clearance_minus_m", value=0.001)),
     "table without values": (('"half_sine"', '"table"'),
-                             failure("beside_table_shape", key="thermal.temperature_change_max_K", in_section="thermal.")),
+                             failure("conflicting_key", key="thermal.temperature_change_max_K", other="thermal.shape = 'table'")),
     "not TOML": (("[joint]", "[joint"), failure("not_toml_at_line")),
 }
 
@@ -69,7 +69,7 @@ def test_mistake_in_the_case_file(statejump, edited, tmp_path: Path, mistake: st
 
 def test_missing_file(statejump) -> None:
     outcome = statejump("compare", "nowhere.toml")
-    assert (outcome.status, outcome.failure) == (2, failure("no_such_case_file", file="nowhere.toml", of="case"))
+    assert (outcome.status, outcome.failure) == (2, failure("case_file_not_found", file="nowhere.toml", of="case"))
 
 
 def test_cases_that_come_with_the_program_are_found_from_everywhere(statejump, tmp_path: Path) -> None:
@@ -78,7 +78,7 @@ def test_cases_that_come_with_the_program_are_found_from_everywhere(statejump, t
     (tmp_path / "cases").mkdir()
     (tmp_path / "cases" / "table1.toml").write_text("wrong")
     assert statejump("reduced", "cases/table1.toml").failure == failure("not_toml_at_line", file="cases/table1.toml")
-    assert statejump("reduced", "cases/table2.toml").failure == failure("no_such_case_file", file="cases/table2.toml", of="case")
+    assert statejump("reduced", "cases/table2.toml").failure == failure("case_file_not_found", file="cases/table2.toml", of="case")
 
 
 def test_unwritable_results(statejump, cases: Path, tmp_path: Path) -> None:
@@ -97,7 +97,7 @@ def test_unknown_option_and_command(statejump) -> None:
 
 def test_yade_missing(yade, statejump, cases: Path) -> None:
     outcome = statejump("--json", "dem", cases / "table1.toml", STATEJUMP_YADE="no-such-yade")
-    assert (outcome.status, outcome.errors) == (2, failure("no_yade", command="no-such-yade"))
+    assert (outcome.status, outcome.errors) == (2, failure("yade_missing", command="no-such-yade"))
 
 
 HALF = "echo 'STATEJUMP {\"progress\": 0.5}'\n"  # what the script in YADE says half-way

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from failures import failure
 import statejump as sj
 from statejump import kinds
 from statejump.control import capabilities as design
@@ -44,7 +45,7 @@ def test_a_kind_without_a_capability_is_refused_by_name(cases: Path) -> None:
     with pytest.raises(NotAllowed) as refused:
         kinds.require(case, design.Creaking)
     assert refused.value.key == "case.kind" and refused.value.value == "statics"
-    assert "'statejump truss creak' is for 'truss'" in str(refused.value)
+    assert refused.value == failure("command_not_for_kind", command="truss creak")
 
 
 def test_a_case_is_one_object(cases: Path) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from failures import failure
 import statejump as sj
 from statejump.kinds.truss.importing import Options, case_document, read
 
@@ -49,11 +50,11 @@ def moved(document: dict[str, Any], node: str = "N2", axis: int = 0) -> float:
     return float(run.history["displacement_m"].values[at, names.index(node), axis])
 
 
-def refusal(folder: Path, text: str, **options: Any) -> str:
-    """Return why a deck is refused."""
+def refusal(folder: Path, text: str, **options: Any) -> sj.StatejumpError:
+    """Return the error of a deck."""
     with pytest.raises(sj.StatejumpError) as refused:
         made(folder, text, **options)
-    return str(refused.value).removeprefix(f"{folder / 'deck.inp'}: ")
+    return refused.value
 
 
 NODES = MODEL[:MODEL.index("*ELEMENT")]
@@ -85,17 +86,17 @@ def test_parameters_have_their_numbers(tmp_path: Path) -> None:
     same = made(tmp_path, text + LOAD.replace("7000.", "< load >"))
     assert same == made(tmp_path, MODEL + LOAD)
     assert refusal(tmp_path, text.replace("7.e10  #", "7 * 10  #") + LOAD) == (
-        "line 2: *PARAMETER: '7 * 10' is not a finite number; write numbers in place of expressions")
-    assert "'<mass>' is not a finite number" in refusal(tmp_path, text.replace("2700.", "<mass>") + LOAD)
+        failure("deck_bad_number", line=2, card="*PARAMETER", text="'7 * 10'"))
+    assert failure("deck_bad_number", text="'<mass>'") == refusal(tmp_path, text.replace("2700.", "<mass>") + LOAD)
 
 
 def test_included_files_stay_in_the_folder(tmp_path: Path) -> None:
     (tmp_path / "nodes.msh").write_text(NODES)
     text = (MODEL + LOAD).replace(NODES, "*INCLUDE, INPUT=nodes.msh\n")
     assert moved(made(tmp_path, text)) == pytest.approx(1e-3, rel=1e-12)
-    assert "is outside the deck's folder" in refusal(tmp_path, text.replace("nodes.msh", "../nodes.msh"))
+    assert failure("include_outside", included="'../nodes.msh'") == refusal(tmp_path, text.replace("nodes.msh", "../nodes.msh"))
     (tmp_path / "nodes.msh").write_text("*INCLUDE, INPUT=nodes.msh\n")
-    assert "more than 10 files include each other" in refusal(tmp_path, text)
+    assert failure("includes_too_deep", deepest=10) == refusal(tmp_path, text)
 
 
 MOVED = {  # text behind the model, and the displacement
@@ -141,13 +142,13 @@ def test_areas_of_beam_sections(name: str, tmp_path: Path) -> None:
         "1.e-4\n*B", f"{sizes}\n0., 1., 0.\n*B")
     link = made(tmp_path, text, beams_as_bars=True, **options)["link"][0]
     assert link["cross_section_area_m2"] == pytest.approx(area, rel=1e-12)
-    assert "the structure needs bending" in refusal(tmp_path, text, **options)
+    assert failure("deck_not_supported", reason="bending") == refusal(tmp_path, text, **options)
 
 
 def test_one_length_of_a_circle_is_asked_for(tmp_path: Path) -> None:
     text = MODEL.replace("T3D2", "B31").replace("*SOLID SECTION,", "*BEAM SECTION, SECTION=CIRC,")
-    said = refusal(tmp_path, text, beams_as_bars=True)
-    assert said.startswith("line 13: *BEAM SECTION, SECTION=CIRC is not supported") and "--circ radius|diameter" in said
+    assert refusal(tmp_path, text, beams_as_bars=True) == failure(
+        "deck_not_supported", line=13, card="*BEAM SECTION, SECTION=CIRC", reason="radius_or_diameter")
 
 
 def test_a_general_section_has_its_material(tmp_path: Path) -> None:
@@ -238,32 +239,31 @@ def test_nodes_in_cylindrical_coordinates_of_a_system(tmp_path: Path) -> None:
     text = MODEL.replace("*NODE, NSET=NALL\n", "*SYSTEM\n0., 0., 1., 0., 1., 1.\n*NODE, SYSTEM=C\n3, 2., 90., 0.\n*SYSTEM\n*NODE\n")
     (tmp_path / "deck.inp").write_text(text)
     assert read(tmp_path / "deck.inp").nodes["3"] == pytest.approx((-2, 0, 1), abs=1e-15)
-    assert "*NODE, SYSTEM is not supported" in refusal(tmp_path, text.replace("SYSTEM=C", "SYSTEM=S"))
+    assert failure("deck_not_supported", card="*NODE, SYSTEM", reason="spherical_coordinates") == refusal(tmp_path, text.replace("SYSTEM=C", "SYSTEM=S"))
 
 
 REFUSED = {
-    "tie": ("*BOUNDARY", "*TIE, NAME=T\nA, B\n*BOUNDARY", "*TIE is not supported"),
-    "solid": ("*MATERIAL", "*ELEMENT, TYPE=C3D8\n5, 1,2,1,2,1,2,1,2\n*MATERIAL", "*ELEMENT, TYPE=C3D8 is not supported: it is no "
-              "straight bar; --ignore C3D8 leaves it out"),
-    "unknown": ("*BOUNDARY", "*NEW THING\n*BOUNDARY", "*NEW THING is not supported: the keyword is unknown; --ignore 'NEW THING'"),
-    "parameter": ("*CLOAD", "*CLOAD, FOLLOWER", "*CLOAD, FOLLOWER is not supported: a load that turns; --ignore CLOAD.FOLLOWER"),
-    "unknown parameter": ("*CLOAD", "*CLOAD, NEW=1", "*CLOAD, NEW is not supported: the parameter is unknown"),
-    "moment": ("2, 1, 7000.", "2, 7, 7000.", "*CLOAD is not supported: it is no force"),
-    "given displacement": ("2, 2, 3", "2, 2, 3, .1", "*BOUNDARY is not supported: a given displacement"),
-    "pressure": ("*CLOAD\n2, 1, 7000.", "*DLOAD\nBARS, P1, 1.", "*DLOAD, P1 is not supported"),
+    "tie": ("*BOUNDARY", "*TIE, NAME=T\nA, B\n*BOUNDARY", failure("deck_not_supported", card="*TIE", reason="no_truss")),
+    "solid": ("*MATERIAL", "*ELEMENT, TYPE=C3D8\n5, 1,2,1,2,1,2,1,2\n*MATERIAL", failure("deck_not_supported", card="*ELEMENT, TYPE=C3D8", reason="not_a_straight_bar")),
+    "unknown": ("*BOUNDARY", "*NEW THING\n*BOUNDARY", failure("deck_not_supported", card="*NEW THING", reason="unknown_card")),
+    "parameter": ("*CLOAD", "*CLOAD, FOLLOWER", failure("deck_not_supported", card="*CLOAD, FOLLOWER", reason="no_truss")),
+    "unknown parameter": ("*CLOAD", "*CLOAD, NEW=1", failure("deck_not_supported", card="*CLOAD, NEW", reason="unknown_parameter")),
+    "moment": ("2, 1, 7000.", "2, 7, 7000.", failure("deck_not_supported", card="*CLOAD", reason="unsupported_direction")),
+    "given displacement": ("2, 2, 3", "2, 2, 3, .1", failure("deck_not_supported", card="*BOUNDARY", reason="prescribed_displacement")),
+    "pressure": ("*CLOAD\n2, 1, 7000.", "*DLOAD\nBARS, P1, 1.", failure("deck_not_supported", card="*DLOAD, P1", reason="distributed_load")),
     "coefficients of temperature and direction": ("*EXPANSION\n2.3e-5", "*EXPANSION, TYPE=ORTHO\n2e-5, 2e-5, 2e-5, 0.\n3e-5, "
-                                                  "3e-5, 3e-5, 100.", "*EXPANSION is not supported: its numbers depend on"),
-    "modulus of a temperature": ("7.e10, 0.3", "7.e10, 0.3, 0.\n6.e10, .3, 100.", "*ELASTIC is not supported: its numbers depend"),
-    "directions": ("*EXPANSION\n2.3e-5", "*EXPANSION, TYPE=ORTHO\n2.3e-5, 2e-5, 2e-5", "differs from direction to direction"),
-    "modulus of directions": ("*ELASTIC\n", "*ELASTIC, TYPE=ORTHO\n", "*ELASTIC, TYPE is not supported: it is not isotropic"),
-    "gradient": ("*CLOAD\n2, 1, 7000.", "*TEMPERATURE\n2, 20., 5.", "*TEMPERATURE is not supported: temperatures that differ"),
+                                                  "3e-5, 3e-5, 100.", failure("deck_not_supported", card="*EXPANSION", reason="temperature_dependent")),
+    "modulus of a temperature": ("7.e10, 0.3", "7.e10, 0.3, 0.\n6.e10, .3, 100.", failure("deck_not_supported", card="*ELASTIC", reason="temperature_dependent")),
+    "directions": ("*EXPANSION\n2.3e-5", "*EXPANSION, TYPE=ORTHO\n2.3e-5, 2e-5, 2e-5", failure("deck_not_supported", card="*EXPANSION, TYPE", reason="anisotropic")),
+    "modulus of directions": ("*ELASTIC\n", "*ELASTIC, TYPE=ORTHO\n", failure("deck_not_supported", card="*ELASTIC, TYPE", reason="anisotropic")),
+    "gradient": ("*CLOAD\n2, 1, 7000.", "*TEMPERATURE\n2, 20., 5.", failure("deck_not_supported", card="*TEMPERATURE", reason="temperature_gradient")),
     "amplitude of dynamics": ("*STATIC\n*CLOAD", "*AMPLITUDE, NAME=A\n0., 0., 1., 1.\n*DYNAMIC\n*CLOAD, AMPLITUDE=A",
-                              "*CLOAD, AMPLITUDE is not supported"),
+                              failure("deck_not_supported", card="*CLOAD, AMPLITUDE", reason="amplitude_at_end_unknown")),
     "gravity on a part": ("*STATIC\n*CLOAD\n2, 1, 7000.", "*STATIC\n*ELEMENT, TYPE=MASS, ELSET=M\n9, 2\n*MASS, ELSET=M\n5.\n*DLOAD\n"
-                          "BARS, GRAV, 9.81, 1., 0., 0.", "it acts on a part of the structure only"),
-    "load elsewhere": ("2, 1, 7000.", "3, 1, 7000.\n*NODE\n3, 9., 9., 9.", "*CLOAD is not supported: a force on node 3, where no"),
+                          "BARS, GRAV, 9.81, 1., 0., 0.", failure("deck_not_supported", card="*DLOAD, GRAV", reason="gravity_on_part")),
+    "load elsewhere": ("2, 1, 7000.", "3, 1, 7000.\n*NODE\n3, 9., 9., 9.", failure("deck_not_supported", card="*CLOAD", reason="no_bar_at_node")),
     "spring across": ("*BOUNDARY", "*NODE\n3, 1., 1., 0.\n*ELEMENT, TYPE=SPRING2, ELSET=S\n9, 2, 3\n*SPRING, ELSET=S\n1, 1\n5.\n*BOUNDARY",
-                      "*SPRING is not supported: it acts across"),
+                      failure("deck_not_supported", card="*SPRING", reason="lateral_stiffness")),
 }
 
 
@@ -271,7 +271,7 @@ REFUSED = {
 def test_what_matters_and_is_not_supported_is_named(name: str, tmp_path: Path) -> None:
     old, new, sentence = REFUSED[name]
     assert old in MODEL + LOAD
-    assert sentence in refusal(tmp_path, (MODEL + LOAD).replace(old, new))
+    assert sentence == refusal(tmp_path, (MODEL + LOAD).replace(old, new))
 
 
 @pytest.mark.parametrize("peak", [120.0, 60.0, -40.0])

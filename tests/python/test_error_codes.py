@@ -13,6 +13,7 @@ import pytest
 from conftest import REPOSITORY
 from statejump.core import errors
 from statejump.core.error_codes import CODES, Code
+from statejump.kinds.truss.importing.reasons import REASONS
 
 PACKAGE = REPOSITORY / "python" / "statejump"
 TREES = [(path, ast.parse(path.read_text(encoding="utf-8"))) for path in sorted(PACKAGE.rglob("*.py"))]
@@ -22,9 +23,20 @@ OWN = {"what", "code", "file", "place", "case", "item", "key", "value", "allowed
 
 
 def names_in(declared: Code) -> set[str]:
-    """Return the details that the sentences of a code name."""
-    return {name for text in (declared.what, declared.beside, declared.cause, declared.remedy)
-            for _, name, _, _ in string.Formatter().parse(text) if name is not None}
+    """Return the details of a code: those that its sentences name, and further ones."""
+    return {*declared.further, *(
+        name for text in (declared.what, declared.beside, declared.cause, declared.remedy)
+        for _, name, _, _ in string.Formatter().parse(text) if name is not None)}
+
+
+def called(node: ast.Call) -> str:
+    """Return the name of the function that is called, without its module or object."""
+    return str(getattr(node.func, "id", None) or getattr(node.func, "attr", ""))
+
+
+def is_refusal_of_deck(node: ast.Call) -> bool:
+    """Whether a call is one of ``Deck.refuse``, which takes a reason."""
+    return isinstance(node.func, ast.Attribute) and node.func.attr == "refuse"
 
 
 def given() -> Iterator[tuple[str, str, set[str], bool]]:
@@ -38,6 +50,8 @@ def given() -> Iterator[tuple[str, str, set[str], bool]]:
                          for key, value in zip(node.keys, node.values)]
             else:
                 continue
+            if isinstance(node, ast.Call) and called(node) in HELPERS and not is_refusal_of_deck(node):
+                pairs += [("code", node.args[1])]
             for name, value in pairs:
                 if name == "code":
                     found = [one.value for one in ast.walk(value) if isinstance(one, ast.Constant)]
@@ -47,9 +61,13 @@ def given() -> Iterator[tuple[str, str, set[str], bool]]:
                                    {str(name) for name, _ in pairs} - OWN - {"None"}, None in dict(pairs) or isinstance(node, ast.Dict))
 
 
-GIVEN = list(given())
 CLASSES = {name for name, found in vars(errors).items()
            if isinstance(found, type) and issubclass(found, errors.StatejumpError)}
+# Functions that make an error. Their second argument is its code.
+HELPERS = {"fail", "refuse", "_unusable"}
+# Each of them has one code, whatever it is raised for.
+OF_ONE_CODE = {"MissingKey", "TolerancesMissed", "Interrupted"}
+GIVEN = list(given())
 
 
 def test_every_error_has_a_declared_code_and_its_details() -> None:
@@ -60,6 +78,25 @@ def test_every_error_has_a_declared_code_and_its_details() -> None:
         if code not in CODES or not (details <= names_in(CODES[code]) if open_ended else names_in(CODES[code]) == details)
     ]
     assert not wrong, "\n".join(wrong)
+
+
+def test_every_error_is_raised_with_a_code() -> None:
+    without = [
+        f"{path.relative_to(PACKAGE)}:{node.lineno}" for path, tree in TREES for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and called(node) in CLASSES - OF_ONE_CODE
+        and not {"code", None} & {word.arg for word in node.keywords}
+    ]
+    assert not without, without
+
+
+def test_reasons_of_decks_are_declared_and_used() -> None:
+    given_reasons = {
+        one.value for path, tree in TREES if "importing" in path.parts for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and is_refusal_of_deck(node) and len(node.args) > 1
+        for one in ast.walk(node.args[1]) if isinstance(one, ast.Constant) and isinstance(one.value, str)
+        and one.value.isidentifier()
+    }
+    assert given_reasons - set(REASONS) == set() and set(REASONS) - given_reasons <= {"unknown_parameter"}
 
 
 def test_only_errors_with_a_code_have_details() -> None:

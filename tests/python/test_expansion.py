@@ -8,6 +8,7 @@ from typing import Any, Callable
 import numpy as np
 import pytest
 from conftest import Outcome
+from failures import Failure, failure
 from scipy.integrate import quad
 
 import statejump as sj
@@ -167,37 +168,37 @@ def put(section: str, **values: Any) -> Callable[[dict[str, Any]], None]:
     return change
 
 
-WRONG: dict[str, tuple[Callable[[dict[str, Any]], None], str]] = {
+WRONG: dict[str, tuple[Callable[[dict[str, Any]], None], Failure]] = {
     "both": (put("link", thermal_expansion_per_K=2e-5),
-             "link 'AB': thermal_expansion_per_K = 2e-05 is not allowed: only without expansion"),
+             failure("conflicting_key", item="link 'AB'", key="thermal_expansion_per_K", value=2e-05, other="expansion")),
     "neither": (lambda data: data["link"][0].pop("expansion"),
-                "link 'AB': thermal_expansion_per_K is missing: a number [1/K], or an expansion, is needed"),
-    "unknown": (put("link", expansion="aloy"), "there is no expansion 'aloy'; did you mean 'alloy'?"),
+                failure("expansion_of_link_missing", item="link 'AB'", key="thermal_expansion_per_K")),
+    "unknown": (put("link", expansion="aloy"), failure("misspelt_reference", item="link 'AB'", key="expansion", value="aloy", meant="alloy", what_it_is="expansion", name="aloy")),
     "rows fall": (put("expansion", temperature_change_K=[150.0, 40.0, 0.0, -120.0]),
-                  "must be at least two temperature changes [K] that rise"),
-    "without 0": (put("expansion", temperature_change_K=[10.0, 20.0, 40.0, 150.0]), "0 among or between them"),
-    "too few": (put("expansion", thermal_expansion_per_K=[1e-6]), "must be 4 coefficients [1/K]"),
-    "all zero": (put("expansion", thermal_expansion_per_K=4 * [0.0]), "not all of them 0"),
+                  failure("expansion_temperatures", item="expansion 'alloy'", key="temperature_change_K")),
+    "without 0": (put("expansion", temperature_change_K=[10.0, 20.0, 40.0, 150.0]), failure("expansion_temperatures", item="expansion 'alloy'", key="temperature_change_K")),
+    "too few": (put("expansion", thermal_expansion_per_K=[1e-6]), failure("expansion_coefficients", item="expansion 'alloy'", key="thermal_expansion_per_K", value=[1e-06], rows=4)),
+    "all zero": (put("expansion", thermal_expansion_per_K=4 * [0.0]), failure("expansion_coefficients", item="expansion 'alloy'", key="thermal_expansion_per_K", rows=4)),
     "program beyond the table": (put("thermal", temperature_change_max_K=151.0),
-                                 "it must hold the temperature change of 151 K that the program reaches"),
-    "sine": (put("thermal", shape="half_sine"), "thermal.shape = 'half_sine' is not allowed: must be 'triangle' or 'table'"),
+                                 failure("expansion_too_narrow", reached_K=151.0)),
+    "sine": (put("thermal", shape="half_sine"), failure("expansion_shape", item="expansion 'alloy', link 'AB'", key="thermal.shape", value="half_sine")),
 }
 
 
-WRONG_BLOCK: dict[str, tuple[Callable[[dict[str, Any]], None], str]] = {
+WRONG_BLOCK: dict[str, tuple[Callable[[dict[str, Any]], None], Failure]] = {
     "both": (put("link", thermal_expansion_per_K=2e-5),
-             "link.thermal_expansion_per_K = 2e-05 is not allowed: only without [expansion]"),
+             failure("conflicting_key", key="link.thermal_expansion_per_K", other="[expansion]")),
     "neither": (lambda data: data.pop("expansion"),
-                "link.thermal_expansion_per_K is missing: a number [1/K], or a section [expansion], is needed"),
+                failure("expansion_missing", key="link.thermal_expansion_per_K")),
     "rows fall": (put("expansion", temperature_change_K=[150.0, 40.0, 0.0, -120.0]),
-                  "expansion.temperature_change_K = [150.0, 40.0, 0.0, -120.0] is not allowed: must be at least two"),
+                  failure("expansion_temperatures", key="expansion.temperature_change_K", value=[150.0, 40.0, 0.0, -120.0])),
     "program beyond the table": (put("thermal", temperature_change_max_K=151.0),
-                                 "expansion.temperature_change_K = [-120.0, 0.0, 40.0, 150.0] is not allowed: it must hold"),
-    "sine": (put("thermal", shape="sine"), "thermal.shape = 'sine' is not allowed: must be 'triangle' or 'table'"),
+                                 failure("expansion_too_narrow", key="expansion.temperature_change_K", value=[-120.0, 0.0, 40.0, 150.0], reached_K=151.0)),
+    "sine": (put("thermal", shape="sine"), failure("expansion_shape", key="thermal.shape", value="sine")),
     "no length left": (lambda data: (put("thermal", temperature_change_max_K=-1500.0)(data),
                                      put("expansion", temperature_change_K=[-2000.0, 0.0],
                                          thermal_expansion_per_K=[1e-3, 1e-3])(data)) and None,
-                       "the link has no length left at a temperature change of -1500 K"),
+                       failure("link_without_length", key="expansion.thermal_expansion_per_K", value=[0.001, 0.001], at_K=-1500.0)),
 }
 
 
@@ -206,7 +207,7 @@ WRONG_BLOCK: dict[str, tuple[Callable[[dict[str, Any]], None], str]] = {
     *(pytest.param(bar, *wrong, id=f"bar, {what}") for what, wrong in WRONG.items()),
 ])
 def test_what_is_wrong_is_one_sentence(
-    made: Callable[[], dict[str, Any]], change: Callable[[dict[str, Any]], None], sentence: str, tmp_path: Any,
+    made: Callable[[], dict[str, Any]], change: Callable[[dict[str, Any]], None], sentence: Failure, tmp_path: Any,
     statejump: Callable[..., Outcome],
 ) -> None:
     data = deepcopy(made())
@@ -214,4 +215,4 @@ def test_what_is_wrong_is_one_sentence(
     (tmp_path / "case.toml").write_text(to_toml(data), encoding="utf-8")
     told = statejump("reduced", tmp_path / "case.toml")
     assert told.status == 2 and told.errors.count("\n") == 1
-    assert sentence in told.errors
+    assert told.failure == sentence

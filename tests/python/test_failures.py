@@ -135,7 +135,7 @@ def test_usage(statejump) -> None:
     for arguments in (("frobnicate",), ("reduced",), ("reduced", "--frob", "a.toml")):
         outcome = statejump("--json", *arguments)
         failure = json.loads(outcome.errors)
-        assert (outcome.status, failure["kind"], failure["exit_status"]) == (2, "usage", 2)
+        assert (outcome.status, failure["kind"], failure["code"], failure["exit_status"]) == (2, "usage", "usage", 2)
 
 
 def test_success_is_silent_on_standard_error(statejump, cases: Path) -> None:

@@ -119,10 +119,10 @@ WRONG: dict[str, tuple[Callable[[Any], None], str]] = {
     "no W": (_drop("fclib_local/W"), failure("fclib_group_missing", group="/fclib_local/W")),
     "no vectors": (_drop("fclib_local/vectors"), failure("fclib_group_missing", group="/fclib_local/vectors")),
     "no q": (_drop("fclib_local/vectors/q"), failure("fclib_data_missing", data_set="/fclib_local/vectors/q")),
-    "group for a list": (_set("fclib_local/vectors", np.zeros(3)), failure("fclib_no_group", group="/fclib_local/vectors")),
+    "group for a list": (_set("fclib_local/vectors", np.zeros(3)), failure("fclib_not_group", group="/fclib_local/vectors")),
     "dimension": (_spoil("fclib_local/spacedim", 0, 4), failure("fclib_dimension", group="/fclib_local", dimension=4)),
     "dimension as text": (_set("fclib_local/spacedim", "three"),
-                          failure("fclib_no_numbers", data_set="/fclib_local/spacedim", whole_="whole ")),
+                          failure("fclib_not_number_list", data_set="/fclib_local/spacedim", whole_="whole ")),
     "short q": (_set("fclib_local/vectors/q", np.zeros(5)), failure("fclib_vector_length", entries=5, group="/fclib_local/vectors", contacts=4, dimension=3, needed=12)),
     "q is not finite": (_spoil("fclib_local/vectors/q", 3, np.nan),
                         failure("fclib_not_finite", data_set="/fclib_local/vectors/q")),
@@ -139,7 +139,7 @@ WRONG: dict[str, tuple[Callable[[Any], None], str]] = {
     "more entries than there are": (_spoil("fclib_local/W/nz", 0, 10_000),
                                     failure("fclib_too_few_entries", group="/fclib_local/W", nz=10000)),
     "table for a list": (_set("fclib_local/vectors/q", np.zeros((3, 4))),
-                         failure("fclib_no_numbers", data_set="/fclib_local/vectors/q")),
+                         failure("fclib_not_number_list", data_set="/fclib_local/vectors/q")),
     "solution of another size": (lambda file: file.__setitem__("solution/r", np.zeros(3)),
                                  failure("fclib_reactions_length", entries=3, group="solution", needed=12)),
 }
@@ -171,14 +171,14 @@ def test_a_data_set_that_was_never_written_has_its_fill_value(tmp_path: Path) ->
 
 
 def test_no_file_and_no_hdf5(tmp_path: Path) -> None:
-    with failing("no_such_file"):
+    with failing("file_not_found"):
         sj.fclib.read(tmp_path / "none.hdf5")
     (tmp_path / "text.hdf5").write_text("text")
     with failing("not_hdf5"):
         sj.fclib.read(tmp_path / "text.hdf5")
     whole = write_raw(tmp_path / "whole.hdf5", pressed()).read_bytes()
     (tmp_path / "cut.hdf5").write_bytes(whole[: len(whole) // 2])
-    with failing("cannot_be_read", file="cut.hdf5"):
+    with failing("read_failed", file="cut.hdf5"):
         sj.fclib.read(tmp_path / "cut.hdf5")
 
 
@@ -234,4 +234,4 @@ def test_command(statejump: Any, tmp_path: Path) -> None:
 
     outcome = statejump("fclib", "solve", "missing.hdf5")
     assert outcome.status == 2
-    assert outcome.failure == failure("no_such_file", file="missing.hdf5")
+    assert outcome.failure == failure("file_not_found", file="missing.hdf5")

@@ -82,17 +82,17 @@ def test_every_law(kind: str) -> None:
     ("mindlin", {"slide_m": ["0", "a", "0", "0"]}, failure("column_no_numbers", key="slide_m")),
     ("mindlin", {"slide_m": [0, 1]}, failure("columns_of_other_length", cause="slide_m has 2, penetration_depth_m has 4")),
     ("mindlin", {"penetration_depth_m": None, "normal_force_N": [1, 1, -1, 1]},
-     failure("bodies_pull", item="row 3", key="normal_force_N", value=-1.0)),
+     failure("tensile_force", item="row 3", key="normal_force_N", value=-1.0)),
     ("mindlin", {"slide_m": None, "tangential_force_N": [1e-3, 0, 0, 0]},
      failure("first_row_not_zero", item="row 1", key="tangential_force_N", value=0.001)),
     ("mindlin", {"slide_m": None, "tangential_force_N": [0, 0, 2, 0]},
      failure("law_failed", item="row 3", law="mindlin", why="tangential_force = 2 N, allowed is what friction carries, at most 1.54 N")),
     ("ambrosio", {}, failure("law_needs_time", section="column time_s", law="ambrosio")),
     ("flores", {}, failure("law_needs_time", section="column time_s", law="flores")),
-    ("flores", {"time_s": [0, 1, 1, 2]}, failure("rows_do_not_grow", item="row 3", key="time_s", value=1.0)),
+    ("flores", {"time_s": [0, 1, 1, 2]}, failure("history_times_not_increasing", item="row 3", key="time_s", value=1.0)),
     ("flores", {"time_s": [0, 1, 2, 3], "penetration_depth_m": None, "normal_force_N": [1.0] * 4},
      failure("law_needs_penetration", key="normal_force_N", law="flores")),
-    ("johnson", {}, failure("engine_argument", key="radial_clearance_m", value=float("inf"), cause="allowed is finite for a line contact [m]")),
+    ("johnson", {}, failure("law_argument_out_of_range", key="radial_clearance_m", value=float("inf"), cause="allowed is finite for a line contact [m]")),
 ])
 def test_bad_history(law: str, change: dict[str, Any], sentence: Failure) -> None:
     history = {name: values for name, values in {**LOOP, **change}.items() if values is not None}
@@ -102,10 +102,10 @@ def test_bad_history(law: str, change: dict[str, Any], sentence: Failure) -> Non
 
 
 @pytest.mark.parametrize("change, sentence", [
-    ({"effective_radius_m": -1.0}, failure("engine_argument", key="effective_radius_m", value=-1.0, cause="allowed is (0, inf) m")),
-    ({"effective_shear_modulus_Pa": 0.0}, failure("engine_argument", key="effective_shear_modulus_Pa", value=0.0, cause="allowed is (0, inf) Pa")),
-    ({"friction_coefficient": -0.1}, failure("engine_argument", key="friction_coefficient", value=-0.1, cause="allowed is [0, inf)")),
-    ({"steps_per_row": 0}, failure("no_count", key="steps_per_row", value=0)),
+    ({"effective_radius_m": -1.0}, failure("law_argument_out_of_range", key="effective_radius_m", value=-1.0, cause="allowed is (0, inf) m")),
+    ({"effective_shear_modulus_Pa": 0.0}, failure("law_argument_out_of_range", key="effective_shear_modulus_Pa", value=0.0, cause="allowed is (0, inf) Pa")),
+    ({"friction_coefficient": -0.1}, failure("law_argument_out_of_range", key="friction_coefficient", value=-0.1, cause="allowed is [0, inf)")),
+    ({"steps_per_row": 0}, failure("not_positive_integer", key="steps_per_row", value=0)),
 ])
 def test_bad_contact(change: dict[str, Any], sentence: Failure) -> None:
     with pytest.raises(sj.StatejumpError) as refused:
@@ -134,7 +134,7 @@ def test_a_mark_of_byte_order_is_no_part_of_the_first_name(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("text, sentence", [
-    (None, failure("cannot_be_read", file="history.csv", cause="No such file or directory")),
+    (None, failure("read_failed", file="history.csv", cause="No such file or directory")),
     ("slide_m,penetration_depth_m\n", failure("no_samples", file="history.csv")),
     ("slide_m,penetration_depth_m\n0\n", failure("row_of_other_length", file="history.csv", line=2, cells=1, width=2)),
     ("slide_m,penetration_depth_m\n0,0\n0,0,0\n", failure("row_of_other_length", file="history.csv", line=3, cells=3, width=2)),

@@ -9,6 +9,7 @@ from typing import Callable
 import numpy as np
 import pytest
 from conftest import REPOSITORY, Outcome
+from failures import failure
 
 import statejump as sj
 from statejump import orbit
@@ -69,16 +70,16 @@ def test_a_case_takes_the_file(tmp_path: Path, statejump: Callable[..., Outcome]
 
 HEAD = "name,absorptivity,emissivity,sun_view,heat_capacity_J_per_m2_K\n"
 WRONG = {
-    "column": (HEAD.replace("emissivity", "emission"), [], "members.csv: column 'emission' is unknown: did you mean emissivity?"),
-    "cells": (HEAD + "a,1,1,1\n", [], "members.csv: line 2 has 4 cells: the header has 5"),
-    "number": (HEAD + "a,1,1,x,1\n", [], "members.csv: line 2, column 'sun_view': 'x' is not a finite number"),
-    "NaN": (HEAD + "a,1,nan,1,1\n", [], "members.csv: line 2, column 'emissivity': 'nan' is not a finite number"),
-    "range": (HEAD + "a,1.5,1,1,1\n", [], "absorptivity = 1.5 is not allowed: must be between 0 and 1"),
-    "names": (HEAD + "a,1,1,1,1\na,1,1,1,1\n", [], "each with a name of its own"),
-    "empty": (HEAD, [], "must be 1 to 10000 members"),
-    "shadow": (HEAD + "a,1,1,1,9\n", ["--shadow", "5:3"], "must be pairs of times that rise, from 0 to 100 [s]"),
-    "no shadow": (HEAD + "a,1,1,1,9\n", ["--shadow", "x"], "must be BEGIN:END in seconds"),
-    "sink": (HEAD + "a,1,1,1,9\n", ["--sink", "nan"], "sink_K = nan is not allowed"),
+    "column": (HEAD.replace("emissivity", "emission"), [], failure("misspelt_key", key="emission", meant="emissivity", file="members.csv")),
+    "cells": (HEAD + "a,1,1,1\n", [], failure("row_of_other_length", line=2, cells=4, width=5, file="members.csv")),
+    "number": (HEAD + "a,1,1,x,1\n", [], failure("bad_cell", line=2, column="'sun_view'", file="members.csv")),
+    "NaN": (HEAD + "a,1,nan,1,1\n", [], failure("bad_cell", line=2, column="'emissivity'", file="members.csv")),
+    "range": (HEAD + "a,1.5,1,1,1\n", [], failure("out_of_range", item="member 'a'", key="absorptivity", value=1.5)),
+    "names": (HEAD + "a,1,1,1,1\na,1,1,1,1\n", [], failure("wrong_number_of_members", key="members", most=10000)),
+    "empty": (HEAD, [], failure("wrong_number_of_members", key="members", most=10000)),
+    "shadow": (HEAD + "a,1,1,1,9\n", ["--shadow", "5:3"], failure("shadow_times", key="shadow_s", value=[[5.0, 3.0]], period_s=100.0)),
+    "no shadow": (HEAD + "a,1,1,1,9\n", ["--shadow", "x"], failure("bad_shadow_option", key="--shadow", value="x")),
+    "sink": (HEAD + "a,1,1,1,9\n", ["--sink", "nan"], failure("number_not_finite", key="sink_K", value=float("nan"), range="between 0 and 10000 [K]")),
 }
 
 
@@ -87,5 +88,5 @@ def test_what_is_wrong_is_one_sentence(what: str, tmp_path: Path, statejump: Cal
     text, more, sentence = WRONG[what]
     (tmp_path / "members.csv").write_text(text)
     told = statejump("orbit", "members.csv", "--period", 100, "-o", "orbit.csv", *more)
-    assert told.status == 2 and told.errors.count("\n") == 1 and sentence in told.errors
+    assert told.status == 2 and told.errors.count("\n") == 1 and told.failure == sentence
     assert not (tmp_path / "orbit.csv").exists()

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from conftest import COMMAND, results_in
+from failures import failing, failure
 from statejump.core import output, results_folder, scratch
 from statejump.core.errors import NotWritten
 from statejump.core.output import write_atomically, write_bytes
@@ -34,13 +35,13 @@ def test_what_fails_leaves_what_was_there(tmp_path: Path, monkeypatch: pytest.Mo
             1 / 0
     for call in ("fsync", "replace"):
         with monkeypatch.context() as there:
-            there.setattr(os, call, failing)
-            with pytest.raises(NotWritten, match="a.txt: cannot be written: No space left on device"):
+            there.setattr(os, call, full_disk)
+            with failing("write_failed", file="a.txt", raised=NotWritten):
                 write_bytes(path, b"after")
     assert path.read_bytes() == b"before" and names(tmp_path) == ["a.txt"]
 
 
-def failing(*arguments: object) -> None:
+def full_disk(*arguments: object) -> None:
     raise OSError(28, "No space left on device")
 
 
@@ -62,7 +63,7 @@ def test_columns_are_written_as_by_csv(tmp_path: Path) -> None:
 def test_only_a_file_is_replaced(tmp_path: Path, kind: str) -> None:
     path = tmp_path / "a"
     path.mkdir() if kind == "folder" else os.mkfifo(path)
-    with pytest.raises(NotWritten, match="there is something else than a file"):
+    with failing("target_not_file", file="a", raised=NotWritten):
         write_bytes(path, b"")
     assert not path.is_file()
 
@@ -110,7 +111,7 @@ def test_nothing_appears_if_one_thing_fails(tmp_path: Path, monkeypatch: pytest.
 
 def test_a_folder_in_the_place_of_a_file(tmp_path: Path) -> None:
     (tmp_path / "case" / "b").mkdir(parents=True)
-    with pytest.raises(NotWritten, match="case/b: cannot be written: there is something else"):
+    with failing("target_not_file", file="b", raised=NotWritten):
         with Results(tmp_path).folder("case") as folder:
             for name in ("a", "b"):
                 write_bytes(folder.staged / name, b"")
@@ -128,7 +129,7 @@ def test_a_kill_between_two_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
             raise OSError(5, "Input/output error")
         moved(source, target)
 
-    with pytest.raises(NotWritten, match="Input/output error; .* is complete, the next run in this folder moves"):
+    with failing("write_failed", raised=NotWritten):
         with Results(tmp_path).folder("case") as folder:
             for name in ("a", "b"):
                 write_bytes(folder.staged / name, b"1")
@@ -159,9 +160,7 @@ def test_one_run_at_a_time(tmp_path: Path) -> None:
     with pytest.raises(NotWritten) as refused:
         with Results(tmp_path).folder("case"):
             pass
-    assert str(refused.value) == (
-        f"results folder {tmp_path}/case: is in use: another run is at work in it; wait for it with --wait, or choose "
-        "another with --results")
+    assert refused.value == failure("folder_in_use", file="case")
     go.set()
     with Results(tmp_path, wait=True).folder("case") as folder:
         assert names(folder.path)[1:] == ["first"]
@@ -196,7 +195,7 @@ def test_two_commands_at_once(cases: Path, tmp_path: Path) -> None:
 def test_space_is_asked_for(tmp_path: Path) -> None:
     with Results(tmp_path).folder("case") as folder:
         folder.check_space(1)
-        with pytest.raises(NotWritten, match=r"no space left: the results need about 100 TB, the file system has"):
+        with failing("no_space_left", needed="100 TB", raised=NotWritten):
             folder.check_space(1e14)
 
 
@@ -219,19 +218,16 @@ def test_read_only_folder(bound, statejump, cases: Path, tmp_path: Path) -> None
     drive = ("--effective-young-modulus", 38.5e9, "--effective-shear-modulus", 7.9e9, "--effective-radius", 0.01,
              "--friction-coefficient", 0.3)
     locked.mkdir(mode=0o555)
-    for said, *words in (
-        ("results folder locked/table1: cannot be written: Permission denied; choose another with --results",
-         "reduced", cases / "table1.toml", "--results", "locked"),
-        ("results folder locked/out: cannot be written: Permission denied; choose another with --results",
-         "export", file, "--to", "locked/out"),
-        ("locked/page.html: cannot be written: Permission denied", "report", file, "-o", "locked/page.html"),
-        ("locked/new/page.html: cannot be written: Permission denied", "report", file, "-o", "locked/new/page.html"),
-        ("locked/out.csv: cannot be written: Permission denied",
-         "laws", "--drive", "history.csv", "--law", "mindlin", *drive, "-o", "locked/out.csv"),
-        ("locked/ring.toml: cannot be written: Permission denied", "truss", "ring", 12, "-o", "locked/ring.toml"),
+    for target, *words in (
+        ("locked/table1", "reduced", cases / "table1.toml", "--results", "locked"),
+        ("locked/out", "export", file, "--to", "locked/out"),
+        ("locked/page.html", "report", file, "-o", "locked/page.html"),
+        ("locked/new/page.html", "report", file, "-o", "locked/new/page.html"),
+        ("locked/out.csv", "laws", "--drive", "history.csv", "--law", "mindlin", *drive, "-o", "locked/out.csv"),
+        ("locked/ring.toml", "truss", "ring", 12, "-o", "locked/ring.toml"),
     ):
-        done = bound(*words)
-        assert (done.returncode, done.stderr) == (2, f"error: {said}\n"), words
+        done = bound("--json", *words)
+        assert done.returncode == 2 and done.stderr == failure("write_failed", file=target), words
     assert names(locked) == []
 
 
@@ -290,9 +286,7 @@ def test_a_copied_case_does_not_replace_results(statejump, cases: Path, tmp_path
     for command in (("reduced",), ("dem",), ("compare",), ("fe",), ("control",), ("convergence",)):
         refused = statejump(*command, other)
         assert (refused.status, file.read_bytes()) == (2, after), command
-        assert refused.errors == (
-            "error: results folder results/table1: holds results of another case: a/table1.toml has the same case.name; "
-            "change case.name, choose another folder with --results, or replace them with --force\n")
+        assert refused.failure == failure("results_of_other_case", other="a/table1.toml", file="table1")
     assert statejump("reduced", other, "--force").status == 0 and file.read_bytes() == before
     assert statejump("reduced", other).status == 0
 
@@ -302,7 +296,7 @@ def test_a_folder_within_that_of_another_case_is_refused(statejump, cases: Path,
     copy = tmp_path / "copy.toml"
     copy.write_text((cases / "trusses" / "chain_10.toml").read_text().replace("title = \"", "title = \"My "))
     refused = statejump("fclib", "write", copy, "--number", 1)
-    assert refused.status == 2 and "results/chain_10: holds results of another case" in refused.errors
+    assert refused.status == 2 and refused.failure == failure("results_of_other_case", file="chain_10")
     assert not (tmp_path / "results" / "chain_10" / "fclib").exists()
 
 

@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from failures import failing, failure
 import statejump as sj
 from statejump.campaign.outputs import values
 from statejump.campaign.work import outcome
-from statejump.core.errors import NotAllowed, StatejumpError
+from statejump.core.errors import NotAllowed
 from statejump.kinds.truss import dem, generate
 from statejump.kinds.truss.generate.document import write
 from statejump.kinds.truss.solve import engine_program
@@ -85,8 +86,7 @@ def test_return_lasts_until_the_period_or_is_refused() -> None:
     # Rate does not matter to a quasi-static path.
     jumps = [case.changed({**TABLE, "thermal.period_s": period}).reduced().summary["state_jump_m"] for period in (8.5, 900)]
     assert jumps[0] == pytest.approx(jumps[1], rel=1e-12)
-    with pytest.raises(NotAllowed, match="the table lasts 8 s, and the return to the reference temperature ends after it; "
-                                         "leave thermal.period_s out"):
+    with failing("return_too_late", key="thermal.period_s", value=7.0, lasts=8.0, key_to_leave_out="thermal.period_s", raised=NotAllowed):
         case.changed({**TABLE, "thermal.period_s": 7.0})
     # What a resolved case says is understood again.
     again = sj.load(case.changed(TABLE).to_dict())
@@ -99,8 +99,7 @@ def test_cycles_return_each() -> None:
     assert case.reduced().summary["state_jump_m"] == by_hand.reduced().summary["state_jump_m"]
     assert case.definition.ending.time_s == pytest.approx(2 * case.period_s + 8)
     assert np.allclose(case.definition.returns_s()[-3:], case.period_s * np.arange(1, 4))
-    with pytest.raises(NotAllowed, match="must start at 0 .K. and, with several cycles and without a return, end at 0|"
-                                         "what is repeated must end where it begins"):
+    with failing("program_not_periodic", key="thermal.cycles", value=3, raised=NotAllowed):
         sj.load("table1").changed({**KEPT, "thermal.cycles": 3})
 
 
@@ -162,9 +161,7 @@ def test_command_says_so(statejump, edited, tmp_path: Path) -> None:
     for command in ("control", "convergence"):
         refused = statejump(command, "bad.toml")
         assert refused.status == 2, command
-        assert refused.errors == (
-            f"error: case table1: 'statejump {command}' needs a state jump, and the program ends at a temperature change of 55 K; "
-            "set thermal.return_to_reference to true to add a return\n")
+        assert refused.failure == failure("state_jump_undefined")
 
 
 def test_answers_follow(statejump, tmp_path: Path) -> None:
@@ -175,7 +172,7 @@ def test_answers_follow(statejump, tmp_path: Path) -> None:
     by_hand = sj.load(chain(table_time_s=[*ROWS[0], 9.0], table_temperature_change_K=[*ROWS[1], 0.0])).reduced()
     assert abs(result.answers.summary["jump"].value) == pytest.approx(by_hand.summary["largest_jump_m"], rel=1e-9)
     refused = statejump("truss", "answers", chain_file(tmp_path, return_to_reference=False))
-    assert refused.status == 2 and "needs a state jump" in refused.errors
+    assert refused.status == 2 and refused.failure == failure("state_jump_undefined", output="'statejump truss answers'")
     reduced = statejump("reduced", "chain.toml")
     assert reduced.status == 0 and "displacement at the program's end, -26 K, no state jump" in " ".join(reduced.output.split())
 
@@ -191,7 +188,7 @@ def test_campaign_follows() -> None:
     found = outcome(kept.definition, "reduced")
     assert isnan(found["state_jump_m"])
     assert found["displacement_at_program_end_m"] == kept.reduced().summary["displacement_at_program_end_m"]
-    with pytest.raises(StatejumpError, match="an output 'jump:...' needs a state jump"):
+    with failing("state_jump_undefined", output="an output 'jump:...'"):
         values(["jump:displacement_m"], kept.reduced())
     # The quick run of a truss has samples at its ends only.
     truss = sj.load(chain())
@@ -218,5 +215,5 @@ def test_table_of_zeros(statejump, edited, tmp_path: Path) -> None:
     done = statejump("compare", "bad.toml")
     assert done.status == 0, done.output + done.errors
     refused = statejump("fe", "bad.toml")
-    assert refused.status == 2 and "the temperature does not change, 'statejump fe' needs a branch" in refused.errors
+    assert refused.status == 2 and refused.failure == failure("fe_no_branch", key="thermal")
     assert statejump("control", "bad.toml").status == 0

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from conftest import results_in
+from failures import failure
 import statejump as sj
 from statejump.core.errors import FailedRun
 
@@ -26,7 +27,7 @@ def test_paths_of_a_loaded_rib() -> None:
 
 
 def test_no_path_without_a_load() -> None:
-    with pytest.raises(FailedRun, match="the quasi-static path failed"):
+    with pytest.raises(FailedRun):
         sj.load("umbrella").quasi_static()
 
 
@@ -35,10 +36,8 @@ def test_command(statejump: Callable[..., Any], tmp_path: Path, cases: Path) -> 
     assert done.status == 0 and "theta2_jump_elastic_rad" in done.output, done.errors
     assert set(results_in(tmp_path / "results" / "umbrella_bias_quasi_static")) == {
         f"quasi_static_{links}{what}.csv" for links in ("rigid", "elastic") for what in ("", "_events")}
-    for arguments, sentence in (
-        ((cases / "table1.toml",), "case.kind = 'spring_slider' is not allowed: 'statejump reduced --quasi-static' is for "
-         "'umbrella'"),
-        (("--dynamic", cases / "umbrella_bias.toml"), "'--dynamic' is with inertia"),
-    ):
-        done = statejump("reduced", "--quasi-static", *arguments)
-        assert done.status == 2 and sentence in done.errors, done.errors
+    refused = statejump("reduced", "--quasi-static", cases / "table1.toml")
+    assert refused.status == 2 and refused.failure == failure(
+        "command_not_for_kind", key="case.kind", value="spring_slider", command="reduced --quasi-static")
+    refused = statejump("--json", "reduced", "--quasi-static", "--dynamic", cases / "umbrella_bias.toml")
+    assert refused.status == 2 and refused.errors == failure("usage"), refused.errors

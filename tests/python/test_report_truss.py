@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from conftest import COMMAND, REPOSITORY, Outcome
+from failures import failure
 from test_report import MEGABYTE, Page, decoded, pytestmark, written  # noqa: F401  (no page, no test)
 
 import statejump as sj
@@ -163,7 +164,7 @@ def test_a_page_of_a_truss_before_it_is_solved(statejump: Callable[..., Outcome]
     assert [address[:22] for address in found.addresses if address.startswith("data:image")] == ["data:image/png;base64,"]
     assert "increments_per_branch" in found.words and size < 2.5e6
     refused = statejump("report", TRUSSES.parent / "table1.toml")
-    assert refused.status == 2 and "a page of a case that is not solved is for 'truss'" in refused.errors
+    assert refused.status == 2 and refused.failure == failure("page_only_of_truss")
 
 
 def test_answers_stand_beside_a_comparison(tmp_path: Path) -> None:

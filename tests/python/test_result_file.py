@@ -17,6 +17,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
 from conftest import COMMAND, REPOSITORY, sealed
+from failures import failing, failure
 import statejump as sj
 from statejump.core.errors import StatejumpError
 from statejump.core.run import AT_STOP, GROUPS, SEPARATED, SLIP, STICK, Column, Event, Events, Run
@@ -355,65 +356,63 @@ def shorter(path: Path) -> None:
 
 
 MISTAKES = {
-    "no file": (Path.unlink, "no such result file"),
-    "not HDF5": (not_hdf5, "not a result file: it does not begin with 'statejump HDF5'"),
-    "another program's": (foreign, "not a result file: HDF5, but its attribute format is not 'statejump result'"),
+    "no file": (Path.unlink, failure("result_file_not_found")),
+    "not HDF5": (not_hdf5, failure("no_result_format", begin="statejump HDF5")),
+    "another program's": (foreign, failure("result_other_format")),
     "newer": (lambda path: damage(path, lambda file: file.attrs.__setitem__("layout_version", layout.VERSION + 1)),
-              f"layout version {layout.VERSION + 1} is newer than {layout.VERSION}, the newest that this statejump reads"),
-    "newer as a whole": (newer_head, "version 2 is newer than 1, the newest that this statejump reads"),
-    "without checksum": (without_checksum, "not a result file: HDF5, but without the checksum that this version writes; "
-                         "run what made it again"),
-    "cut off": (shorter, "damaged: its checksum is that of other contents: it was cut off or altered; run what made it again"),
-    "altered": (altered, "damaged: its checksum is that of other contents: it was cut off or altered; run what made it again"),
+              failure("layout_newer", found=2, newest=1)),
+    "newer as a whole": (newer_head, failure("result_newer")),
+    "without checksum": (without_checksum, failure("result_without_checksum")),
+    "cut off": (shorter, failure("result_checksum")),
+    "altered": (altered, failure("result_checksum")),
     "missing group": (lambda path: damage(path, lambda file: file.__delitem__("models/dem/events")),
-                      "/models/dem/events is missing"),
+                      failure("object_missing", object="/models/dem/events")),
     "missing column": (lambda path: damage(path, lambda file: file.__delitem__("models/dem/history/time_s")),
-                       "/models/dem/history/time_s is missing"),
+                       failure("object_missing", object="/models/dem/history/time_s")),
     "missing attribute": (lambda path: damage(path, lambda file: file["case"].attrs.__delitem__("kind")),
-                          "/case@kind is missing"),
+                          failure("object_missing", object="/case")),
     "group for a data set": (
         lambda path: damage(path, lambda file: (file.__delitem__("scene"), file.create_group("scene"))),
-        "damaged: /scene is group, must be text"),
+        failure("damaged")),
     "column too short": (
         lambda path: damage(path, lambda file: (file.__delitem__("models/dem/energy/elastic_energy_J"),
                                                 file.create_dataset("models/dem/energy/elastic_energy_J", data=[1.0]))),
-        "damaged: /models/dem/energy/elastic_energy_J has 1 samples, time_s has 2001"),
+        failure("damaged", object="/models/dem/energy/elastic_energy_J")),
     "numbers that are not in the file": (
         lambda path: damage(path, lambda file: instead(
             file, "models/dem/energy/elastic_energy_J", shape=(10**12,), dtype="f8", chunks=(1000,))),
-        "damaged: /models/dem/energy/elastic_energy_J claims to hold more than the file does"),
+        failure("result_claims_too_much", object="/models/dem/energy/elastic_energy_J")),
     "numbers of another file": (
         lambda path: damage(path, lambda file: instead(
             file, "models/dem/energy/elastic_energy_J", shape=(64,), dtype="u1", external=[("/dev/zero", 0, 64)])),
-        "damaged: /models/dem/energy/elastic_energy_J has its numbers in another file"),
+        failure("result_external", object="/models/dem/energy/elastic_energy_J")),
     "link": (
         lambda path: damage(path, lambda file: (
             file.__delitem__("provenance"), file.__setitem__("provenance", h5py.ExternalLink("other.h5", "/x")))),
-        "damaged: /provenance is a link out of its place"),
+        failure("result_link", object="/provenance")),
     "circle": (
         lambda path: damage(path, lambda file: (file.__delitem__("models/dem/links"),
                                                 file["models/dem"].__setitem__("links", file["models"]))),
-        "damaged: /models/dem/links is neither a group nor a data set of its own"),
+        failure("result_no_object", object="/models/dem/links")),
     "texts for numbers": (
         lambda path: damage(path, lambda file: instead(file, "models/dem/summary/state_jump_m", data=b"x")),
-        "damaged: /models/dem/summary/state_jump_m is text, must be float64"),
+        failure("damaged", object="/models/dem/summary/state_jump_m")),
     "list for a text": (
         lambda path: damage(path, lambda file: file["case"].attrs.__setitem__("title", ["a", "b"])),
-        "damaged: /case@title has shape (2,), must be text"),
+        failure("damaged")),
     "items without names": (
         lambda path: damage(path, lambda file: file["models/dem/contacts/gap_m"].attrs.__setitem__("items", "x")),
-        "damaged: /models/dem/contacts/gap_m has 3 items, which /names does not name"),
+        failure("damaged")),
     "no label": (
         lambda path: damage(path, lambda file: file["models/dem/contacts/state"].__setitem__((0, 0), 9)),
-        "damaged: /models/dem/contacts/state has values without a label"),
+        failure("damaged")),
     "scene of something else": (
         lambda path: damage(path, lambda file: instead(
             file, "scene", data=file["scene"].asstr()[()].replace("links/axial_force_N", "links/force"))),
-        "damaged: /scene: part bar, values: axial_force_N: reduced: {'data': 'links/force', 'item': 'bar'} refers to nothing "
-        "in the file"),
+        failure("scene_damaged")),
     "case that is no object": (
         lambda path: damage(path, lambda file: instead(file, "case/resolved", data="[]")),
-        "damaged: /case/resolved is no object of JSON"),
+        failure("damaged")),
 }
 
 
@@ -425,7 +424,7 @@ def test_bad_file_is_one_sentence(compared, tmp_path: Path, name: str) -> None:
     spoil(path)
     with pytest.raises(StatejumpError) as raised:
         read(path)
-    assert str(raised.value) == f"{path}: {sentence}"
+    assert raised.value == sentence.at(file=path)
     assert raised.value.exit_status == 2
 
 
@@ -458,7 +457,7 @@ def test_random_bytes_never_reach_the_library(compared, tmp_path: Path) -> None:
         for place in rng.integers(0, len(whole), count):
             content[place] ^= int(rng.integers(1, 256))
         path.write_bytes(content)
-        with pytest.raises(StatejumpError, match="damaged: its checksum|not a result file|is newer"):
+        with failing("result_checksum"):
             read(path)
     for command in (["info"], ["export", "--to", "out"], ["report"]):
         done = run(tmp_path, *command, path)

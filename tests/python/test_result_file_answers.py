@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from conftest import REPOSITORY, sealed
+from failures import Failure, failing, failure
 from test_result_file import check_layout, run
 
 from statejump.core.errors import StatejumpError
@@ -129,21 +130,21 @@ def test_answers_that_lack_a_number_are_refused(folder: Path, tmp_path: Path, na
         for name in names:
             del file[f"answers/summary/{name}"]
     sealed(path)
-    with pytest.raises(StatejumpError, match=f"bad.h5: damaged: /answers/summary/{names[0]} is missing"):
+    with failing("damaged", object=f"/answers/summary/{names[0]}", file="bad.h5"):
         read(path)
 
 
 @pytest.mark.parametrize("column, value, said", [
-    ("answers/node_jumps/jump_x_m", np.nan, "damaged: /answers/node_jumps/jump_x_m has a value that is no number"),
-    ("models/reduced/contacts/tangential_force_N", 1e308, "cannot be drawn: places or forces are not finite, or too large"),
-    ("models/reduced/history/position_m", 1e308, "cannot be drawn: places or forces are not finite, or too large"),
+    ("answers/node_jumps/jump_x_m", np.nan, failure("damaged", object="/answers/node_jumps/jump_x_m")),
+    ("models/reduced/contacts/tangential_force_N", 1e308, failure("drawing_not_finite")),
+    ("models/reduced/history/position_m", 1e308, failure("drawing_not_finite")),
 ])
-def test_what_cannot_be_drawn_is_one_sentence(folder: Path, tmp_path: Path, column: str, value: float, said: str) -> None:
+def test_what_cannot_be_drawn_is_one_sentence(folder: Path, tmp_path: Path, column: str, value: float, said: Failure) -> None:
     path = tmp_path / "bad.h5"
     path.write_bytes((folder / "answers.h5").read_bytes())
     with h5py.File(path, "r+") as file:
         file[column][-1] = value
     sealed(path)
-    done = run(tmp_path, "report", path)
-    assert done.returncode == 2 and done.stderr.count("\n") == 1 and said in done.stderr, done.stderr
+    done = run(tmp_path, "--json", "report", path)
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and said == done.stderr, done.stderr
     assert not list(tmp_path.rglob("*.html"))

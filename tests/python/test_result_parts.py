@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from conftest import REPOSITORY, sealed
+from failures import failure
 
 from statejump.core.thin_loops import straight_part
 
@@ -82,7 +83,7 @@ def test_a_text_that_is_not_utf8(statejump: Callable, tmp_path: Path, cases: Pat
         file["provenance"].attrs.create("machine", b"\xff", dtype=h5py.string_dtype())
     sealed(path)
     done = statejump("report", path, "-o", "page.html")
-    assert (done.status, done.errors) == (2, f"error: {path}: damaged: /provenance@machine is not UTF-8\n")
+    assert (done.status, done.failure) == (2, failure("result_not_utf8", file=path, object="/provenance@machine"))
 
 
 def test_numbers_without_an_end(statejump: Callable, tmp_path: Path, cases: Path) -> None:

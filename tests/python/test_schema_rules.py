@@ -121,20 +121,20 @@ REFUSED: list[tuple[str, Any, Failure]] = [
     ("best", 0, failure("out_of_range", allowed=Range(1, 9, "-"))),
     ("on", 1, failure("not_boolean")),
     ("on", None, failure("not_boolean")),
-    ("word", 3, failure("no_text")),
+    ("word", 3, failure("not_string")),
     ("word", "ab1", failure("no_folder_name")),
     ("word", "a\x07", failure("control_characters")),
-    ("sort", None, failure("no_text")),
+    ("sort", None, failure("not_string")),
     ("sort", "tow", failure("misspelt_name", allowed=("one", "two", "three"), meant="two")),
     ("sort", "x", failure("unknown_name", allowed=("one", "two", "three"))),
-    ("place_m", 3, failure("not_numbers", unit="m")),
-    ("place_m", None, failure("not_numbers", unit="m")),
-    ("place_m", [1], failure("wrong_number_of_numbers", unit="m", length=2)),
+    ("place_m", 3, failure("not_number_list", unit="m")),
+    ("place_m", None, failure("not_number_list", unit="m")),
+    ("place_m", [1], failure("wrong_list_length", unit="m", length=2)),
     ("place_m", [0, 1.5], failure("out_of_range", allowed=Range(-1, 1, "m"))),
     ("place_m", [0, "a"], failure("wrong_type", type="a number", allowed=Range(-1, 1, "m"))),
     ("bounds", [nan], failure("number_not_finite", allowed=Range(-2, 2, "-"))),
-    ("tags", "red", failure("not_texts")),
-    ("tags", ["red", 1], failure("not_texts")),
+    ("tags", "red", failure("not_string_list")),
+    ("tags", ["red", 1], failure("not_string_list")),
     ("tags", ["red", "bleu"], failure("unknown_name", allowed=("red", "blue"))),
     ("arrays", [1.0], failure("not_from_file", cause="it is read from elsewhere")),
 ]
@@ -186,9 +186,9 @@ def test_what_a_file_lacks_or_has_too_much() -> None:
     assert refused(structure, Book, {"part": {}, "thing": things}) == (
         failure("missing_key", key="part.size_m", allowed=Range(0, 10, "m", above=True)))
     assert refused(structure, Book, {"part": part, "more": {"share": 1}, "thing": things}) == failure("missing_key", key="more.size_m")
-    assert refused(structure, Book, {"part": 3, "thing": things}) == failure("not_a_section", key="part", value=3, wanted="part")
-    assert refused(structure, Book, {"part": None, "thing": things}) == failure("not_a_section", key="part", wanted="part")
-    assert refused(structure, Book, {"part": part, "more": [1], "thing": things}) == failure("not_a_section", key="more", wanted="more")
+    assert refused(structure, Book, {"part": 3, "thing": things}) == failure("not_section", key="part", value=3, wanted="part")
+    assert refused(structure, Book, {"part": None, "thing": things}) == failure("not_section", key="part", wanted="part")
+    assert refused(structure, Book, {"part": part, "more": [1], "thing": things}) == failure("not_section", key="more", wanted="more")
     made = structure(Book, {"part": part, "more": None, "thing": things})
     assert made.more is None and made.other == [] and made.part.place_m == [0, 1]
 
@@ -286,8 +286,8 @@ def test_items_by_columns_are_made_block_by_block() -> None:
     ({"name": ["A", "B"], "mass_kg": [1.0]}, failure("columns_not_of_one_length", key="mass_kg", value=1, rows=2)),
     ({"name": ["A"], "mass_kg": 1.0}, failure("columns_not_of_one_length", key="mass_kg", value=0, rows=1)),
     ({"name": [[["A"]]]}, failure("columns_not_of_one_length", key="name", value=1, rows=1)),
-    ({}, failure("no_table", key="thing", table="thing")),
-    ({"name": [], "mass_kg": []}, failure("no_table", key="thing", table="thing")),
+    ({}, failure("not_table_list", key="thing", table="thing")),
+    ({"name": [], "mass_kg": []}, failure("not_table_list", key="thing", table="thing")),
     ({"name": ["A"], "mas_kg": [1.0]}, failure("misspelt_key", item="tables.thing", key="mas_kg", meant="mass_kg")),
     ({"name": ["A"]}, failure("missing_key", item="tables.thing", key="mass_kg", allowed=Range(0, 10, "kg", above=True))),
     ({"mass_kg": [1.0]}, failure("missing_key", item="tables.thing", key="name", cause="a text in quotes is needed")),
@@ -300,12 +300,12 @@ def test_items_by_columns_are_made_block_by_block() -> None:
     ({"name": ["A"], "mass_kg": ["x"]}, failure("wrong_type", item="thing 'A'", key="mass_kg", value="x", type="a number", allowed=Range(0, 10, "kg", above=True))),
     ({"name": ["A"], "mass_kg": [1.0], "ends_m": [[0.0, 2.0]]}, failure("out_of_range", item="thing 'A'", key="ends_m", value=[0.0, 2.0], allowed=Range(-1, 1, "m"))),
     ({"name": ["A"], "mass_kg": [1.0], "ends_m": [[0.0, nan]]}, failure("number_not_finite", item="thing 'A'", key="ends_m", value=[0.0, nan], allowed=Range(-1, 1, "m"))),
-    ({"name": ["A"], "mass_kg": [1.0], "ends_m": [1.0]}, failure("not_numbers", item="thing 'A'", key="ends_m", value=1.0, unit="m")),
+    ({"name": ["A"], "mass_kg": [1.0], "ends_m": [1.0]}, failure("not_number_list", item="thing 'A'", key="ends_m", value=1.0, unit="m")),
     ({"name": ["A", "B"], "mass_kg": [1.0, 1.0], "sort": ["near", "fra"]}, failure("misspelt_name", item="thing 'B'", key="sort", value="fra", allowed=("near", "far"), meant="far")),
     ({"name": ["A"], "mass_kg": [1.0], "tags": [["red", "bleu"]]}, failure("unknown_name", item="thing 'A'", key="tags", value=["red", "bleu"], allowed=("red", "blue"))),
     ({"name": ["A"], "mass_kg": [1.0], "tags": ["green"]}, failure("unknown_name", item="thing 'A'", key="tags", value=["green"], allowed=("red", "blue"))),
     ({"name": ["A", None], "mass_kg": [1.0, 1.0]}, failure("missing_key", item="thing 2", key="name", cause="a text in quotes is needed")),
-    ({"name": ["A", ""], "mass_kg": [1.0, 1.0]}, failure("empty_text", item="thing 2", key="name", value="")),
+    ({"name": ["A", ""], "mass_kg": [1.0, 1.0]}, failure("empty_string", item="thing 2", key="name", value="")),
     ({"name": ["A"], "mass_kg": [1.0], "turns": [2.5]}, failure("wrong_type", item="thing 'A'", key="turns", value=2.5, type="a whole number", allowed=Range(1, 9, "-"))),
     ({"name": ["A"], "mass_kg": [1.0], "turns": [10.0]}, failure("out_of_range", item="thing 'A'", key="turns", value=10, allowed=Range(1, 9, "-"))),
     ({"name": ["A"], "mass_kg": [1.0], "turns": [inf]}, failure("wrong_type", item="thing 'A'", key="turns", value=inf, type="a whole number", allowed=Range(1, 9, "-"))),
@@ -332,15 +332,15 @@ def test_columns_of_texts_and_of_truth() -> None:
 
 
 @pytest.mark.parametrize("value, why", [
-    (3, failure("no_table", key="thing", value=3, table="thing")),
-    ([], failure("no_table", key="thing", table="thing")),
-    ({}, failure("no_table", key="thing", table="thing")),
-    ([dict(THING), 3], failure("no_table", key="thing", table="thing")),
+    (3, failure("not_table_list", key="thing", value=3, table="thing")),
+    ([], failure("not_table_list", key="thing", table="thing")),
+    ({}, failure("not_table_list", key="thing", table="thing")),
+    ([dict(THING), 3], failure("not_table_list", key="thing", table="thing")),
     ([dict(THING), {"mass_kg": 1.0}], failure("missing_key", item="thing 2", key="name", cause="a text in quotes is needed")),
     ([{"name": "A"}], failure("missing_key", item="thing 'A'", key="mass_kg", allowed=Range(0, 10, "kg", above=True))),
     ([{**THING, "mas_kg": 1.0}], failure("misspelt_key", item="thing 'A'", key="mas_kg", meant="mass_kg")),
-    ([{**THING, "name": ""}], failure("empty_text", item="thing 1", key="name", value="")),
-    ([{**THING, "name": 3}], failure("no_text", item="thing 1", key="name", value=3)),
+    ([{**THING, "name": ""}], failure("empty_string", item="thing 1", key="name", value="")),
+    ([{**THING, "name": 3}], failure("not_string", item="thing 1", key="name", value=3)),
     ([{**THING, "mass_kg": 0.0}], failure("out_of_range", item="thing 'A'", key="mass_kg", value=0.0, allowed=Range(0, 10, "kg", above=True))),
     ([{**THING, "mass_kg": 11}], failure("out_of_range", item="thing 'A'", key="mass_kg", value=11, allowed=Range(0, 10, "kg", above=True))),
     ([{**THING, "mass_kg": nan}], failure("number_not_finite", item="thing 'A'", key="mass_kg", value=nan, allowed=Range(0, 10, "kg", above=True))),
@@ -355,7 +355,7 @@ def test_items_at_the_ends_of_their_ranges() -> None:
     made = things_of([{**THING, "mass_kg": 10.0, "load_N": 0.0, "force_N": 10}])[0]
     assert (made.mass_kg, made.load_N, made.force_N, type(made.force_N)) == (10, 0, 10, float)
     assert made == Thing(name="A", mass_kg=10, load_N=0, force_N=10)
-    assert refused(Thing, name="", mass_kg=1) == failure("empty_text", key="name", value="")
+    assert refused(Thing, name="", mass_kg=1) == failure("empty_string", key="name", value="")
 
 
 # Keys by their path.
@@ -364,7 +364,7 @@ def test_keys_by_path() -> None:
     assert "part.arrays" not in known and "more.size_m" in known and "thing.*.mass_kg" in known and "thing.mass_kg" not in known
     assert attribute_of(Book, "thing.B.b.mass_kg").name == "mass_kg"
     assert refused(attribute_of, Book, "part.siez_m") == failure("misspelt_key", key="part.siez_m", meant="part.size_m")
-    assert refused(attribute_of, Book, "part.old_m") == failure("key_moved", key="part.old_m", now="part.size_m")
+    assert refused(attribute_of, Book, "part.old_m") == failure("key_renamed", key="part.old_m", now="part.size_m")
 
 
 def test_values_are_set_by_path() -> None:
@@ -382,7 +382,7 @@ def test_values_are_set_by_path() -> None:
     assert data["part"] == {"size_m": 3.0}
     assert refused(set_value, Book, data, "part.zzzz", 1) == failure("misspelt_key", key="part.zzzz")
     assert refused(set_value, Book, data, "thing.Q.mass_kg", 1) == failure("no_such_key", key="thing.Q.mass_kg", known="A, B.b")
-    assert refused(set_value, Book, data, "other.Q.mass_kg", 1) == failure("no_such_table", key="other.Q.mass_kg", table="other")
+    assert refused(set_value, Book, data, "other.Q.mass_kg", 1) == failure("section_not_in_case", key="other.Q.mass_kg", table="other")
 
 
 def test_many_values_are_filled_in_a_copy() -> None:
@@ -420,7 +420,7 @@ def test_keys_that_moved() -> None:
         assert with_keys_moved(Book, {"more": {"old_share": 1}}) == {"more": {}, "part": {"share": 1}}
     with pytest.warns(FutureWarning):
         assert refused(with_keys_moved, Book, {"part": {"old_m": 1.0, "size_m": 2.0}}) == (
-            failure("key_twice", key="part.old_m", value=1.0, new_key="part.size_m", old_key="part.old_m"))
+            failure("deprecated_key_duplicated", key="part.old_m", value=1.0, new_key="part.size_m", old_key="part.old_m"))
     with pytest.warns(FutureWarning):
         assert with_keys_moved(Book, {"more": {"old_share": 1}, "part": 3}) == {"more": {"old_share": 1}, "part": 3}
     for untouched in ({"part": 3}, {"part": {"size_m": 1}}, {}):
@@ -494,8 +494,8 @@ def test_files_of_toml(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "a.toml"
     file.write_text("a = 1\n")
     assert toml.read_toml(file, "case") == ("a = 1\n", {"a": 1})
-    assert refused(toml.read_toml, tmp_path / "b.toml", "campaign") == failure("no_such_case_file", of="campaign")
-    assert refused(toml.read_toml, tmp_path, "case") == failure("cannot_be_read", cause="Is a directory")
+    assert refused(toml.read_toml, tmp_path / "b.toml", "campaign") == failure("case_file_not_found", of="campaign")
+    assert refused(toml.read_toml, tmp_path, "case") == failure("read_failed", cause="Is a directory")
     monkeypatch.setattr(toml, "LARGEST_BYTES", 6)
     assert toml.read_toml(file, "case")[1] == {"a": 1}
     monkeypatch.setattr(toml, "LARGEST_BYTES", 5)

@@ -130,7 +130,7 @@ def test_hdf5_times_that_are_none_are_one_sentence(value: float, chain: tuple[Pa
     with warnings.catch_warnings(), pytest.raises(StatejumpError) as refused:
         warnings.simplefilter("error")
         sj.load(path)
-    assert refused.value == failure("time_not_rising", file="members.h5", at_s=value, index=1)
+    assert refused.value == failure("time_not_increasing", file="members.h5", at_s=value, index=1)
 
 
 def test_a_result_file_keeps_the_histories(chain: tuple[Path, list[str], np.ndarray], tmp_path: Path) -> None:
@@ -223,11 +223,11 @@ WRONG: dict[str, tuple[Callable[[list[str]], list[str]], str]] = {
     "ends of two units": (lambda rows: [rows[0].replace("L2_K", "L1@b_degC").replace("L1_K", "L1@a_K"), *rows[1:]],
                           failure("columns_of_other_units", file="members.csv", column="'L1@a'", other="'L1@b'")),
     "NaN": (lambda rows: [*rows[:2], rows[2].rpartition(",")[0] + ",nan", *rows[3:]],
-            failure("cell_unusable", file="members.csv", column="'L10_K'", line=3, cause="'nan' is not a finite number")),
+            failure("bad_cell", file="members.csv", column="'L10_K'", line=3, cause="'nan' is not a finite number")),
     "empty cell": (lambda rows: [*rows[:2], rows[2].rpartition(",")[0] + ",", *rows[3:]],
-                   failure("cell_unusable", file="members.csv", column="'L10_K'", line=3, cause="the cell is empty")),
+                   failure("bad_cell", file="members.csv", column="'L10_K'", line=3, cause="the cell is empty")),
     "times go back": (lambda rows: [*rows[:2], rows[3], rows[2], *rows[4:]],
-                      failure("times_do_not_rise", file="members.csv", column="time_s", time="1.0", line=4, before="2.5")),
+                      failure("times_not_increasing", file="members.csv", column="time_s", time="1.0", line=4, before="2.5")),
     "times too close": (lambda rows: [*rows[:2], "1e-320," + rows[2].partition(",")[2], *rows[3:]],
                         failure("times_too_close", file="members.csv", first_s=0.0, second_s=1e-320)),
     "wrong unit": (lambda rows: [rows[0].replace("L2_K", "L2 [C]"), *rows[1:]],
@@ -241,7 +241,7 @@ WRONG: dict[str, tuple[Callable[[list[str]], list[str]], str]] = {
     "short row": (lambda rows: [*rows[:3], "2.5,300"], failure("row_of_other_length", file="members.csv", cells=2, line=4, width=11)),
     "no rows": (lambda rows: rows[:2], failure("fewer_than_two_times", file="members.csv")),
     "below absolute zero": (lambda rows: [*rows[:2], rows[2].rpartition(",")[0] + ",-3", *rows[3:]],
-                            failure("temperature_unusable", file="members.csv", at_s=1.0, column="'L10'", cause="-3 is below absolute zero")),
+                            failure("bad_temperature", file="members.csv", at_s=1.0, column="'L10'", cause="-3 is below absolute zero")),
     "control characters": (lambda rows: [rows[0].replace("L2_K", "L\x1b2_K"), *rows[1:]], failure("temperature_column_without_unit", cause="it names no unit of temperature")),
 }
 
@@ -260,12 +260,12 @@ def test_what_is_wrong_with_a_file_is_one_sentence(
 
 
 KEYS = {
-    "no such file": ('members_file = "none.csv"', failure("no_such_temperature_file", file="none.csv")),
+    "no such file": ('members_file = "none.csv"', failure("temperature_file_not_found", file="none.csv")),
     "not a table": ('members_file = "/etc/passwd"', failure("suffix_unknown", suffixes=".csv, .txt, .tsv, .dat, .lvm, .h5, .hdf5")),
     "both": ('members_file = "members.csv"\ntable_time_s = [0.0, 1.0]',
-             failure("beside_key", key="thermal.table_time_s", in_section="thermal.")),
+             failure("conflicting_key", key="thermal.table_time_s")),
     "reference alone": ("table_time_s = [0.0, 1.0]\ntable_temperature_change_K = [0.0, 1.0]",
-                        failure("only_in_case_file", key="thermal.reference_temperature_K", value=293.15)),
+                        failure("key_of_case_file", key="thermal.reference_temperature_K", value=293.15)),
     "column": ('table_file = "members.csv"', failure("several_columns", key="thermal.table_column", table="members.csv")),
     "no such column": ('table_file = "members.csv"\ntable_column = "LX1"', failure("misspelt_column", meant="L1")),
     "reference is no temperature": ('members_file = "members.csv"\nlead_in_s = -1.0',
@@ -292,7 +292,7 @@ def test_what_is_repeated_ends_where_it_begins(chain: tuple[Path, list[str], np.
     write(path.with_name("members.csv"), ",".join(["time_s", *(f"{name}_K" for name in names)]), np.c_[TIMES, given])
     assert sj.load(path).definition.ending.temperature_change_K == pytest.approx(0.5)  # every cycle returns
     path.write_text(path.read_text().replace("[thermal]", "[thermal]\nreturn_to_reference = false"))
-    with failing("table_does_not_close", table="members.csv", away_K=0.5, column=names[3]):
+    with failing("table_not_periodic", table="members.csv", away_K=0.5, column=names[3]):
         sj.load(path)
 
 
@@ -313,5 +313,5 @@ def test_a_result_file_cannot_name_a_file(chain: tuple[Path, list[str], np.ndarr
     path, _, _ = chain
     data = tomllib.loads(path.read_text())
     data["thermal"]["members_file"] = str(path.with_name("members.csv"))
-    with failing("only_in_case_file", key="thermal.members_file"):
+    with failing("key_of_case_file", key="thermal.members_file"):
         parse_case(data)

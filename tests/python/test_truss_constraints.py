@@ -96,7 +96,7 @@ def test_mistakes_are_named(name: str) -> None:
 
 
 def test_names_of_constraints_differ() -> None:
-    _refused(facing(tie(), tie()), failure("name_taken", part="constraint"))
+    _refused(facing(tie(), tie()), failure("duplicate_name", part="constraint"))
 
 
 def _refused(made: dict[str, Any], expected: Failure) -> None:
@@ -108,4 +108,4 @@ def _refused(made: dict[str, Any], expected: Failure) -> None:
 def test_the_dem_has_no_constraints() -> None:
     with pytest.raises(sj.StatejumpError) as error:
         sj.load(facing(tie())).dem()
-    assert error.value == failure("dem_cannot_run")
+    assert error.value == failure("dem_constraint")

@@ -12,10 +12,10 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from conftest import REPOSITORY
+from failures import failing
 from test_truss_iwan import JOINT, bolted
 
 from statejump import _engine
-from statejump.core.errors import StatejumpError
 from statejump.kinds.truss import masses
 from statejump.kinds.truss.arrays import GROUND
 from statejump.kinds.truss.motion import joint_dashpots_sqrt_kg
@@ -88,7 +88,7 @@ def test_creak_of_a_latch_has_its_slips_and_their_heat() -> None:
 
 def test_arch_snaps_where_the_path_ends_with_the_speed_of_what_it_sets_free() -> None:
     case = sj.load("two_bar_snap")
-    with pytest.raises(StatejumpError, match="slip runs away at a temperature change of 3.95") as told:
+    with failing("no_continuation", joint="apex") as told:
         case.reduced()
     assert "apex" in str(told.value)
     speeds, at = [], []
@@ -141,7 +141,7 @@ def test_an_arch_without_a_joint_snaps_in_both_models_where_its_path_ends() -> N
     length = np.hypot(half, height)
     shortest = (length / (1 - load * length / (2 * rigidity * height))).min()
     at = (1 - shortest / np.hypot(half, rise)) / shrinks
-    with pytest.raises(StatejumpError, match="the path ends at a limit point") as told:
+    with failing("no_continuation") as told:
         case.reduced()
     assert told.value.temperature_change_K == pytest.approx(at, rel=1e-6)
     runs = case.reduced(dynamic=True), case.dem()

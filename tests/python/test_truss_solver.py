@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from failures import failing, failure
 from statejump import _engine
 from statejump.kinds.spring_slider import reduced
 from statejump.core.errors import FailedRun, StatejumpError
@@ -256,18 +257,17 @@ def test_slack_cable_does_not_push() -> None:
     assert np.all(path(document, locate_events=False).states["tension_N"] == 0)
 
 
-def failure(document: dict[str, Any]) -> str:
+def refused(document: dict[str, Any]) -> StatejumpError:
     with pytest.raises(StatejumpError) as caught:
         path(document)
-    return str(caught.value)
+    return caught.value
 
 
 def test_mechanism_names_its_free_modes() -> None:
     document = generate.mast(2)
     del document["torsion_spring"]
-    message = failure(document)
-    assert "mechanism even with every joint held" in message
-    assert "4 free modes: node '" in message
+    assert refused(document) == failure("held_mechanism")
+    assert "4 free modes: node '" in str(refused(document).cause)
 
 
 def column(load_N: float, temperature_change_K: float = 0.0) -> dict[str, Any]:
@@ -293,9 +293,7 @@ NEAR_BUCKLING = 1e-3
 
 def test_column_under_a_load_buckles_at_the_closed_form() -> None:
     path(column(500 * (1 - NEAR_BUCKLING)))
-    message = failure(column(500 * (1 + NEAR_BUCKLING)))
-    assert "has buckled at a temperature change of 0 K" in message
-    assert "1 mode without resistance: node 'B' mostly along y" in message
+    assert refused(column(500 * (1 + NEAR_BUCKLING))) == failure("buckled", temperature_change_K=0.0, nodes=["B"])
 
 
 def test_heated_column_buckles_at_its_temperature() -> None:
@@ -303,7 +301,7 @@ def test_heated_column_buckles_at_its_temperature() -> None:
     critical_K = 500 / (7e6 - 500) / 1e-5
     path(column(0.0, critical_K * (1 - NEAR_BUCKLING)))
     highest_K = critical_K * (1 + NEAR_BUCKLING)
-    assert f"has buckled at a temperature change of {highest_K:.9g} K" in failure(column(0.0, highest_K))
+    assert refused(column(0.0, highest_K)) == failure("buckled", temperature_change_K=highest_K)
 
 
 def test_slender_ring_buckles_when_its_spokes_are_too_soft() -> None:
@@ -323,7 +321,7 @@ def test_slender_ring_buckles_when_its_spokes_are_too_soft() -> None:
         return made
 
     path(ring(16 * 0.92), increments_per_branch=1, locate_events=False)
-    assert "has buckled at a temperature change of 0 K" in failure(ring(16 * 1.02))
+    assert refused(ring(16 * 1.02)) == failure("buckled", temperature_change_K=0.0)
 
 
 @pytest.mark.parametrize("bays", [3, 5, 12, 50])
@@ -523,7 +521,6 @@ def test_soft_bar_does_not_hold_up_a_path() -> None:
 def test_no_step_is_divided_without_end() -> None:
     """Newton's method finds states only so near to each other that a branch would take millions of steps."""
     told = itertools.count()
-    sentence = "no equilibrium by longer steps at .* K .*: 10000 steps since the last change of a joint, the last of .* s"
-    with pytest.raises(FailedRun, match=sentence):
+    with failing("too_many_steps", raised=FailedRun):
         path(spoiled("ball_tripod", "ball_joint", 0, "friction_coefficient", 1e-320),
              progress=lambda share: next(told) < 100_000)

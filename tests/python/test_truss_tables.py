@@ -193,7 +193,7 @@ WRONG = {
     failure("columns_of_one_key", file="node.csv", other="name", column="name", key_of_both="name"): ("name,name\nN0,N0\n", "node"),
     failure("no_column", file="node.csv"): ("", "node"),
     failure("no_row", file="node.csv"): ("name,position_m\n", "node"),
-    failure("cell_unusable", file="node.csv", line=3, column="'position_m'", cause="'x' is not a finite number"): (
+    failure("bad_cell", file="node.csv", line=3, column="'position_m'", cause="'x' is not a finite number"): (
         "name,position_m\nN0,0 0\nN1,1 x\n", "node"),
     failure("cell_of_other_length", file="node.csv", line=3, column="'position_m'", width=2, numbers=1): (
         "name,position_m\nN0,0 0\nN1,1\n", "node"),
@@ -203,7 +203,7 @@ WRONG = {
         "name,position_m\nN0,0 0\nN1,\n", "node"),
     failure("unknown_name", file="case.toml", item="node 'N0'", key="fixed", value=["w"], allowed=("x", "y", "z")): (
         "name,position_m,fixed\nN0,0 0,w\n", "node"),
-    failure("name_taken", file="case.toml", item="node 2", key="name", value="N0", part="node"): (
+    failure("duplicate_name", file="case.toml", item="node 2", key="name", value="N0", part="node"): (
         "name,position_m\nN0,0 0\nN0,1 0\n", "node"),
     failure("missing_key", file="case.toml", item="node 2", key="name", cause="a text in quotes is needed"): ("name,position_m\nN0,0 0\n,1 0\n", "node"),
     failure("missing_key", file="case.toml", item="tables.node", key="position_m", allowed=Range(-1000000.0, 1000000.0, "m")): ("name\nN0\n", "node"),
@@ -227,11 +227,11 @@ def test_wrong_tables(expected: Failure, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("given, expected", [
-    ({"node": "no.csv"}, failure("no_such_table_file", file="no.csv")),
+    ({"node": "no.csv"}, failure("table_file_not_found", file="no.csv")),
     ({"node": "a.xlsx"}, failure("suffix_unknown", file="case.toml", key="tables.node", value="a.xlsx", suffixes=".csv, .txt, .tsv, .dat, .lvm, .h5, .hdf5")),
     ({"nodes": "a.csv"}, failure("misspelt_key", file="case.toml", key="tables.nodes", meant="tables.node")),
-    ({"link": "a.csv"}, failure("table_twice", file="case.toml", key="tables.link", value="a.csv", table="link")),
-    ({"node": 1}, failure("no_text", file="case.toml", key="tables.node", value=1)),
+    ({"link": "a.csv"}, failure("table_and_section", file="case.toml", key="tables.link", value="a.csv", table="link")),
+    ({"node": 1}, failure("not_string", file="case.toml", key="tables.node", value=1)),
 ])
 def test_wrong_names_of_tables(given: dict[str, Any], expected: Failure, tmp_path: Path) -> None:
     document = generate.chain(2)
@@ -243,7 +243,7 @@ def test_wrong_names_of_tables(given: dict[str, Any], expected: Failure, tmp_pat
 
 
 def test_a_dict_has_no_files_beside_it() -> None:
-    with failing("tables_only_in_case_file"):
+    with failing("tables_of_case_file"):
         parse_case({**generate.chain(2), "tables": {"slider": "a.csv"}})
 
 
@@ -275,7 +275,7 @@ def test_events_are_a_sequence() -> None:
     (failure("axis_along_link"), lambda document: {"axis": [
         second - first for first, second in zip(*(node["position_m"] for node in document["node"]
                                                   if node["name"] in document["link"][-1]["nodes"]))]}),
-    (failure("links_without_place", key="links"), lambda document: {"links": [document["link"][0]["name"], document["link"][-1]["name"]]}),
+    (failure("links_not_adjacent", key="links"), lambda document: {"links": [document["link"][0]["name"], document["link"][-1]["name"]]}),
     (None, lambda document: {}),
 ])
 def test_blocks_of_rows_are_checked_as_all_of_them(

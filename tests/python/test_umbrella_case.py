@@ -42,7 +42,7 @@ MISTAKES = {
         [('kind = "umbrella"', 'kind = "umbrela"')],
         failure("misspelt_name", key="case.kind", value="umbrela", allowed=("spring_slider", "umbrella", "statics", "truss"), meant="umbrella")),
     "kind that is no text": (
-        [('kind = "umbrella"', "kind = 3")], failure("no_text", key="case.kind", value=3)),
+        [('kind = "umbrella"', "kind = 3")], failure("not_string", key="case.kind", value=3)),
     "kind left out": (
         [('kind = "umbrella"\n', "")],
         failure("missing_key", key="case.kind", cause="a text in quotes is needed")),
@@ -51,7 +51,7 @@ MISTAKES = {
     "header misspelt": ([("[case]", "[caes]")], failure("misspelt_key", section="section [caes]", meant="[case]")),
     "no header": ([("[case]", "[rib]")], failure("missing_key", section="section [case]")),
     "header that is no section": (
-        [("[case]", "case = 1\n[rib]")], failure("not_a_section", key="case", value=1, wanted="case")),
+        [("[case]", "case = 1\n[rib]")], failure("not_section", key="case", value=1, wanted="case")),
     "section of another kind": ([("[frame]", "[link]\n[frame]")], failure("misspelt_key", section="section [link]", meant="[link_bc]")),
     "section left out": ([("[frame]\nlength_m = 0.12 ", "")], failure("missing_key", section="section [frame]")),
     "unknown key": (
@@ -72,7 +72,7 @@ MISTAKES = {
         [('"hertz_internal"', '"zzz"')], failure("unknown_name", key="joint.normal_law", value="zzz", allowed=NORMAL)),
     "law that is no text": (
         [('"hertz_internal"', "{a = 1}")],
-        failure("no_text", key="joint.normal_law", value={'a': 1})),
+        failure("not_string", key="joint.normal_law", value={'a': 1})),
     "dissipation law": (
         [('dissipation_law = "none"', 'dissipation_law = "hunt"')],
         failure("unknown_name", key="joint.dissipation_law", value="hunt", allowed=("none", "lankarani_nikravesh", "hunt_crossley", "flores", "exact_restitution"))),
@@ -106,19 +106,19 @@ MISTAKES = {
         failure("link_without_length", key="link_bc.thermal_expansion_per_K", value=0.0005, at_K=-9000.0)),
     "radii that come out equal": (
         [("radial_clearance_m = 1e-4", "radial_clearance_m = 1e-25")],
-        failure("radii_equal", key="joint.radial_clearance_m", value=1e-25, journal_radius_m=0.005)),
+        failure("clearance_below_precision", key="joint.radial_clearance_m", value=1e-25, radius_key="joint.journal_radius_m", radius_m=0.005)),
     "expansion closes the clearance": (
         [joint("journal_thermal_expansion_per_K = 5e-4")],
-        failure("clearance_of_rib_closes", key="joint.radial_clearance_m", value=0.0001, at_K=100.0)),
+        failure("clearance_closes", key="joint.radial_clearance_m", value=0.0001, at_K=100.0)),
     "journal without radius": (
         [COLD, ("length_m = 0.12", "length_m = 0.1"), joint("journal_thermal_expansion_per_K = 5e-4")],
-        failure("part_without_radius", key="joint.journal_thermal_expansion_per_K", value=0.0005, at_K=-9000.0, part="journal")),
+        failure("no_radius_left", key="joint.journal_thermal_expansion_per_K", value=0.0005, at_K=-9000.0, part="journal")),
     "bearing without radius": (
         [COLD, ("length_m = 0.12", "length_m = 0.1"), joint("bearing_thermal_expansion_per_K = 5e-4")],
-        failure("part_without_radius", key="joint.bearing_thermal_expansion_per_K", value=0.0005, at_K=-9000.0, part="bearing")),
+        failure("no_radius_left", key="joint.bearing_thermal_expansion_per_K", value=0.0005, at_K=-9000.0, part="bearing")),
     "friction velocities in the wrong order": (
         [("friction_v0_m_per_s = 1e-5", "friction_v0_m_per_s = 1e-4")],
-        failure("not_above_v0", key="joint.friction_v1_m_per_s", value=0.0001, friction_v0_m_per_s=0.0001)),
+        failure("friction_velocities_unordered", key="joint.friction_v1_m_per_s", value=0.0001, friction_v0_m_per_s=0.0001)),
     "no restitution": (
         [joint("restitution = 0")],
         failure("restitution_zero", key="joint.restitution", value=0.0, law="none")),
@@ -141,43 +141,43 @@ MISTAKES = {
         failure("bias_out_of_range", key="torsion_spring.bias_rad", value=-2.0, most=1.3796341802638374, least=-1.7619584733259557)),
     "start in penetration": (
         [start("eccentricity_m = 1e-3")],
-        failure("beyond_clearance", key="start.eccentricity_m", value=0.001, clearance=0.0001)),
+        failure("exceeds_clearance", key="start.eccentricity_m", value=0.001, clearance=0.0001)),
     "start mode": (
         [('mode = "rest"', 'mode = "resting"')],
         failure("misspelt_name", key="start.mode", value="resting", allowed=("rest", "matched", "loaded"), meant="rest")),
     "contact angle without contact": (
         [start("contact_angle_rad = 0.1", "matched")],
-        failure("only_with_loaded_start", key="start.contact_angle_rad", value=0.1)),
+        failure("requires_loaded_start", key="start.contact_angle_rad", value=0.1)),
     "loaded without spring": (
         [LOADED],
-        failure("spring_does_not_load", key="start.mode", value="loaded", spring_key="stiffness_N_m_per_rad")),
+        failure("spring_without_preload", key="start.mode", value="loaded", spring_key="stiffness_N_m_per_rad")),
     "loaded without bias": (
         [LOADED, ("[thermal]", "[torsion_spring]\nstiffness_N_m_per_rad = 1\n[thermal]")],
-        failure("spring_does_not_load", key="start.mode", value="loaded", spring_key="bias_rad")),
+        failure("spring_without_preload", key="start.mode", value="loaded", spring_key="bias_rad")),
     "loaded and eccentric": (
         [SPRING, start("eccentricity_m = 1e-5", "loaded")],
-        failure("equilibrium_decides", key="start.eccentricity_m", value=1e-05)),
+        failure("set_by_equilibrium", key="start.eccentricity_m", value=1e-05)),
     "contact outside the friction cone": (
         [SPRING, friction("mindlin"), start("contact_angle_rad = -0.3", "loaded")],
-        failure("angle_beyond_friction", key="start.contact_angle_rad", value=-0.3, least_rad=-0.2914567944778671, largest_rad=0.2914567944778671)),
+        failure("angle_outside_friction_cone", key="start.contact_angle_rad", value=-0.3, least_rad=-0.2914567944778671, largest_rad=0.2914567944778671)),
     "contact angle held by no friction": (
         [SPRING, start("contact_angle_rad = 0.1", "loaded")],
-        failure("friction_holds_no_load", key="start.contact_angle_rad", value=0.1)),
+        failure("friction_without_static_load", key="start.contact_angle_rad", value=0.1)),
     "adaptive steps with memory": (
         [friction("mindlin"), ('method = "rk4"', 'method = "adaptive"')],
         failure("adaptive_with_memory", key="reduced.method", value="adaptive", law="mindlin")),
     "steps between samples": (
         [("[dem]\nsteps_per_cycle = 1600000", "[dem]\nsteps_per_cycle = 100001")],
-        failure("no_multiple_of_samples", key="dem.steps_per_cycle", value=100001, samples=2000)),
+        failure("not_multiple_of_samples", key="dem.steps_per_cycle", value=100001, samples=2000)),
     "fewer steps than samples": (
         [('method = "rk4"\nsteps_per_cycle = 400000', 'method = "rk4"\nsteps_per_cycle = 1000')],
-        failure("no_multiple_of_samples", key="reduced.steps_per_cycle", value=1000, samples=2000)),
+        failure("not_multiple_of_samples", key="reduced.steps_per_cycle", value=1000, samples=2000)),
     "spread beyond the clearance": (
         [("start_spread_m = 1e-6", "start_spread_m = 1e-3")],
         failure("not_above_zero_to_clearance", key="ensemble.start_spread_m", value=0.001, clearance=0.0001)),
     "a table that does not end": (
         [('shape = "triangle"', 'shape = "table"')],
-        failure("beside_table_shape", key="thermal.temperature_change_max_K", in_section="thermal.")),
+        failure("conflicting_key", key="thermal.temperature_change_max_K", other="thermal.shape = 'table'")),
 }
 
 

@@ -218,7 +218,7 @@ def load(file: Path, unit_m: float = 1.0, flip: bool = False) -> _engine.BoreMes
 def check_journal(key: str, radius_m: float | None) -> None:
     """Raise NotAllowed for a radius of a journal that is none; None: there is no journal."""
     if radius_m is not None and not 0 < radius_m < float("inf"):
-        raise NotAllowed(key, radius_m, code="not_positive_with_unit")
+        raise NotAllowed(key, radius_m, code="not_positive", unit="m")
 
 
 def measure(mesh: _engine.BoreMesh, name: str, journal_radius_m: float | None = None) -> Bore:

@@ -35,7 +35,7 @@ def montecarlo(
     """Run a case whose parameters are random; see :func:`statejump.montecarlo`."""
     for key, wanted in distributions.items():
         if not isinstance(wanted, Mapping):
-            raise NotAllowed(f"distributions[{key!r}]", wanted, code="distribution_no_dict")
+            raise NotAllowed(f"distributions[{key!r}]", wanted, code="distribution_not_dict")
     tables = {key: {"key": key, **plain(wanted)} for key, wanted in distributions.items()}
     return _run(case, MONTECARLO, tables, model, samples, seed, workers, progress, outputs)
 

@@ -90,7 +90,7 @@ def _campaign(path: Path, text_read: str, data: Mapping[str, Any], command: str)
     header_given = data.get("campaign")
     for key in ("samples", "seed"):
         if command == SWEEP and isinstance(header_given, Mapping) and key in header_given:
-            raise NotAllowed(f"campaign.{key}", code="only_montecarlo_draws")
+            raise NotAllowed(f"campaign.{key}", code="sweep_with_distribution")
     _check_sections(data)
     # The header is judged before what varies: that depends on the case.
     found: Any = structure(FILES[command], {"vary": [{}], **data})
@@ -101,7 +101,7 @@ def _campaign(path: Path, text_read: str, data: Mapping[str, Any], command: str)
     if not isinstance(tables_given, list) or not tables_given or not all(
         isinstance(table, Mapping) for table in tables_given
     ):
-        raise MissingKey("vary", code="nothing_varies", section="[[vary]]")
+        raise MissingKey("vary", code="campaign_without_vary", section="[[vary]]")
     try:
         asked = checked(header.outputs, case)
     except NotAllowed as refused:
@@ -135,7 +135,7 @@ def plan_for(
     named = list(vary)
     found = vary_of(named, case, command)
     if not found:
-        raise MissingKey("what varies", code="no_key_varies")
+        raise MissingKey("what varies", code="vary_without_key")
     name = f"{case.name}_{command}"
     header = {"name": name, "title": case.title, "case": str(case.origin.file or case.name), "model": model,
               "outputs": list(asked), "samples": samples, "seed": seed}
@@ -156,7 +156,7 @@ def vary_tables(path: Path) -> list[tuple[str, Mapping[str, Any]]]:
         _check_sections(data, ("vary",))
         tables_given = data.get("vary")
         if not isinstance(tables_given, list) or not all(isinstance(table, Mapping) for table in tables_given):
-            raise MissingKey("vary", code="nothing_varies", section="[[vary]]")
+            raise MissingKey("vary", code="campaign_without_vary", section="[[vary]]")
     except StatejumpError as failure:
         raise failure.located(file=path) from None
     return [(f"{path.name}: vary[{number}]", table) for number, table in enumerate(tables_given, start=1)]
@@ -191,7 +191,7 @@ def check_campaign(case: Case, model: str, named: str, before: str = "") -> None
 def check_workers(key: str, workers: int | None) -> None:
     """Raise NotAllowed for a number of workers that is none."""
     if workers is not None and workers < 1:
-        raise NotAllowed(key, workers, code="below_one")
+        raise NotAllowed(key, workers, code="below_minimum", least=1)
 
 
 def vary_of(given: Iterable[tuple[str, Mapping[str, Any]]], case: Case, command: str) -> tuple[Varied, ...]:

@@ -19,7 +19,7 @@ def checked(given: Sequence[str], case: Case) -> tuple[str, ...]:
     for place, name in enumerate(names):
         parts(name)
         if name in names[:place]:
-            raise NotAllowed("outputs", name, code="there_twice")
+            raise NotAllowed("outputs", name, code="duplicate")
     if names:
         values(names, sampled(case, "reduced", names))
     return names

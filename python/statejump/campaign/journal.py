@@ -55,7 +55,7 @@ class Journal(Kept):
         try:
             self._stream: IO[bytes] = open(self.path, "a+b")
         except OSError as failure:
-            raise NotWritten(code="cannot_be_written", file=self.path, cause=failure.strerror) from None
+            raise NotWritten(code="write_failed", file=self.path, cause=failure.strerror) from None
         try:
             self._open(restart)
         except BaseException:
@@ -102,7 +102,7 @@ class Journal(Kept):
             self._stream.flush()
             os.fsync(self._stream.fileno())
         except OSError as failure:
-            raise NotWritten(code="cannot_be_written", file=self.path, cause=failure.strerror) from None
+            raise NotWritten(code="write_failed", file=self.path, cause=failure.strerror) from None
 
     def add(self, batch: Batch) -> None:
         """Keep finished samples; on return they are on disk."""

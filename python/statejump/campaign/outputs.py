@@ -43,7 +43,7 @@ LIKE = "must be HOW:COLUMN[ITEM].AXIS, as 'jump:displacement_m[P].x'"
 def parts(name: str) -> re.Match[str]:
     found = FORM.fullmatch(name) if isinstance(name, str) else None
     if found is None:
-        raise NotAllowed("outputs", name, code="output_form")
+        raise NotAllowed("outputs", name, code="bad_output_name")
     if found["how"] not in HOW:
         raise NotAllowed("outputs", name, code="output_how_unknown", hows=", ".join(HOW))
     return found
@@ -121,7 +121,7 @@ def _value(name: str, run: Run, columns: dict[str, Column]) -> float:
         raise NotAllowed("outputs", name, code="output_without_items", column=asked["column"])
     if asked["axis"] is not None:
         if values.ndim == 1:
-            raise NotAllowed("outputs", name, code="output_no_vector", column=asked["column"])
+            raise NotAllowed("outputs", name, code="output_not_vector", column=asked["column"])
         if asked["axis"] not in AXES:
             raise NotAllowed("outputs", name, code="output_axis", known=", ".join(AXES))
         values = values[:, AXES.index(asked["axis"])]
@@ -141,7 +141,7 @@ def _surface(run: Run, name: str) -> dict[str, Column]:
     try:
         return {key: Column(values) for key, values in _HISTORY(run).items()}
     except StatejumpError as refused:
-        raise NotAllowed("outputs", name, refused.phrase(), code="output_of_no_surface",
+        raise NotAllowed("outputs", name, refused.phrase(), code="output_without_surface",
                          remedy=refused.remedy) from None
 
 
@@ -151,5 +151,5 @@ def _near(what: str, given: str, known: Sequence[str]) -> dict[str, str]:
         return {"code": "output_misspelt", "meant": near[0]}
     listed = ", ".join(known[:12]) + (", ..." if len(known) > 12 else "")
     if known:
-        return {"code": "output_of_nothing", "what_it_is": what.removesuffix("s"), "known": listed}
-    return {"code": "output_of_no_items", "items": what}
+        return {"code": "output_item_undefined", "what_it_is": what.removesuffix("s"), "known": listed}
+    return {"code": "output_without_item", "items": what}

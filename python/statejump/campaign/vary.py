@@ -97,7 +97,7 @@ def varied(table: Mapping[str, Any], case: Case, command: str) -> Varied:
     main = _checked_path(table["key"], "key", case)
     also = table.get("also", [])
     if not isinstance(also, (list, tuple)):
-        raise NotAllowed("also", also, code="also_no_list")
+        raise NotAllowed("also", also, code="also_not_list")
     keys = (main, *(_checked_path(path, "also", case) for path in also))
     if command == SWEEP:
         return _values(table, keys, case)
@@ -118,7 +118,7 @@ def check_apart(found: list[Varied], case: Case) -> None:
     taken = [key for parameter in found[:-1] for key in parameter.keys]
     for key in found[-1].keys:
         if any(_overlap(key, other, case) for other in taken) or found[-1].keys.count(key) > 1:
-            raise NotAllowed("key", key, code="varies_already")
+            raise NotAllowed("key", key, code="duplicate_vary")
 
 
 def _overlap(one: str, other: str, case: Case) -> bool:
@@ -149,19 +149,19 @@ def _own_value(case: Case, path: str) -> float | None:
 
 def _checked_path(path: Any, name: str, case: Case) -> str:
     if not isinstance(path, str):
-        raise NotAllowed(name, path, code="path_no_text")
+        raise NotAllowed(name, path, code="path_not_string")
     known = numbers_of(type(case))
     section, item, _ = split_path(path)
     if pattern_of(path) in known:
         names = _items(case, path) if item else []
         if item and not names:
-            raise NotAllowed(name, path, code="no_such_table", table=section)
+            raise NotAllowed(name, path, code="section_not_in_case", table=section)
         if not item or meant(item, names):
             return path
         raise UnknownKey(name, code="item_not_in_case", value=path, remedy=_meant(item, names), table=section,
                          name=item)
     if pattern_of(path) in keys_of(type(case)):
-        raise NotAllowed(name, path, code="not_a_number_key")
+        raise NotAllowed(name, path, code="key_not_numeric")
     remedy = _meant(path, list(known))
     raise UnknownKey(name, code="key_not_in_kind", value=path, cause=None if remedy else LIKE, remedy=remedy,
                      kind=case.kind)
@@ -188,11 +188,11 @@ def _distribution(table: Mapping[str, Any], keys: tuple[str, ...], case: Case) -
     rules = {path: rule_of(attribute_of(type(case), path)) for path in keys}
     for path, rule in rules.items():
         if rule.form == WHOLE:
-            raise NotAllowed("key", path, code="whole_number_varies")
+            raise NotAllowed("key", path, code="integer_not_random")
     kind_name = table.get("distribution")
     if kind_name is None:
-        raise MissingKey("distribution", code="must_be_named",
-                         names=" or ".join((repr(name) for name in DISTRIBUTIONS)))
+        raise MissingKey("distribution", code="missing_distribution",
+                         known=" or ".join((repr(name) for name in DISTRIBUTIONS)))
     check_name("distribution", kind_name, DISTRIBUTIONS)
     low, high = _number(table, "low"), _number(table, "high")
     deviation, relative = (_number(table, name, above=0) for name in ("standard_deviation", "relative"))
@@ -219,9 +219,9 @@ def _distribution(table: Mapping[str, Any], keys: tuple[str, ...], case: Case) -
     mean = float(mean)
     if relative is not None:
         if mean == 0:
-            raise NotAllowed("relative", relative, code="mean_is_zero")
+            raise NotAllowed("relative", relative, code="zero_mean")
         if deviation is not None:
-            raise NotAllowed("relative", code="beside_standard_deviation")
+            raise NotAllowed("relative", code="conflicting_key", other="standard_deviation")
         deviation = relative * abs(mean)
         if not 0 < deviation < math.inf:
             raise NotAllowed("relative", relative, code="deviation_not_positive", deviation=deviation)
@@ -229,7 +229,7 @@ def _distribution(table: Mapping[str, Any], keys: tuple[str, ...], case: Case) -
         raise MissingKey("standard_deviation", code="deviation_missing")
     if kind_name == "uniform":
         if low is not None or high is not None:
-            raise NotAllowed("relative", code="beside_low_and_high")
+            raise NotAllowed("relative", code="conflicting_key", other="low and high")
         return Distribution(keys, kind_name, low=mean - deviation, high=mean + deviation)
     if kind_name == "lognormal" and not mean > 0:
         raise NotAllowed("mean", mean, code="lognormal_mean")
@@ -241,7 +241,7 @@ def _distribution(table: Mapping[str, Any], keys: tuple[str, ...], case: Case) -
                          math.inf if high is None else high)
     below, up_to, _ = found.probabilities()
     if not up_to - below > 1e-12:
-        raise NotAllowed("mean", mean, code="nothing_between_limits")
+        raise NotAllowed("mean", mean, code="empty_truncated_distribution")
     return found
 
 
@@ -253,9 +253,9 @@ def _spaced(table: Mapping[str, Any], spacing: str, is_whole: bool) -> list[Any]
     start, stop, count = _number(table, "start"), _number(table, "stop"), table["count"]
     assert start is not None and stop is not None
     if isinstance(count, bool) or not isinstance(count, int) or not 2 <= count <= MOST_SAMPLES:
-        raise NotAllowed("count", count, code="count_out_of_range", most_samples=MOST_SAMPLES)
+        raise NotAllowed("count", count, code="grid_count_out_of_range", most_samples=MOST_SAMPLES)
     if spacing == "log" and not (start > 0 and stop > 0):
-        raise NotAllowed("start", start, code="log_start")
+        raise NotAllowed("start", start, code="log_spacing_not_positive")
     spaced = np.geomspace(start, stop, count) if spacing == "log" else np.linspace(start, stop, count)
     wanted = [float(value) for value in spaced]
     return [int(value) if value.is_integer() else value for value in wanted] if is_whole else wanted
@@ -266,14 +266,14 @@ def _values(table: Mapping[str, Any], keys: tuple[str, ...], case: Case) -> Valu
     is_whole = rules[0].form == WHOLE
     spacing = table.get("spacing", "linear")
     if not isinstance(spacing, str) or spacing not in SPACINGS:
-        raise NotAllowed("spacing", spacing, code="must_be_named", names=" or ".join((repr(name) for name in SPACINGS)))
+        raise NotAllowed("spacing", spacing, code="unknown_name", known=" or ".join((repr(name) for name in SPACINGS)))
     if "values" in table:
         for name in ("start", "stop", "count"):
             if name in table:
-                raise NotAllowed(name, code="beside_values")
+                raise NotAllowed(name, code="conflicting_key", other="values")
         name, wanted = "values", table["values"]
         if not isinstance(wanted, (list, tuple)) or not wanted:
-            raise NotAllowed(name, wanted, code="no_list_of_numbers")
+            raise NotAllowed(name, wanted, code="not_list_of_numbers")
     else:
         name, wanted = "start", _spaced(table, spacing, is_whole)
     checked = []
@@ -284,5 +284,5 @@ def _values(table: Mapping[str, Any], keys: tuple[str, ...], case: Case) -> Valu
             rule.check(name, value)
         checked.append(value if is_whole else float(value))
     if len(set(checked)) != len(checked):
-        raise NotAllowed(name, code="value_there_twice")
+        raise NotAllowed(name, code="duplicate_value")
     return Values(keys, tuple(checked), spacing)

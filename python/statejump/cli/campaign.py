@@ -39,7 +39,7 @@ def _plan(file: Path, name: str, of_case: dict[str, Any]) -> Plan:
     _, data = read_toml(file, "campaign")
     if name != MONTECARLO or "case" not in data or "campaign" in data:
         for option in given:
-            raise NotAllowed(option, code="beside_campaign_file", file=file)
+            raise NotAllowed(option, code="conflicts_with_campaign_file", file=file)
         return load_campaign(file, name)
     if not of_case["--vary"]:
         raise MissingKey("--vary", code="vary_file_missing", file=file)
@@ -73,7 +73,7 @@ def _command(name: str, text: str) -> click.Command:
         console = make_console(quiet)
         check_workers("--workers", workers)
         if workers is not None and scheduler is not None:
-            raise NotAllowed("--workers", code="beside_scheduler")
+            raise NotAllowed("--workers", code="conflicts_with_scheduler")
         plan = _plan(file, name, {"--vary": tables, "--samples": samples, "--seed": seed, "--output": outputs})
         if table is not None:
             write_table(plan, table)

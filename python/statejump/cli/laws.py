@@ -58,7 +58,7 @@ def show_command(case_file: Path | None, results: Results, quiet: bool) -> None:
     """Print the catalogue; draw the curves for the joint of CASE (the paper's without)."""
     problems = _engine.user_law_problems()
     if problems:
-        raise StatejumpError("; ".join(problems), code="law_unusable")
+        raise StatejumpError("; ".join(problems), code="bad_law")
     console = make_console(quiet)
     case = loaded(case_file, JointOfLaws) if case_file is not None else None
     for kind in KINDS:

@@ -17,7 +17,7 @@ def _interval(text: str) -> tuple[float, float]:
     try:
         return float(begin), float(end)
     except ValueError:
-        raise NotAllowed("--shadow", text, code="shadow_form") from None
+        raise NotAllowed("--shadow", text, code="bad_shadow_option") from None
 
 
 @click.command("orbit")

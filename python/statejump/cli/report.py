@@ -30,7 +30,7 @@ def result_files(run: Path) -> list[Path]:
         if found:
             compared = {path.parent for path in found if path.stem == "comparison"}
             return [path for path in found if path.parent not in compared or path.stem in ("comparison", "answers")]
-    raise Unreadable(code="no_result_file", file=run, suffix=SUFFIX)
+    raise Unreadable(code="result_file_missing", file=run, suffix=SUFFIX)
 
 
 def _target(output: Path | None, runs: tuple[Path, ...], files: list[Path]) -> Path:

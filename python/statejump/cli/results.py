@@ -157,7 +157,7 @@ def export_command(
     result = read(file)
     target = folder if folder is not None else file.with_suffix("")
     if target == file:
-        raise StatejumpError(code="no_suffix", file=file)
+        raise StatejumpError(code="suffix_missing", file=file)
     with Results(target.parent, wait).folder(target.name) as there:
         written: list[Path] = []
         if form in ("csv", "all"):

@@ -81,7 +81,7 @@ def _generator_command(kind: str, function: Callable[..., Case]) -> click.Comman
         console = make_console(quiet)
         beside = new_files(output, tables, force)
         if not os.path.isdir(output.parent):
-            raise NotWritten(code="no_folder_to_write", file=output, folder=output.parent)
+            raise NotWritten(code="output_folder_missing", file=output, folder=output.parent)
         try:
             case = function(n, name=folder_name(output.stem), **values)
         except StatejumpError as refused:

@@ -26,7 +26,7 @@ def _joint(text: str) -> dict[str, str]:
     for part in text.split(","):
         key, equal, value = part.partition("=")
         if not equal or not key.strip() or key.strip() in found:
-            raise NotAllowed("--joint", text, code="joint_form")
+            raise NotAllowed("--joint", text, code="bad_joint_option")
         found[key.strip()] = value.strip()
     return found
 
@@ -34,7 +34,7 @@ def _joint(text: str) -> dict[str, str]:
 def _held(text: str) -> tuple[str, str]:
     name, equal, directions = text.rpartition("=")
     if not equal or not name or not directions or set(directions) - set("xyz"):
-        raise NotAllowed("--fixed", text, code="fixed_form")
+        raise NotAllowed("--fixed", text, code="bad_fixed_option")
     return name, directions
 
 
@@ -42,7 +42,7 @@ def _thermal(output: Path, file: Path | None, given: dict[str, float | None]) ->
     """Return the sections that members' histories need."""
     for option, value in given.items():
         if value is not None and file is None:
-            raise NotAllowed(option, value, code="only_with_members_file")
+            raise NotAllowed(option, value, code="requires_members_file")
     if file is None:
         return {}
     keys = dict(zip(given, ("reference_temperature_K", "lead_in_s", "lead_out_s")))
@@ -56,7 +56,7 @@ def _refuse_units(file: Path, given: dict[str, str | float | None]) -> None:
     """Refuse options for the units of a file that names its own."""
     for option, value in given.items():
         if value not in (None, "SI"):
-            raise NotAllowed(option, value, code="tables_name_units", file=file)
+            raise NotAllowed(option, value, code="units_in_columns", file=file)
 
 
 def _units(system: str | None, length: float | None, force: float | None) -> Units:
@@ -64,7 +64,7 @@ def _units(system: str | None, length: float | None, force: float | None) -> Uni
         return Units(length or 1.0, force or 1.0)
     for option, value in (("--length-unit", length), ("--force-unit", force)):
         if value is not None:
-            raise NotAllowed(option, value, code="units_say_it", system=system)
+            raise NotAllowed(option, value, code="units_given_twice", system=system)
     return SYSTEMS[system]
 
 

@@ -81,7 +81,7 @@ def surface_command(
         else:
             for option, given in (("--axis", axis), ("--focal-length", focal_length)):
                 if given is not None:
-                    raise NotAllowed(option, code="beside_a_case")
+                    raise NotAllowed(option, code="conflicts_with_case")
             case = loaded(file, ReducedModel)
             name, notes = case.name, list(case.thermal_notes)
             design, states, history = _of_case(case, measure, console)
@@ -138,7 +138,7 @@ def _repeatability(samples: Path, column: str, share: float, length_m: float) ->
     lengths = [name for name in columns if unit(name) == "m" and np.issubdtype(columns[name].dtype, np.number)]
     if column not in lengths:
         raise NotAllowed("--column", column, file=samples, **(
-            {"code": "not_one_of", "known": ", ".join(lengths)} if lengths else {"code": "no_length"}))
+            {"code": "not_one_of", "known": ", ".join(lengths)} if lengths else {"code": "no_length_column"}))
     found = repeatability(columns[column], length_m, share)
     size = np.abs(columns[column])
     worst = int(np.nanargmax(size))

@@ -141,13 +141,13 @@ class Study:
 def check_wanted(jump_below: float | None, unit: str) -> None:
     """Raise NotAllowed for a wanted jump that is none."""
     if jump_below is not None and not (isfinite(jump_below) and jump_below > 0):
-        raise NotAllowed("--jump-below", jump_below, code="not_finite_positive", unit=unit)
+        raise NotAllowed("--jump-below", jump_below, code="not_positive", unit=unit)
 
 
 def refuse_runs(runs: int | None, case: Case) -> None:
     """Raise NotAllowed for a size of an ensemble where none is run."""
     if runs is not None:
-        raise NotAllowed("--runs", runs, code="no_ensemble", name_of_case=case.name)
+        raise NotAllowed("--runs", runs, code="exact_path_without_ensemble", name_of_case=case.name)
 
 
 def refuse_places(places: Places, case: Case) -> None:

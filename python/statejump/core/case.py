@@ -137,7 +137,7 @@ class Case(Section):
     def check_cycles(self) -> None:
         """Raise NotAllowed for cycles that do not end where they begin."""
         if not self.has_jump and self.thermal.cycles > 1:
-            raise NotAllowed("thermal.cycles", self.thermal.cycles, code="cycles_do_not_close",
+            raise NotAllowed("thermal.cycles", self.thermal.cycles, code="program_not_periodic",
                              why=self.thermal_notes[0])
 
     @property
@@ -153,7 +153,7 @@ class Case(Section):
     def need_jump(self, what: str) -> None:
         """Raise StatejumpError if a function needs a state jump and the program does not return."""
         if self.ending is not None and not self.ending.returns:
-            raise StatejumpError(code="needs_state_jump", case=self.name, remedy=self.ending.remedy, output=what,
+            raise StatejumpError(code="state_jump_undefined", case=self.name, remedy=self.ending.remedy, output=what,
                                  why=self.ending.where)
 
     @property

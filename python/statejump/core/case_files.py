@@ -30,7 +30,7 @@ def text_of(case: Case) -> str:
     """
     made = document_of(case)
     if made.get("thermal", {}).get("members") is not None:
-        raise NotAllowed("thermal.members", code="members_not_in_text")
+        raise NotAllowed("thermal.members", code="members_file_not_in_text")
     return to_toml(made)
 
 

@@ -15,6 +15,7 @@ class Code:
     """Parts of the sentence ``WHAT[ BESIDE][: CAUSE][; REMEDY]``, as templates; "" where each error gives its own.
 
     :param text: what went wrong, of a code whose errors give the whole sentence themselves
+    :param further: details for programs, which the sentence does not name
     """
 
     what: str = ""
@@ -22,6 +23,7 @@ class Code:
     cause: str = ""
     remedy: str = ""
     text: str = ""
+    further: tuple[str, ...] = ()
 
 
 CODES: dict[str, Code] = {
@@ -36,24 +38,26 @@ CODES: dict[str, Code] = {
     "not_written": Code(text="a file or a folder cannot be written"),
     "tolerance_missed": Code(what="tolerance missed"),
     "interrupted": Code(what="interrupted; nothing was written"),
+    "usage": Code(text="the command has no such option or argument"),
+    "internal": Code(text="a fault of the program itself"),
     # The reader of case files
     "columns_not_of_one_length": Code(cause="all columns must have {rows} rows"),
     "control_characters": Code(cause="must have no control characters"),
-    "empty_text": Code(cause="must be a text in quotes that is not empty"),
-    "key_moved": Code(remedy="it is {now} now"),
-    "key_twice": Code(cause="the case has {new_key} as well", remedy="leave {old_key} out"),
+    "empty_string": Code(cause="must be a text in quotes that is not empty"),
+    "key_renamed": Code(remedy="it is {now} now"),
+    "deprecated_key_duplicated": Code(cause="the case has {new_key} as well", remedy="leave {old_key} out"),
     "misspelt_key": Code(remedy="did you mean {meant}?"),
     "misspelt_name": Code(cause="must be {known}", remedy="did you mean {meant!r}?"),
     "no_folder_name": Code(cause="must consist of letters, digits, '_' and '-'"),
     "no_item_fits": Code(cause="no {table} has a name that fits {pattern!r}; their names are {known}"),
-    "no_such_case_file": Code(what="no such {of} file"),
+    "case_file_not_found": Code(what="no such {of} file"),
     "no_such_key": Code(cause="known are {known}"),
-    "no_table": Code(cause="must be one or more sections [[{table}]]"),
-    "not_a_section": Code(cause="must be a section [{wanted}]"),
+    "not_table_list": Code(cause="must be one or more sections [[{table}]]"),
+    "not_section": Code(cause="must be a section [{wanted}]"),
     "not_boolean": Code(cause="must be true or false"),
     "not_from_file": Code(text="the key holds what no case file can state"),
-    "not_numbers": Code(cause="must be a list of numbers [{unit}]"),
-    "not_texts": Code(cause="must be a list of texts in quotes"),
+    "not_number_list": Code(cause="must be a list of numbers [{unit}]"),
+    "not_string_list": Code(cause="must be a list of texts in quotes"),
     "not_toml": Code(what="not TOML"),
     "not_toml_at_line": Code(what="not TOML, line {line}"),
     "number_not_finite": Code(cause="must be finite, {range}"),
@@ -61,25 +65,49 @@ CODES: dict[str, Code] = {
     "toml_not_utf8": Code(what="not TOML", cause="the file is not UTF-8 text"),
     "toml_too_deep": Code(what="not TOML", cause="tables or lists stand too deeply in each other"),
     "unknown_name": Code(cause="must be {known}"),
-    "wrong_number_of_numbers": Code(cause="must be a list of {length} numbers [{unit}]"),
+    "wrong_list_length": Code(cause="must be a list of {length} numbers [{unit}]"),
     "wrong_type": Code(cause="must be {type}, {range}"),
+    "wrong_value": Code(text="the value of a key is wrong"),
+    # Several keys together
+    "below_minimum": Code(cause="must be at least {least}"),
+    "clearance_below_precision": Code(
+        cause="too small beside {radius_key} = {radius_m!r} [m], the radii come out equal",
+    ),
+    "clearance_closes": Code(
+        cause=(
+            "the expansion of {inner} and {outer} closes it at a temperature change of {at_K:g} K, it must stay "
+            "above 0 [m] within the program"
+        ),
+    ),
+    "conflicting_key": Code(beside="with {other}"),
+    "not_positive": Code(cause="must be a finite number above 0 [{unit}]"),
+    "play_without_friction": Code(cause="needs friction, in series with which it is: give {needed_keys}"),
     # Cases, tables and files
-    "beside_key": Code(beside="with {in_section}{other_key}"),
-    "beside_members_file": Code(beside="with thermal.members_file"),
-    "beside_table_shape": Code(beside="with {in_section}shape = 'table'"),
+    "folder_in_use": Code(what="is in use", cause="another run is at work in it"),
+    "folder_not_empty": Code(cause="the folder has other files", remedy="name a new folder"),
+    "no_display": Code(
+        what="YADE's 3-D view cannot be opened",
+        remedy="use a terminal on a desktop, or set DISPLAY",
+    ),
+    "no_space_left": Code(
+        what="no space left",
+        cause="the results need about {needed}, the file system has {free} left",
+    ),
+    "unknown_ignored_column": Code(cause="the table has no such column"),
+    "yade_view_ended": Code(what="YADE ended with status {status}"),
     "built_without_yade": Code(
         what="YADE is missing",
         cause="this statejump was built without it",
         remedy="for 'dem' and 'compare' build with 'make demo' on Debian 12 or 13",
     ),
-    "cannot_be_read": Code(what="cannot be read"),
+    "read_failed": Code(what="cannot be read"),
     "cell_not_boolean": Code(what="line {line}, column {column}", cause="{cell} is not true or false"),
     "cell_of_other_length": Code(
         what="line {line}, column {column}",
         cause="{numbers} numbers, other rows have {width}",
     ),
     "cell_too_long": Code(what="line {line}, column {column}", cause="{entries} entries, a cell has {most} at most"),
-    "cell_unusable": Code(what="line {line}, column {column}"),
+    "bad_cell": Code(what="line {line}, column {column}"),
     "column_no_numbers": Code(beside="as a column", cause="every row needs a number there"),
     "column_not_in_tables": Code(what="column {column}", cause="a table cannot have this key"),
     "column_of_other_unit": Code(what="column {column!r}", cause="{unit!r} is not a unit {quantity}"),
@@ -94,7 +122,7 @@ CODES: dict[str, Code] = {
     "columns_of_other_length": Code(what="columns differ in length"),
     "columns_of_other_units": Code(what="columns {column} and {other}", cause="they have different units"),
     "csv_not_utf8": Code(what="not CSV", cause="the file is not UTF-8 text"),
-    "cycles_do_not_close": Code(cause="what is repeated must end where it begins, and {why}"),
+    "program_not_periodic": Code(cause="what is repeated must end where it begins, and {why}"),
     "data_set_missing": Code(what="must have the data set {data_set}", cause="numbers along {axes} axes"),
     "data_set_not_of_numbers": Code(what="{data_set} must be of numbers"),
     "data_set_not_of_texts": Code(what="{data_set} must be of texts"),
@@ -127,7 +155,7 @@ CODES: dict[str, Code] = {
         cause="it must hold the temperature change of {reached_K:g} K that the program reaches",
     ),
     "fewer_than_two_times": Code(what="has fewer than two times"),
-    "file_too_large_for": Code(what="cannot be read", cause="it is larger than {largest}{why}"),
+    "file_too_large_to_read": Code(what="cannot be read", cause="it is larger than {largest}{why}"),
     "first_column_no_times": Code(
         what="line 1: the first column is {column}",
         remedy="accepted are time_s, time [h], or time with ISO times",
@@ -149,29 +177,29 @@ CODES: dict[str, Code] = {
     "link_without_length": Code(cause="the link has no length left at a temperature change of {at_K:g} K"),
     "member_without_name": Code(what="members has a name that is empty or not printable"),
     "members_missing": Code(what="must have the data set members", cause="their names, texts along one axis"),
-    "members_not_in_text": Code(beside="in the text of a case file", remedy="save() writes a file beside it"),
+    "members_file_not_in_text": Code(beside="in the text of a case file", remedy="save() writes a file beside it"),
     "members_not_utf8": Code(what="members has texts that are not UTF-8"),
     "misspelt_column": Code(what="has no column {column}_K or {column}_degC", remedy="did you mean {meant!r}?"),
     "name_with_blank": Code(cause="names in a list of a table must have no blanks"),
-    "names_missing": Code(
+    "table_without_header": Code(
         what="line {line} names no columns",
         cause="it holds numbers only",
         remedy="write a line of names with units above it",
     ),
-    "needs_state_jump": Code(cause="{output} needs a state jump, and {why}"),
+    "state_jump_undefined": Code(cause="{output} needs a state jump, and {why}"),
     "no_column": Code(what="line 1: there is no column"),
     "no_iso_time": Code(what="line {line}, column {column!r}", remedy="write {accepted}"),
     "no_result_format": Code(what="not a result file", cause="it does not begin with {begin!r}"),
     "no_row": Code(what="has no row below its header"),
     "no_samples": Code(what="holds no samples"),
-    "no_such_column": Code(what="has no column {column}_K or {column}_degC", cause="its columns are {known}"),
-    "no_such_result_file": Code(what="no such result file"),
-    "no_such_table_file": Code(what="no such file of tables"),
-    "no_such_temperature_file": Code(what="no such file of temperatures"),
+    "column_not_found": Code(what="has no column {column}_K or {column}_degC", cause="its columns are {known}"),
+    "result_file_not_found": Code(what="no such result file"),
+    "table_file_not_found": Code(what="no such file of tables"),
+    "temperature_file_not_found": Code(what="no such file of temperatures"),
     "no_temperature_column": Code(what="line 1: there is no column of temperatures"),
-    "no_text": Code(cause="must be a text in quotes"),
+    "not_string": Code(cause="must be a text in quotes"),
     "no_times": Code(cause="must be a time or a list of times [s]"),
-    "no_yade": Code(
+    "yade_missing": Code(
         what="YADE is missing",
         cause="no command {command!r} found",
         remedy="install Debian's package 'yade' or set STATEJUMP_YADE to the command",
@@ -183,14 +211,14 @@ CODES: dict[str, Code] = {
         beside="for two runs of one model",
         cause="a result file holds one run of a model; save both runs",
     ),
-    "only_in_case_file": Code(
+    "key_of_case_file": Code(
         cause=(
             "only where a case file names a table_file or members_file, or the name of one is given to load() or "
             "changed()"
         ),
     ),
-    "only_with_table": Code(cause="only with {in_section}shape = 'table'"),
-    "part_missing": Code(what="{group}/{name} is missing"),
+    "requires_table_shape": Code(cause="only with {in_section}shape = 'table'"),
+    "result_part_missing": Code(what="{group}/{name} is missing"),
     "period_beside_table": Code(
         cause="the table lasts {lasts:g} s, and its own times are the times",
         remedy="leave {key_to_leave_out} out",
@@ -217,11 +245,11 @@ CODES: dict[str, Code] = {
         remedy="leave {key_to_leave_out} out",
     ),
     "row_of_other_length": Code(what="line {line} has {cells} cells", cause="the header has {width}"),
-    "samples_cut": Code(what="ends within a row"),
-    "samples_without_names": Code(what="does not begin with the names of columns"),
+    "truncated_samples": Code(what="ends within a row"),
+    "samples_without_header": Code(what="does not begin with the names of columns"),
     "several_columns": Code(cause="{table} has the columns {columns}"),
     "suffix_unknown": Code(cause="must end with {suffixes}"),
-    "table_does_not_close": Code(
+    "table_not_periodic": Code(
         cause=(
             "{table} ends {away_K:g} K away from the stress-free temperature (column {column!r}), and what is "
             "repeated must end where it begins"
@@ -231,19 +259,23 @@ CODES: dict[str, Code] = {
     "table_length": Code(cause="must be {times} values, one per time, not {values}"),
     "table_times": Code(cause="must be at least two times [s] that start at 0 and rise"),
     "table_times_missing": Code(cause="a list of times [s] is needed for a table"),
-    "table_twice": Code(cause="the case has [[{table}]] as well", remedy="leave one of them out"),
+    "table_and_section": Code(cause="the case has [[{table}]] as well", remedy="leave one of them out"),
     "table_values_missing": Code(cause="one value [K] per time is needed"),
-    "target_no_file": Code(what="cannot be written", cause="there is something else than a file"),
-    "target_suffix": Code(cause="the file must end with {suffixes}"),
+    "target_not_file": Code(what="cannot be written", cause="there is something else than a file"),
+    "vtk_missing": Code(
+        what="VTK is not installed",
+        remedy="install Debian's package 'python3-vtk9'",
+    ),
+    "wrong_suffix": Code(cause="the file must end with {suffixes}"),
     "temperature_column_without_unit": Code(what="line 1: column {column}", remedy="accepted are {accepted}"),
-    "temperature_unusable": Code(what="column {column} at {at_s:g} s"),
+    "bad_temperature": Code(what="column {column} at {at_s:g} s"),
     "temperatures_missing": Code(what="must have one of the data sets {data_sets}"),
     "temperatures_of_other_shape": Code(
         what="{data_set} is {rows} x {columns}",
         cause="there are {times} times and {members} members",
     ),
-    "time_not_rising": Code(what="time_s[{index}] = {at_s:g}", cause="times must be finite and rise"),
-    "times_do_not_rise": Code(
+    "time_not_increasing": Code(what="time_s[{index}] = {at_s:g}", cause="times must be finite and rise"),
+    "times_not_increasing": Code(
         what="line {line}: {column} = {time}",
         cause="times must rise, and {before} is before it",
     ),
@@ -255,15 +287,15 @@ CODES: dict[str, Code] = {
     "yade_not_started": Code(what="YADE cannot be started: {command}"),
     # Results
     "cases_differ": Code(what="not comparable", cause="the cases differ: {key_that_differs}{more}"),
-    "damaged": Code(what="damaged"),
+    "damaged": Code(what="damaged", further=("object",)),
     "drawing_not_finite": Code(what="cannot be drawn", cause="places or forces are not finite, or too large"),
     "durations_differ": Code(what="not comparable", cause="the runs last {first_s:g} s and {second_s:g} s"),
-    "items_differ": Code(what="not comparable", cause="the files name other links or contacts"),
+    "result_items_differ": Code(what="not comparable", cause="the files name other links or contacts"),
     "kinds_differ": Code(what="not comparable", cause="kinds {first} and {second}"),
     "layout_newer": Code(what="layout version {found} is newer than {newest}, the newest that this statejump reads"),
     "model_unknown_in_file": Code(what="/models/{model} is not a model", cause="must be {models}"),
-    "no_model": Code(what="/models has no model"),
-    "no_run": Code(what="not comparable", cause="a file holds no run"),
+    "result_without_model": Code(what="/models has no model"),
+    "result_without_run": Code(what="not comparable", cause="a file holds no run"),
     "object_missing": Code(what="{object}{at}{attribute} is missing"),
     "objects_too_deep": Code(what="damaged", cause="objects stand too deeply in each other"),
     "openpyxl_missing": Code(
@@ -290,22 +322,18 @@ CODES: dict[str, Code] = {
         remedy="take --format csv",
     ),
     # Campaigns
-    "also_no_list": Code(cause="must be a list of keys that get the same value"),
-    "below_one": Code(cause="must be at least 1"),
-    "beside_low_and_high": Code(beside="beside low and high"),
-    "beside_standard_deviation": Code(beside="beside standard_deviation"),
-    "beside_values": Code(beside="beside values"),
+    "also_not_list": Code(cause="must be a list of keys that get the same value"),
     "campaign_interrupted": Code(
         what=(
             "interrupted; {finished:,} of {samples:,} samples are kept in {path}, the same command goes on with "
             "the others"
         ),
     ),
-    "cannot_be_written": Code(what="cannot be written"),
-    "count_out_of_range": Code(cause="must be a whole number, between 2 and {most_samples}"),
+    "write_failed": Code(what="cannot be written"),
+    "grid_count_out_of_range": Code(cause="must be a whole number, between 2 and {most_samples}"),
     "deviation_missing": Code(cause="either it or relative is needed, above 0"),
     "deviation_not_positive": Code(cause="times the mean it is {deviation:g}, no number above 0"),
-    "distribution_no_dict": Code(
+    "distribution_not_dict": Code(
         cause='must be a dict, as {{"distribution": "normal", "relative": 0.1}}; sweep takes values',
     ),
     "distribution_without_limits": Code(cause="a {distribution} distribution has no limits"),
@@ -330,38 +358,40 @@ CODES: dict[str, Code] = {
         cause="it is for 'statejump {other}'",
     ),
     "limits_missing": Code(cause="a truncated_normal distribution has low or high or both"),
-    "log_start": Code(cause="must, as stop, be above 0 for a log spacing"),
+    "log_spacing_not_positive": Code(cause="must, as stop, be above 0 for a log spacing"),
     "lognormal_mean": Code(cause="must be above 0 for a lognormal distribution"),
-    "mean_is_zero": Code(cause="the mean is 0"),
+    "zero_mean": Code(cause="the mean is 0"),
+    "missing_distribution": Code(cause="must be {known}"),
     "mean_not_in_case": Code(cause="the case gives no {mean_of}"),
     "model_not_of_kind": Code(cause="a campaign of {kind!r} has {models}"),
-    "must_be_named": Code(cause="must be {names}"),
     "no_campaign_of_kind": Code(cause="no campaign runs {kind!r}"),
-    "no_key_varies": Code(cause="at least one key is needed"),
-    "no_list_of_numbers": Code(cause="must be a list of numbers"),
-    "no_such_table": Code(cause="the case has no [[{table}]]"),
+    "vary_without_key": Code(cause="at least one key is needed"),
+    "not_list_of_numbers": Code(cause="must be a list of numbers"),
+    "section_not_in_case": Code(cause="the case has no [[{table}]]"),
     "no_yade_batch_of_kind": Code(cause="no such campaign runs {kind!r}"),
-    "not_a_number_key": Code(cause="it is not a number"),
+    "key_not_numeric": Code(cause="it is not a number"),
     "not_above_low": Code(cause="must be above low = {low!r}"),
     "not_finite_above": Code(cause="must be a finite number above {least:g}"),
-    "nothing_between_limits": Code(cause="practically nothing of the normal distribution is left between the limits"),
-    "nothing_varies": Code(cause="at least one table says what varies"),
-    "only_montecarlo_draws": Code(beside="in a sweep", cause="only 'statejump montecarlo' draws samples"),
+    "empty_truncated_distribution": Code(
+        cause="practically nothing of the normal distribution is left between the limits",
+    ),
+    "campaign_without_vary": Code(cause="at least one table says what varies"),
+    "sweep_with_distribution": Code(beside="in a sweep", cause="only 'statejump montecarlo' draws samples"),
     "output_axis": Code(cause="the axis must be one of {known}"),
-    "output_form": Code(cause="must be HOW:COLUMN[ITEM].AXIS, as 'jump:displacement_m[P].x'"),
+    "bad_output_name": Code(cause="must be HOW:COLUMN[ITEM].AXIS, as 'jump:displacement_m[P].x'"),
     "output_how_unknown": Code(cause="HOW must be one of {hows}"),
     "output_item_not_chosen": Code(cause="{column} is one of each of the {items}: which one?"),
     "output_misspelt": Code(cause="did you mean {meant}?"),
-    "output_no_vector": Code(cause="{column} is no vector"),
-    "output_of_no_items": Code(cause="there are no {items}"),
-    "output_of_no_surface": Code(text="the run has no surface of which the output is"),
-    "output_of_nothing": Code(cause="there is no such {what_it_is}; there are {known}"),
+    "output_not_vector": Code(cause="{column} is no vector"),
+    "output_without_item": Code(cause="there are no {items}"),
+    "output_without_surface": Code(text="the run has no surface of which the output is"),
+    "output_item_undefined": Code(cause="there is no such {what_it_is}; there are {known}"),
     "output_without_items": Code(cause="{column} has no items"),
     "output_without_jump": Code(
         cause="the temperature comes back where it began {times} times, 2 are needed",
         remedy="set thermal.cycles",
     ),
-    "path_no_text": Code(cause="must be a text such as 'joint.friction_coefficient'"),
+    "path_not_string": Code(cause="must be a text such as 'joint.friction_coefficient'"),
     "range_missing": Code(cause="either values, or start, stop and count are needed"),
     "scheduler_address": Code(text="the option names no address of a running scheduler"),
     "scheduler_connection_lost": Code(what="the connection to the dask scheduler was lost ({problem}); {advice}"),
@@ -374,37 +404,36 @@ CODES: dict[str, Code] = {
         what="has workers that cannot import statejump {here}, start them with PYTHONPATH set",
     ),
     "scheduler_without_workers": Code(what="has no workers after {workers_s} s"),
-    "there_twice": Code(cause="it is there twice"),
+    "duplicate": Code(cause="it is there twice"),
     "uniform_limits": Code(cause="a uniform distribution has low and high, or relative"),
-    "value_there_twice": Code(cause="a value is there twice"),
-    "varies_already": Code(cause="it varies already"),
-    "whole_number_varies": Code(cause="it is a whole number, only 'statejump sweep' varies it"),
+    "duplicate_value": Code(cause="a value is there twice"),
+    "duplicate_vary": Code(cause="it varies already"),
+    "integer_not_random": Code(cause="it is a whole number, only 'statejump sweep' varies it"),
     # Commands
-    "beside_a_case": Code(beside="beside a case", cause="its section [reflector] says it"),
-    "beside_campaign_file": Code(beside="with a campaign file", cause="it says that itself"),
-    "beside_scheduler": Code(beside="with --scheduler", cause="that cluster has its own"),
+    "conflicts_with_case": Code(beside="beside a case", cause="its section [reflector] says it"),
+    "conflicts_with_campaign_file": Code(beside="with a campaign file", cause="it says that itself"),
+    "conflicts_with_scheduler": Code(beside="with --scheduler", cause="that cluster has its own"),
     "every_sample_failed": Code(what="every sample failed, the first one"),
     "exists_already": Code(cause="exists already", remedy="--force overwrites it"),
-    "fixed_form": Code(cause="must be NODE=DIRECTIONS, of the letters x, y and z"),
-    "joint_form": Code(cause="must be KEY=VALUE,KEY=VALUE, every key once"),
-    "no_ensemble": Code(cause="case {name_of_case} has one exact path, no ensemble is run"),
-    "no_folder_to_write": Code(what="cannot be written", cause="there is no folder {folder}"),
-    "no_length": Code(cause="no column of it is a length [m]"),
-    "no_result_file": Code(
+    "bad_fixed_option": Code(cause="must be NODE=DIRECTIONS, of the letters x, y and z"),
+    "bad_joint_option": Code(cause="must be KEY=VALUE,KEY=VALUE, every key once"),
+    "exact_path_without_ensemble": Code(cause="case {name_of_case} has one exact path, no ensemble is run"),
+    "output_folder_missing": Code(what="cannot be written", cause="there is no folder {folder}"),
+    "no_length_column": Code(cause="no column of it is a length [m]"),
+    "result_file_missing": Code(
         what="no result file",
         cause="no *{suffix} in this folder",
         remedy="'statejump compare CASE' writes one",
     ),
-    "no_suffix": Code(what="has no suffix to leave out", remedy="choose a folder with --to"),
-    "not_finite_positive": Code(cause="must be a finite number above 0 [{unit}]"),
+    "suffix_missing": Code(what="has no suffix to leave out", remedy="choose a folder with --to"),
     "one_jump_only": Code(cause="a case of kind {kind!r} has one jump, and all that governs it is studied"),
-    "only_with_members_file": Code(cause="only with --members-file"),
+    "requires_members_file": Code(cause="only with --members-file"),
     "samples_and_column": Code(cause="--samples and --column go together"),
     "samples_interrupted": Code(what="interrupted; the {samples} samples so far are in {kept}"),
-    "shadow_form": Code(cause="must be BEGIN:END in seconds, as 1800:3900"),
+    "bad_shadow_option": Code(cause="must be BEGIN:END in seconds, as 1800:3900"),
     "standard_output_not_written": Code(what="standard output cannot be written"),
-    "tables_name_units": Code(cause="columns of tables name their units"),
-    "units_say_it": Code(cause="--units {system} says it already"),
+    "units_in_columns": Code(cause="columns of tables name their units"),
+    "units_given_twice": Code(cause="--units {system} says it already"),
     "vary_file_missing": Code(cause="a case needs a file that says what varies"),
     "working_folder_gone": Code(what="the folder where the command was started does not exist any more"),
     "wrong_number_of_files": Code(
@@ -413,6 +442,11 @@ CODES: dict[str, Code] = {
         remedy="what is in one shows 'statejump info'",
     ),
     # Kinds of cases
+    "trace_of_motion": Code(
+        what="a motion has no trace",
+        cause="a trace records the iterations of the quasi-static solver",
+        remedy="leave out 'dynamic' or 'trace'",
+    ),
     "command_not_for_kind": Code(cause="'statejump {command}' is for {kinds}"),
     "kind_not_loaded": Code(what="kind {name!r} cannot be loaded"),
     "too_little_memory": Code(
@@ -426,12 +460,6 @@ CODES: dict[str, Code] = {
     "above_stable_time_step": Code(cause="must be above 0 and at most the stable time step {stable_s:.4g} [s]"),
     "calculix_events": Code(what="CalculiX finds other events", cause="{theirs} beside {ours} of the reduced model"),
     "calculix_increments": Code(what="CalculiX left out increments"),
-    "clearance_closes": Code(
-        cause=(
-            "the expansion of pad and slot closes it at a temperature change of {at_K:g} K, it must stay above 0 "
-            "[m] within the program"
-        ),
-    ),
     "expansion_missing": Code(cause="a number [1/K], or a section [expansion], is needed"),
     "fe_branches": Code(cause="'statejump fe' follows 1 to {most} branches"),
     "fe_needs_friction": Code(cause="'statejump fe' needs friction to hold the block"),
@@ -443,29 +471,24 @@ CODES: dict[str, Code] = {
         cause="the friction force {friction_force_N:g} N must be below E A = {rigidity:g} N",
     ),
     "not_below_link_length": Code(cause="must be below link.stress_free_length_m = {stress_free_length_m!r} [m]"),
-    "only_without_expansion_section": Code(cause="only without [expansion]"),
-    "play_without_friction": Code(
-        cause="needs friction, in series with which it is: give joint.friction_coefficient above 0",
-    ),
     "preload_above_rigidity": Code(
         cause="its size and the friction force {friction_force_N:g} N must stay below E A = {rigidity:g} N",
     ),
-    "soft_stops_do_not_expand": Code(cause="must be 0 with joint.stop_stiffness_N_per_m: soft stops do not expand"),
+    "soft_stop_expansion": Code(cause="must be 0 with joint.stop_stiffness_N_per_m: soft stops do not expand"),
     "table_interrupted": Code(what="interrupted; no table was written"),
     # Ribs of an umbrella
     "adaptive_with_memory": Code(
         beside="with joint.friction_law = {law!r}",
         cause="friction with memory is not smooth, use 'rk4'",
     ),
-    "angle_beyond_friction": Code(
+    "angle_outside_friction_cone": Code(
         cause="must be between {least_rad:.9g} and {largest_rad:.9g} [rad], atan of joint.friction_coefficient",
     ),
-    "angle_of_frictionless": Code(
+    "angle_without_friction": Code(
         beside="with start.friction = 'frictionless'",
         cause="must be 0 [rad], where the contact needs no friction",
     ),
-    "below_two": Code(cause="must be at least 2"),
-    "beyond_clearance": Code(
+    "exceeds_clearance": Code(
         cause=(
             "must be between 0 and joint.radial_clearance_m = {clearance!r} [m], beyond it the joint starts in "
             "deep penetration"
@@ -477,14 +500,8 @@ CODES: dict[str, Code] = {
             "and pi"
         ),
     ),
-    "clearance_of_rib_closes": Code(
-        cause=(
-            "the expansion of journal and bearing closes it at a temperature change of {at_K:g} K, it must stay "
-            "above 0 [m] within the program"
-        ),
-    ),
-    "equilibrium_decides": Code(beside="with start.mode = 'loaded'", cause="equilibrium decides"),
-    "friction_holds_no_load": Code(cause="must be 0 [rad]: this friction holds no static load"),
+    "set_by_equilibrium": Code(beside="with start.mode = 'loaded'", cause="equilibrium decides"),
+    "friction_without_static_load": Code(cause="must be 0 [rad]: this friction holds no static load"),
     "law_not_with_friction": Code(beside="with joint.friction_law = {law!r}", cause="must be one of {known}"),
     "links_cannot_meet": Code(
         cause=(
@@ -492,19 +509,17 @@ CODES: dict[str, Code] = {
             "of {at_K:g} K"
         ),
     ),
-    "no_multiple_of_samples": Code(cause="must be a multiple of output.samples_per_cycle = {samples}"),
+    "not_multiple_of_samples": Code(cause="must be a multiple of output.samples_per_cycle = {samples}"),
     "no_quasi_static_jump": Code(what="there is no quasi-static jump to control"),
-    "not_above_v0": Code(cause="must be above joint.friction_v0_m_per_s = {friction_v0_m_per_s!r} [m/s]"),
+    "friction_velocities_unordered": Code(
+        cause="must be above joint.friction_v0_m_per_s = {friction_v0_m_per_s!r} [m/s]",
+    ),
     "not_above_zero_to_clearance": Code(
         cause="must be above 0 and at most joint.radial_clearance_m = {clearance!r} [m]",
     ),
-    "only_with_loaded_start": Code(cause="only with start.mode = 'loaded'"),
-    "part_without_radius": Code(cause="the {part} has no radius left at a temperature change of {at_K:g} K"),
-    "radii_equal": Code(
-        cause="too small beside joint.journal_radius_m = {journal_radius_m!r} [m], the radii come out equal",
-    ),
+    "requires_loaded_start": Code(cause="only with start.mode = 'loaded'"),
     "restitution_zero": Code(beside="with joint.dissipation_law = {law!r}", cause="must be above 0 [-]"),
-    "spring_does_not_load": Code(
+    "spring_without_preload": Code(
         cause="torsion_spring.{spring_key} is 0, and only a biased torsion spring loads the joint",
     ),
     # Rest positions
@@ -519,12 +534,11 @@ CODES: dict[str, Code] = {
     "lobe_amplitude": Code(cause="must be at least 0 and below joint.clearance_m = {clearance_m!r} [m]"),
     "mesh_not_read": Code(what="{path} cannot be read"),
     "mesh_without_triangles": Code(what="{path} holds no triangles"),
-    "needed_by_type": Code(cause="joint.type = {type!r} needs it"),
-    "no_force": Code(cause="without a force every position is at rest"),
-    "no_forces": Code(cause="must be one or more sections [[{name}]] with force_N = [x, y, z]"),
-    "no_vtk": Code(what="VTK for Python is needed (python3-vtk9)"),
+    "missing_for_joint_type": Code(cause="joint.type = {type!r} needs it"),
+    "no_nonzero_force": Code(cause="without a force every position is at rest"),
+    "force_section_missing": Code(cause="must be one or more sections [[{name}]] with force_N = [x, y, z]"),
     "only_below_three_dimensions": Code(cause="only for joints in one or two dimensions"),
-    "only_with_type": Code(cause="only with joint.type = {types}"),
+    "wrong_joint_type": Code(cause="only with joint.type = {types}"),
     "too_many_forces": Code(what="force stands for {forces} forces", cause="must be at most {most}"),
     # Import of decks and meshes
     "bar_without_property": Code(what="{kind} {name!r} has no {property}", remedy="{option} gives all of them one"),
@@ -544,22 +558,51 @@ CODES: dict[str, Code] = {
     ),
     "no_bars": Code(what="holds no bars"),
     "no_file_name": Code(what="line {line}: {included} is not the name of a file"),
-    "no_included_file": Code(what="line {line}: there is no included file {included}"),
+    "included_file_not_found": Code(what="line {line}: there is no included file {included}"),
     "no_section": Code(what="holds no section [[{wanted}]]", remedy="statejump identify --for {wanted} writes one"),
-    "no_such_step": Code(cause="the deck has {steps} step{plural}"),
-    "no_such_subcase": Code(cause="the subcases of the deck are {subcases}"),
-    "not_a_number": Code(cause="must be a number"),
+    "undefined_step": Code(cause="the deck has {steps} step{plural}"),
+    "undefined_subcase": Code(cause="the subcases of the deck are {subcases}"),
+    "not_number": Code(cause="must be a number"),
     "not_meshio": Code(what="not a mesh that meshio reads as {form}"),
-    "not_text": Code(what="cannot be read", cause="it is not text"),
+    "not_text_file": Code(what="cannot be read", cause="it is not text"),
     "not_vtk": Code(what="not a mesh that VTK reads"),
     "nothing_to_ignore": Code(cause="the deck has no unsupported item of this name"),
     "slider_axis_missing": Code(cause="along which it slides: {directions}, or link"),
     "slider_link_missing": Code(cause="in which the slider is"),
-    "vtk_missing": Code(
-        what="files of VTK are read by VTK, which is not installed",
-        remedy="install the Debian package python3-vtk9",
+    "deck_ambiguous_set": Code(
+        what="set {second} beside set {first}: a case control with {command} = must select one",
     ),
+    "deck_bad_geometry": Code(what="{problem}"),
+    "deck_bad_number": Code(what="{text} is not {wanted}"),
+    "deck_bad_syntax": Code(what="{problem}"),
+    "deck_bad_value": Code(what="{problem}"),
+    "deck_circular_reference": Code(what="coordinate systems depend on each other in a circle"),
+    "deck_duplicate": Code(what="duplicate {what_it_is} {name}"),
+    "deck_incomplete": Code(what="incomplete, needs {needed}"),
+    "deck_not_supported": Code(what="{card} is not supported", cause="{why}", further=("line", "reason")),
+    "deck_several_models": Code(what="superelements and further models are not read"),
+    "deck_too_many_items": Code(what="there are more than {most} items"),
+    "deck_two_oblique_supports": Code(
+        what="node {node} is held in two oblique directions: a case holds axes and one more direction",
+    ),
+    "deck_undefined": Code(what="there is no {what_it_is} {name}"),
+    "mesh_bad_data": Code(what="{problem}"),
     # Trusses
+    "driven_truss": Code(
+        what="drive {drive!r} rotates a link",
+        cause="the quasi-static path has no drives",
+        remedy="'statejump reduced --dynamic' runs the case",
+    ),
+    "no_free_dof": Code(
+        what="every node is held in all directions",
+        cause="nothing moves",
+        remedy="free a direction of a node, or run without --dynamic",
+    ),
+    "rigid_ball_joint_at_rest": Code(
+        what="{part} has contact = 'rigid'",
+        cause="a quasi-static path does not determine in which direction it begins to slide",
+        remedy="'statejump reduced --dynamic' runs the case with motion.start = 'drawn'",
+    ),
     "axis_along_link": Code(cause="link {link!r} lies along it and has no angle about it"),
     "axis_missing": Code(cause="a list of 3 numbers is needed in a spatial truss"),
     "ball_joint_planar": Code(
@@ -571,18 +614,25 @@ CODES: dict[str, Code] = {
             'rigidly does not say along which direction of its plane it begins to slide'
         ),
     ),
-    "body_with_lumped_masses": Code(
+    "lumped_mass_of_body": Code(
         cause="link {link!r} has {of}, which masses at nodes have not; must be 'consistent'",
     ),
     "centre_not_on_line": Code(cause="in a spatial truss it is on the line of its nodes: [distance, 0]"),
-    "clearance_too_small_for": Code(
-        cause="too small beside {part}_radius_m = {radius_m:g} [m], the radii come out equal",
-    ),
     "column_of_several": Code(cause="its column {column!r} is of {kinds}"),
     "constraint_coefficient": Code(cause="must not be 0, and at least 1e-9 of the largest one"),
     "constraint_length": Code(cause="must be {terms}, one for each node of 'nodes'"),
     "constraint_term_twice": Code(cause="node {node!r} is there twice in direction {direction!r}"),
-    "dem_cannot_run": Code(remedy="'statejump reduced' can run the case"),
+    "dem_body": Code(text="a link is a body of its own, the DEM has rods"),
+    "dem_constraint": Code(text="the DEM has no constraints"),
+    "dem_element": Code(text="the DEM does not have an element"),
+    "dem_joint": Code(text="the DEM does not have a joint"),
+    "dem_joints_too_close": Code(text="more joints are within reach of each other than the DEM can keep apart"),
+    "dem_large_rotation": Code(text="a rotation above π/2, which the DEM cannot distinguish from its opposite"),
+    "dem_node_without_mass": Code(text="the DEM needs a mass at every node that moves"),
+    "dem_path_too_large": Code(text="the path is too large to be kept as a whole"),
+    "dem_second_contact": Code(text="a node has a second contact part, in the DEM it has one"),
+    "dem_spring_free_length": Code(text="the DEM needs free lengths of springs above 0"),
+    "dem_torsion_out_of_plane": Code(text="the DEM has torsion springs in a plane only"),
     "dem_of_control": Code(
         cause="a truss with what is found goes into a case of its own, which 'statejump compare' checks",
     ),
@@ -590,7 +640,7 @@ CODES: dict[str, Code] = {
     "drive_table_incomplete": Code(cause="a table has both times and angular velocities"),
     "drive_table_length": Code(cause="must be as many numbers as table_time_s has, which are {times}, one or more"),
     "drive_without_speed": Code(cause="a number [rad/s], or a table, is needed"),
-    "engine_refused": Code(cause="must be {needed}"),
+    "rejected_by_engine": Code(cause="must be {needed}"),
     "expansion_of_link_missing": Code(cause="a number [1/K], or an expansion, is needed"),
     "fe_link_not_as_drawn": Code(cause="'statejump fe' takes links as long as drawn, {drawn_m:.9g} m"),
     "fe_no_links": Code(cause="'statejump fe' takes trusses with links"),
@@ -620,14 +670,14 @@ CODES: dict[str, Code] = {
             "program {program!r}"
         ),
     ),
-    "links_not_different": Code(cause="must be two different links"),
-    "links_without_place": Code(cause="the links share no place, neither a node nor a joint between their ends"),
+    "equal_links": Code(cause="must be two different links"),
+    "links_not_adjacent": Code(cause="the links share no place, neither a node nor a joint between their ends"),
     "mass_missing": Code(cause="what has weight has one of them"),
     "mass_of_body_missing": Code(cause="{of} is of a body of that mass"),
     "mass_of_moving_link_missing": Code(cause="what moves has one of them"),
     "masses_not_lumped": Code(cause="must be 'lumped' {scheme}, as in the DEM"),
     "misspelt_reference": Code(cause="there is no {what_it_is} {name!r}", remedy="did you mean {meant!r}?"),
-    "name_taken": Code(cause="another {part} has it"),
+    "duplicate_name": Code(cause="another {part} has it"),
     "names_of_other_case": Code(what="damaged", cause="/names/{items} has other names than the case"),
     "no_column_of_item": Code(cause="it has no column of {part}"),
     "no_contact": Code(
@@ -638,8 +688,8 @@ CODES: dict[str, Code] = {
     "no_nodes": Code(cause="must be one or more nodes"),
     "no_radius_left": Code(cause="the {part} has no radius left at a temperature change of {at_K:g} K"),
     "no_ranking": Code(what="no joints are ranked"),
-    "no_such_node_of": Code(cause="the truss has the nodes {known}"),
-    "no_such_reference": Code(cause="there is no {what_it_is} {name!r}", remedy="known are {known}"),
+    "undefined_node": Code(cause="the truss has the nodes {known}"),
+    "undefined_reference": Code(cause="there is no {what_it_is} {name!r}", remedy="known are {known}"),
     "no_support": Code(what="no node has a support (fixed or guide_normal)", cause="the truss moves as a whole"),
     "node_off_clearance": Code(
         cause=(
@@ -650,13 +700,9 @@ CODES: dict[str, Code] = {
     "node_unused": Code(
         what="node {node!r} is not allowed", cause="no link, spring, joint, constraint or support uses it",
     ),
-    "nodes_not_different": Code(cause="must be two different nodes"),
-    "not_read_by_scheme": Code(cause="it is not read {scheme}"),
+    "equal_nodes": Code(cause="must be two different nodes"),
+    "unused_by_scheme": Code(cause="it is not read {scheme}"),
     "nothing_to_scale": Code(cause="it has no value but 0 in this case: there is nothing to scale"),
-    "only_without_density": Code(cause="only without density_kg_per_m3"),
-    "only_without_expansion": Code(cause="only without expansion"),
-    "only_without_free_length": Code(cause="only without free_length_m"),
-    "only_without_table": Code(cause="only without a table"),
     "output_unknown": Code(cause="must be 'node', 'node:NAME', 'rms' or 'tilt'"),
     "partial_slip_rigid": Code(
         cause=(
@@ -673,41 +719,32 @@ CODES: dict[str, Code] = {
     "play_with_partial_slip": Code(
         cause='must be 0 with reduced.sticking = "partial_slip": no contact with both is known',
     ),
-    "program_of_other_duration": Code(
+    "program_duration_differs": Code(
         cause=(
             "{cycles} cycles of it last {lasts:.10g} s and must last {wanted_s:.10g} s, as thermal.cycles of "
             "thermal.period_s do"
         ),
     ),
-    "program_with_own_cycles": Code(cause="program {program!r} of the case has cycles of its own"),
+    "program_has_own_cycles": Code(cause="program {program!r} of the case has cycles of its own"),
     "reference_without_section": Code(
         cause="there is no {what_it_is} {name!r}",
         remedy="the file has no section [[{what_it_is}]]",
     ),
     "reflector_axis": Code(cause="must be {dimension} numbers, not zero in every direction"),
     "reflector_missing": Code(what="section [reflector] is missing", remedy="it names the nodes of the surface"),
-    "regularised_cannot": Code(
+    "regularised_not_supported": Code(
         cause="{why}, which motion.scheme = 'regularised' has not",
         remedy="leave motion.scheme out",
     ),
-    "round_clearance_closes": Code(
-        cause=(
-            "the expansion of {inner} and {outer} closes it at a temperature change of {at_K:g} K, it must stay "
-            "above 0 [m] within the program"
-        ),
-    ),
-    "same_link": Code(cause="must be another link than {outer}"),
-    "same_node": Code(cause="must be another node than {outer}"),
-    "single_rib": Code(cause="a single rib has no neighbour"),
-    "slider_play_without_friction": Code(
-        cause="needs friction, in series with which it is: give friction_coefficient and normal_force_N",
-    ),
+    "equal_links_of_joint": Code(cause="must be another link than {outer}"),
+    "equal_nodes_of_joint": Code(cause="must be another node than {outer}"),
+    "rib_without_neighbour": Code(cause="a single rib has no neighbour"),
     "spatial_axes_needed": Code(what="not drawn", cause="a spatial truss needs axes with projection='3d'"),
     "spectrum_of_unequal_steps": Code(
         cause="a spectrum is of equal steps: leave it out and set motion.steps_per_cycle",
     ),
-    "spring_between_fixed_nodes": Code(cause="neither of these nodes can move"),
-    "spring_between_one_place": Code(cause="a spring needs two nodes at different places"),
+    "spring_between_supports": Code(cause="neither of these nodes can move"),
+    "coincident_spring_nodes": Code(cause="a spring needs two nodes at different places"),
     "spring_without_length": Code(cause="a stiffness of {stiffness:g} N/m gives it at no length that is a number"),
     "start_not_drawn": Code(
         cause="must be 'drawn' with {part}, whose contact is rigid: no path says where it rests",
@@ -720,10 +757,10 @@ CODES: dict[str, Code] = {
         cause="must be 'elastic' or 'partial_slip' {scheme}: its contacts bend, as in the DEM",
     ),
     "stop_missing": Code(cause="needs a stop: give clearance_minus_m or clearance_plus_m"),
-    "tables_only_in_case_file": Code(cause="only where a case file names files"),
+    "tables_of_case_file": Code(cause="only where a case file names files"),
     "temperature_from_members_file": Code(cause="thermal.members_file has its temperature"),
     "theta_without_equal_steps": Code(cause="it is of equal steps, which motion.displacement_tolerance_m has not"),
-    "times_must_increase": Code(cause="must increase, {after:g} follows {before:g} [s]"),
+    "drive_times_not_increasing": Code(cause="must increase, {after:g} follows {before:g} [s]"),
     "too_few_steps_of_regularised": Code(
         cause="must be at least {least} with motion.scheme = 'regularised': its steps are explicit",
     ),
@@ -731,27 +768,27 @@ CODES: dict[str, Code] = {
         what="the truss has {count} joints",
         cause="the matrix of a contact problem is dense, so it must be at most {most}",
     ),
-    "truss_in_parts": Code(
+    "disconnected_truss": Code(
         what="the truss is in {parts} parts, with the nodes {one_of_each} in one each",
         cause="that of node {loose_node!r} has no support and no link, spring or joint to a part that has one",
     ),
     "truss_without_joints": Code(cause="the truss has no joints, so it has no contact problem"),
-    "turning_part_unsupported": Code(
+    "rotating_part_unsupported": Code(
         cause=(
             "without a link the {part} does not turn, so node {node_wanted!r} must have a support (fixed or "
             "guide_normal)"
         ),
     ),
-    "wrong_number_of_components": Code(cause="must be {dimension} numbers [{unit}], as truss.dimension is {dimension}"),
+    "wrong_dimension": Code(cause="must be {dimension} numbers [{unit}], as truss.dimension is {dimension}"),
     "wrong_number_of_links": Code(cause="must be 2 links, or 1 against ground"),
     "wrong_number_of_nodes": Code(cause="must be {wanted}"),
-    "zero_length": Code(what="nodes {ends} are at one place, {place_m} m", cause="the {part} has no length"),
+    "coincident_nodes": Code(what="nodes {ends} are at one place, {place_m} m", cause="the {part} has no length"),
     "zero_vector": Code(cause="must not be zero in every direction"),
     # Contact laws
-    "bodies_pull": Code(cause="must be at least 0 [N]: the bodies do not pull on each other"),
+    "tensile_force": Code(cause="must be at least 0 [N]: the bodies do not pull on each other"),
     "column_partner_missing": Code(cause="{partner} goes with it"),
     "compiler_not_run": Code(what="no C++ compiler", cause="$CXX = {compiler!r} cannot be run"),
-    "engine_argument": Code(text="an argument of the law is out of range"),
+    "law_argument_out_of_range": Code(text="an argument of the law is out of range"),
     "first_row_not_zero": Code(cause="must be 0 [N] in the first row, where the contact is made"),
     "history_column_missing": Code(cause="the history needs {needs_}"),
     "history_columns_exclude": Code(beside="beside {other}", cause="the history needs {needs_}, one of them"),
@@ -762,19 +799,19 @@ CODES: dict[str, Code] = {
         cause="its force depends on the rate of penetration_depth_m, which has to be given",
     ),
     "law_needs_time": Code(cause="law {law!r} depends on velocity"),
-    "law_unusable": Code(text="a law cannot be used"),
+    "bad_law": Code(text="a law cannot be used"),
     "no_compiler": Code(
         what="no C++ compiler",
         cause="none of {compilers} is installed",
         remedy="on Debian, apt install g++ libeigen3-dev libboost-dev",
     ),
-    "no_count": Code(cause="must be a whole number from 1"),
-    "no_header": Code(what="there is no such file"),
+    "not_positive_integer": Code(cause="must be a whole number from 1"),
+    "header_file_missing": Code(what="there is no such file"),
     "other_headers": Code(
         what="these kernel headers are not those that the engine was compiled from",
         remedy="build or install the project again",
     ),
-    "rows_do_not_grow": Code(cause="must grow from row to row [s]"),
+    "history_times_not_increasing": Code(cause="must grow from row to row [s]"),
     "too_many_law_steps": Code(cause="{rows} rows of that many steps are more than {most} in all"),
     # Contact problems
     "fclib_data_missing": Code(what="{data_set} is missing"),
@@ -783,10 +820,10 @@ CODES: dict[str, Code] = {
     "fclib_index": Code(what="{group}/{data_set} holds {index}", cause="must be between 0 and {largest}"),
     "fclib_matrix_shape": Code(what="{group} is {rows} x {columns}", cause="must be {wanted_rows} x {wanted_columns}"),
     "fclib_missing": Code(what="/{group} is missing"),
-    "fclib_no_data_set": Code(what="{data_set} is not a data set"),
-    "fclib_no_group": Code(what="{group} is not a group"),
-    "fclib_no_number": Code(what="{group}/{data_set} has {entries} entries", cause="must be one number"),
-    "fclib_no_numbers": Code(what="{data_set} is damaged", cause="must be a list of {whole_}numbers"),
+    "fclib_not_data_set": Code(what="{data_set} is not a data set"),
+    "fclib_not_group": Code(what="{group} is not a group"),
+    "fclib_not_number": Code(what="{group}/{data_set} has {entries} entries", cause="must be one number"),
+    "fclib_not_number_list": Code(what="{data_set} is damaged", cause="must be a list of {whole_}numbers"),
     "fclib_not_finite": Code(what="{data_set} is damaged", cause="it has numbers that are not finite"),
     "fclib_pointers": Code(
         what="{group}/p is damaged",
@@ -800,7 +837,7 @@ CODES: dict[str, Code] = {
         what="{group}/q has {entries} entries",
         cause="{contacts} contacts in dimension {dimension} need {needed}",
     ),
-    "no_such_file": Code(what="no such file"),
+    "file_not_found": Code(what="no such file"),
     "not_solved": Code(what="not solved", cause="merit {merit:.3g} after {effort}, tolerance {tolerance:g}"),
     "problem_no_list": Code(what="{name} has shape {shape}", cause="must be a list of numbers"),
     "problem_not_square": Code(what="W has shape {shape}", cause="must be a square array"),
@@ -821,7 +858,6 @@ CODES: dict[str, Code] = {
     "no_joint_model": Code(cause="names no joint"),
     "no_table_of_fit": Code(cause="must be 'parameters', 'models' or 'rows'"),
     "not_one_of": Code(cause="must be one of {known}"),
-    "not_positive": Code(cause="must be a number above 0"),
     "partner_missing": Code(cause="it goes with {partner}"),
     "target_of_displacement": Code(cause="it takes a loop of force over displacement"),
     "target_of_rotation": Code(cause="it takes a loop of moment over rotation"),
@@ -853,7 +889,6 @@ CODES: dict[str, Code] = {
         what="the bore's section at {z_m:.6g} m from its middle has no wall at {angle_deg:.1f} degrees",
     ),
     "journal_too_large": Code(cause="the journal does not go into the bore of mean radius {mean_radius_m:.6g} m"),
-    "not_positive_with_unit": Code(cause="must be a number above 0 [m]"),
     # Surfaces
     "array_not_finite": Code(beside="as an array", cause="must hold finite numbers"),
     "array_of_other_shape": Code(beside="as an array", cause="must have a row of x, y, z for each of {count} nodes"),
@@ -863,7 +898,7 @@ CODES: dict[str, Code] = {
     ),
     "fit_undetermined": Code(what="{count} nodes do not determine a best fit", remedy="more of them"),
     "no_direction": Code(cause="must be three numbers that are not all 0"),
-    "no_sample_value": Code(what="no sample has a value"),
+    "samples_without_value": Code(what="no sample has a value"),
     "node_column_missing": Code(cause="a node needs its place and its displacement"),
     "nodes_along_axis": Code(what="the nodes lie on a line along the axis"),
     "nodes_on_one_line": Code(what="the nodes lie on one line: how they turn about it is not determined"),
@@ -874,15 +909,15 @@ CODES: dict[str, Code] = {
     "zernike_undetermined": Code(what="{count} nodes do not determine {terms} Zernike terms", remedy="ask for fewer"),
     # CalculiX and orbits
     "calculix_failed": Code(what="CalculiX did not come to the end"),
-    "calculix_too_slow": Code(what="CalculiX was not done after {limit_s:g} s"),
-    "member_column_missing": Code(what="line 1: column {column} is missing", cause="needed are {needed}"),
+    "calculix_timeout": Code(what="CalculiX was not done after {limit_s:g} s"),
+    "missing_column": Code(what="column {column} is missing, needed are {needed}"),
     "member_name": Code(what="line {line}: name", cause="must be a text that is not empty"),
-    "no_calculix": Code(
+    "calculix_missing": Code(
         what="CalculiX is not installed",
         cause="there is no {program} on the PATH",
         remedy="install Debian's calculix-ccx",
     ),
-    "no_such_members_file": Code(what="no such file of members"),
+    "members_file_not_found": Code(what="no such file of members"),
     "orbit_not_periodic": Code(
         what="no orbit repeats itself within {orbits}",
         cause="members are heavy against the length of the orbit",

@@ -372,8 +372,8 @@ class Interrupted(StatejumpError):
 
 
 def fields(kind: str, message: str, exit_status: int, **details: Any) -> dict[str, Any]:
-    """Return a failure that is no StatejumpError in the same form, in the order of ``FIELDS``."""
-    known = {"kind": kind, "message": message, **details, "exit_status": exit_status}
+    """Return a failure that is no StatejumpError in the same form, in the order of ``FIELDS``; its code is its kind."""
+    known = {"kind": kind, "code": kind, "message": message, **details, "exit_status": exit_status}
     return {name: known[name] for name in FIELDS if known.get(name) is not None}
 
 

@@ -74,7 +74,7 @@ def opened(path: Path) -> Iterator[h5py.File]:
         inside of this cannot be read
     """
     if not is_file(path):
-        raise Unreadable(code="no_such_result_file", file=path)
+        raise Unreadable(code="result_file_not_found", file=path)
     try:
         with path.open("rb") as stream:
             _check(stream, path)
@@ -83,7 +83,7 @@ def opened(path: Path) -> Iterator[h5py.File]:
             with h5py.File(stream, "r") as file:
                 yield file
     except (OSError, RuntimeError, MemoryError) as error:
-        raise Unreadable(code="cannot_be_read", cause=" ".join(str(error).split()), file=path) from None
+        raise Unreadable(code="read_failed", cause=" ".join(str(error).split()), file=path) from None
 
 
 def _check(stream: IO[bytes], path: Path) -> None:

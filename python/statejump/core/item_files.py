@@ -54,9 +54,9 @@ def with_tables(data: Mapping[str, Any], folder: Path, case: type[Section]) -> M
         if section not in lists or section not in fields_of(_declared(known)):
             raise UnknownKey(key, **suggestion(section, list(fields_of(_declared(known))), f"{TABLES_BESIDE}.", ""))
         if not isinstance(file, str):
-            raise NotAllowed(key, file, code="no_text")
+            raise NotAllowed(key, file, code="not_string")
         if section in made:
-            raise NotAllowed(key, file, code="table_twice", table=section)
+            raise NotAllowed(key, file, code="table_and_section", table=section)
         made[section] = read_items(folder / file, key, lists[section], words)
     return made
 
@@ -77,7 +77,7 @@ def read_items(path: Path, key: str, model: type[Section], words: Numbering) -> 
     if path.suffix.lower() not in SUFFIXES:
         raise NotAllowed(key, path.name, code="suffix_unknown", suffixes=", ".join(SUFFIXES))
     if not is_file(path):
-        raise Unreadable(code="no_such_table_file", file=path)
+        raise Unreadable(code="table_file_not_found", file=path)
     in_text = path.suffix.lower() in TEXT_SUFFIXES
     try:
         return ItemTable(**_text(path, model, words)) if in_text else ItemTable(**_hdf5(path, model, words))
@@ -181,7 +181,7 @@ def _hdf5(path: Path, model: type[Section], words: Numbering) -> dict[str, np.nd
             return {column.key: _of_data_set(path, column, rule, found[column.name], words)
                     for column, rule in _keys(list(found), model)}
     except (OSError, RuntimeError, MemoryError) as error:
-        raise Unreadable(code="cannot_be_read", cause=" ".join(str(error).split()), file=path) from None
+        raise Unreadable(code="read_failed", cause=" ".join(str(error).split()), file=path) from None
 
 
 def _of_data_set(path: Path, column: Column, rule: Rule, data: Any, words: Numbering) -> np.ndarray | Texts:

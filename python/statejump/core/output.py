@@ -27,7 +27,7 @@ def unique() -> str:
 
 def not_written(path: Path, error: OSError) -> NotWritten:
     """Return the error for a file that cannot be written, with the reason of the system."""
-    return NotWritten(code="cannot_be_written", file=path, cause=error.strerror or str(error))
+    return NotWritten(code="write_failed", file=path, cause=error.strerror or str(error))
 
 
 def synced(path: Path) -> None:
@@ -43,7 +43,7 @@ def check_target(path: Path) -> None:
     """Raise NotWritten if the path is a folder, a device or a pipe."""
     try:
         if not stat.S_ISREG(os.stat(path).st_mode):
-            raise NotWritten(code="target_no_file", file=path)
+            raise NotWritten(code="target_not_file", file=path)
     except FileNotFoundError:
         pass
     except OSError as error:
@@ -57,7 +57,7 @@ def check_suffix(option: str, path: Path, *allowed: str) -> None:
     :param allowed: suffixes, as ``.html``
     """
     if path.suffix and path.suffix.lower() not in allowed:
-        raise NotAllowed(option, str(path), code="target_suffix", suffixes=" or ".join(allowed))
+        raise NotAllowed(option, str(path), code="wrong_suffix", suffixes=" or ".join(allowed))
 
 
 def _sweep(path: Path) -> None:

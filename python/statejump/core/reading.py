@@ -23,13 +23,13 @@ def is_file(path: Path) -> bool:
     except (FileNotFoundError, NotADirectoryError):
         return False
     except OSError as error:
-        raise Unreadable(code="cannot_be_read", cause=error.strerror, file=path) from None
+        raise Unreadable(code="read_failed", cause=error.strerror, file=path) from None
 
 
 def check_size(path: Path, largest_bytes: int, beside: str = "") -> None:
     """Raise Unreadable for a file that is larger than what is read as a whole; ``beside`` says what else there is."""
     if path.stat().st_size > largest_bytes:
-        raise Unreadable(code="file_too_large_for", file=path, largest=size(largest_bytes), why=beside)
+        raise Unreadable(code="file_too_large_to_read", file=path, largest=size(largest_bytes), why=beside)
 
 
 def finite_number(text: str) -> float | None:
@@ -55,4 +55,4 @@ def open_csv(path: Path, encoding: str = "utf-8-sig") -> Iterator[TextIO]:
     except csv.Error as failure:
         raise Unreadable(code="not_csv", cause=str(failure), file=path) from None
     except OSError as failure:
-        raise Unreadable(code="cannot_be_read", cause=failure.strerror, file=path) from None
+        raise Unreadable(code="read_failed", cause=failure.strerror, file=path) from None

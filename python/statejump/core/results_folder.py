@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from statejump.core import results_owner
 from statejump.core.errors import NotWritten, size
@@ -68,7 +68,7 @@ class Results:
         try:
             descriptor = self._locked(path)
         except OSError as error:
-            raise _unusable(path, error.strerror or str(error), OTHER) from None
+            raise _unusable(path, "write_failed", OTHER, error.strerror or str(error)) from None
         try:
             if case is not None and not self.force:
                 for folder in (path, *path.parents)[:len(path.relative_to(self.root).parts)]:
@@ -78,7 +78,7 @@ class Results:
                 own = path / f".{unique()}{PARTIAL}"
                 own.mkdir()
             except OSError as error:
-                raise _unusable(path, error.strerror or str(error), OTHER) from None
+                raise _unusable(path, "write_failed", OTHER, error.strerror or str(error)) from None
             found = ResultsFolder(path, own, case)
             try:
                 yield found
@@ -102,8 +102,7 @@ class Results:
                 try:
                     fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if self.wait else fcntl.LOCK_NB))
                 except BlockingIOError:
-                    raise _unusable(path, "another run is at work in it", f"wait for it with --wait, or {OTHER}",
-                                    what="is in use") from None
+                    raise _unusable(path, "folder_in_use", f"wait for it with --wait, or {OTHER}") from None
                 with suppress(FileNotFoundError):
                     if os.path.samestat(os.fstat(descriptor), os.stat(path)):
                         return descriptor
@@ -131,8 +130,7 @@ class ResultsFolder:
         room = os.statvfs(self.path)
         free = room.f_bavail * room.f_frsize
         if needed_bytes > free:
-            raise _unusable(self.path, f"the results need about {size(needed_bytes)}, the file system has {size(free)} "
-                            "left", OTHER, what="no space left")
+            raise _unusable(self.path, "no_space_left", OTHER, needed=size(needed_bytes), free=size(free))
 
     def publish(self, written: Sequence[Path] = ()) -> list[Path]:
         """Publish all staged files at once; return their new paths.
@@ -162,7 +160,7 @@ class ResultsFolder:
             cause = error.strerror or str(error)
             if ready.exists():
                 cause += f"; {ready.name} in it is complete, the next run in this folder moves what is left of it"
-            raise _unusable(self.path, cause, OTHER) from None
+            raise _unusable(self.path, "write_failed", OTHER, cause) from None
         return [self.path / file.relative_to(before) if file.is_relative_to(before) else file for file in written]
 
 
@@ -207,5 +205,5 @@ def _recover(path: Path) -> None:
             _remove(left)
 
 
-def _unusable(path: Path, cause: str, remedy: str, what: str = "cannot be written") -> NotWritten:
-    return NotWritten(what, file=path, place=f"results folder {path}", cause=cause, remedy=remedy)
+def _unusable(path: Path, code: str, remedy: str, cause: str | None = None, **details: Any) -> NotWritten:
+    return NotWritten(code=code, file=path, place=f"results folder {path}", cause=cause, remedy=remedy, **details)

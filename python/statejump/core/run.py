@@ -47,7 +47,7 @@ class Parts(dict[str, Any]):
         self.place, self.file = place, str(file)
 
     def __missing__(self, name: str) -> Any:
-        raise MissingPart(code="part_missing", file=self.file, group=self.place, name=name)
+        raise MissingPart(code="result_part_missing", file=self.file, group=self.place, name=name)
 
     def like(self, parts: Mapping[str, Any]) -> Parts:
         """Return other parts with the same path."""

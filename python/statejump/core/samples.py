@@ -34,11 +34,11 @@ def read_samples(path: Path, whole: bool = True) -> dict[str, np.ndarray]:
         names = json.loads(stream.readline() or b"[]")
         numbers = stream.read()
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
-        raise Unreadable(code="samples_without_names", file=path)
+        raise Unreadable(code="samples_without_header", file=path)
     size = NUMBER.itemsize * len(names)
     if not names or len(numbers) < size:
         raise Unreadable(code="no_samples", file=path)
     if whole and len(numbers) % size:
-        raise Unreadable(code="samples_cut", file=path)
+        raise Unreadable(code="truncated_samples", file=path)
     rows = np.frombuffer(numbers[: len(numbers) // size * size], NUMBER).reshape(-1, len(names))
     return dict(zip(names, rows.T.copy()))

@@ -78,7 +78,7 @@ class Table:
         if self._counts:
             del cells[0]
         if all(finite_number(cell.replace(",", ".")) is not None for cell in cells):
-            raise Unreadable(code="names_missing", file=path, line=self.line)
+            raise Unreadable(code="table_without_header", file=path, line=self.line)
         for place, cell in enumerate(cells, start=1):
             if not cell:
                 raise Unreadable(code="column_without_name", file=path, line=self.line, column=place + self._counts)
@@ -236,7 +236,7 @@ class Table:
         if value is None:
             line, column = place(index)
             what = f"{quoted(cell)} is not a finite number" if cell.strip() else "the cell is empty"
-            raise Unreadable(code="cell_unusable", cause=what, file=self.path, line=line, column=quoted(column))
+            raise Unreadable(code="bad_cell", cause=what, file=self.path, line=line, column=quoted(column))
         return value
 
     def _without_groups(self, cells: Sequence[str], place: Place) -> list[str]:
@@ -356,7 +356,7 @@ def open_table(path: Path, largest_bytes: int | None = None, beside: str = "") -
     try:
         encoding = _encoding(path)
     except OSError as failure:
-        raise Unreadable(code="cannot_be_read", cause=failure.strerror, file=path) from None
+        raise Unreadable(code="read_failed", cause=failure.strerror, file=path) from None
     with open_csv(path, encoding) as stream:
         if largest_bytes is not None:
             check_size(path, largest_bytes, beside)
@@ -412,7 +412,7 @@ def read_known(
         kept = [place for place, name in enumerate(table.header) if name not in ignored]
         try:
             for name in sorted(set(ignored) - set(table.header)):
-                raise NotAllowed("ignored", name, "the table has no such column")
+                raise NotAllowed("ignored", name, code="unknown_ignored_column")
             columns = matched([table.header[place] for place in kept], known, words)
         except StatejumpError as failure:
             raise failure.located(file=path) from None

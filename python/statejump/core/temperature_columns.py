@@ -84,7 +84,7 @@ def refuse(read: Read, wrong: NDArray[np.bool_], what: str) -> None:
     """Raise Unreadable for the first value that is wrong."""
     if wrong.any():
         row, column = np.unravel_index(int(np.argmax(wrong)), wrong.shape)
-        raise Unreadable(code="temperature_unusable", cause=f"{read.values[row, column]:g} {what}", file=read.path,
+        raise Unreadable(code="bad_temperature", cause=f"{read.values[row, column]:g} {what}", file=read.path,
                          column=quoted(read.names[column]), at_s=read.time_s[row])
 
 
@@ -100,7 +100,7 @@ def read_columns(path: Path, key: str) -> Read:
     if path.suffix.lower() not in SUFFIXES:
         raise NotAllowed(key, path.name, code="suffix_unknown", suffixes=", ".join(SUFFIXES))
     if not is_file(path):
-        raise Unreadable(code="no_such_temperature_file", file=path)
+        raise Unreadable(code="temperature_file_not_found", file=path)
     found = _text(path) if path.suffix.lower() in TEXT_SUFFIXES else _hdf5(path)
     _check_names(path, found.names)
     if len(found.time_s) < 2:
@@ -129,7 +129,7 @@ def _text(path: Path) -> Read:
         lines, cells = zip(*times) if times else ((), ())
         time_s = numbers_of(table, time, cells, lines) if times else np.zeros(0)
     for place in np.flatnonzero(np.diff(time_s) <= 0):
-        raise Unreadable(code="times_do_not_rise", file=path, line=times[place + 1][0], column=table.header[at],
+        raise Unreadable(code="times_not_increasing", file=path, line=times[place + 1][0], column=table.header[at],
                          time=times[place + 1][1].strip(), before=times[place][1].strip())
     values = np.array(rows).reshape(-1, len(columns))
     scale = np.array([found.factor / found.divisor for _, found in columns])
@@ -188,7 +188,7 @@ def _hdf5(path: Path) -> Read:
             time_s, values = _array(found, "time_s", 1, path), _array(found, units[0], 2, path)
             names = _names(found, path)
     except (OSError, RuntimeError, MemoryError) as error:
-        raise Unreadable(code="cannot_be_read", cause=" ".join(str(error).split()), file=path) from None
+        raise Unreadable(code="read_failed", cause=" ".join(str(error).split()), file=path) from None
     if values.shape != (len(time_s), len(names)) or not names:
         raise Unreadable(code="temperatures_of_other_shape", file=path, data_set=units[0], rows=values.shape[0],
                          columns=values.shape[1], times=len(time_s), members=len(names))
@@ -197,7 +197,7 @@ def _hdf5(path: Path) -> Read:
     bad[1:] |= ~(time_s[1:] > time_s[:-1])
     if bad.any():
         place = int(np.argmax(bad))
-        raise Unreadable(code="time_not_rising", file=path, index=place, at_s=time_s[place])
+        raise Unreadable(code="time_not_increasing", file=path, index=place, at_s=time_s[place])
     refuse(read, ~np.isfinite(values), "is not a finite number")
     return read
 

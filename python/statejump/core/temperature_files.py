@@ -134,12 +134,12 @@ def _checked(given: Mapping[str, Any], section: str, key: str) -> None:
         if given.get(name) is not None:
             _rule(name, given[name], section)
     if not isinstance(given[key], str):
-        raise NotAllowed(f"{section}{key}", given[key], code="no_text")
+        raise NotAllowed(f"{section}{key}", given[key], code="not_string")
     if given.get("shape") != "table":
-        raise NotAllowed(f"{section}{key}", given[key], code="only_with_table", in_section=section)
+        raise NotAllowed(f"{section}{key}", given[key], code="requires_table_shape", in_section=section)
     others = {"table_file", "members_file", "table_time_s", "table_temperature_change_K"} - {key}
     for other in sorted(other for other in others if given.get(other) is not None):
-        raise NotAllowed(f"{section}{other}", code="beside_key", in_section=section, other_key=key)
+        raise NotAllowed(f"{section}{other}", code="conflicting_key", other=f"{section}{key}")
 
 
 def _cycles(given: Mapping[str, Any]) -> int:
@@ -166,7 +166,7 @@ def _table(given: Mapping[str, Any], folder: Path, section: str, name: Any) -> d
         near = difflib.get_close_matches(str(column), read.names, n=1, cutoff=0.5)
         if near:
             raise Unreadable(code="misspelt_column", file=path, column=quoted(column), meant=near[0])
-        raise Unreadable(code="no_such_column", file=path, column=quoted(column), known=listed(read.names))
+        raise Unreadable(code="column_not_found", file=path, column=quoted(column), known=listed(read.names))
     time_s, changes = _changes(read.column(column), given, section)
     return {**_without(given), "table_time_s": time_s.tolist(), "table_temperature_change_K": changes[:, 0].tolist()}
 
@@ -175,7 +175,7 @@ def _members(given: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Return the common program with the histories of members; as a table it is their mean."""
     _checked(given, "thermal.", "members_file")
     if given.get("table_column") is not None:
-        raise NotAllowed("thermal.table_column", code="beside_members_file")
+        raise NotAllowed("thermal.table_column", code="conflicting_key", other="thermal.members_file")
     read = of_means(read_columns(folder / given["members_file"], "thermal.members_file"))
     members = Histories(read.names, *_changes(read, given, "thermal."), source=given["members_file"])
     return {**_without(given), "table_time_s": members.time_s.tolist(),
@@ -221,6 +221,6 @@ def _changes(read: Read, given: Mapping[str, Any], section: str) -> tuple[Number
                          second_s=time_s[close[0] + 1], whole_s=time_s[-1])
     if _cycles(given) > 1 and changes[-1].any() and given.get("return_to_reference") is False:
         last = int(np.argmax(np.abs(changes[-1])))
-        raise NotAllowed(f"{section}cycles", given.get("cycles"), code="table_does_not_close", table=read.path.name,
+        raise NotAllowed(f"{section}cycles", given.get("cycles"), code="table_not_periodic", table=read.path.name,
                          away_K=changes[-1, last], column=read.names[last])
     return time_s, changes

@@ -204,17 +204,18 @@ def check(thermal: Thermal, section: str = "thermal.", returns: bool = False) ->
     for key in KEYS_OF_FILES:
         if getattr(thermal, key, None) is not None:
             # Files are read with the case file, and their names are gone then.
-            raise NotAllowed(f"{section}{key}", getattr(thermal, key), code="only_in_case_file")
+            raise NotAllowed(f"{section}{key}", getattr(thermal, key), code="key_of_case_file")
     if thermal.shape != "table":
         if thermal.temperature_change_max_K is None:
             rule = rule_of(fields_of(Thermal)["temperature_change_max_K"])
-            raise MissingKey(f"{section}temperature_change_max_K", str(rule.allowed), allowed=rule.allowed)
+            raise MissingKey(f"{section}temperature_change_max_K", allowed=rule.allowed, code="missing_key")
         for key in ("table_time_s", "table_temperature_change_K"):
             if getattr(thermal, key) is not None:
-                raise NotAllowed(f"{section}{key}", code="only_with_table", in_section=section)
+                raise NotAllowed(f"{section}{key}", code="requires_table_shape", in_section=section)
         return
     if thermal.temperature_change_max_K is not None:
-        raise NotAllowed(f"{section}temperature_change_max_K", code="beside_table_shape", in_section=section)
+        raise NotAllowed(f"{section}temperature_change_max_K", code="conflicting_key",
+                         other=f"{section}shape = 'table'")
     times, changes = thermal.table_time_s, thermal.table_temperature_change_K
     if times is None:
         raise MissingKey(f"{section}table_time_s", code="table_times_missing")

@@ -21,7 +21,7 @@ NO_DISPLAY = 3  # exit status of the script
 def check_folder(folder: Path) -> None:
     """Raise NotAllowed for a folder with files that are not the input of a DEM run."""
     if folder.is_dir() and any(folder.iterdir()) and not (folder / RUNNER).is_file():
-        raise NotAllowed("--keep-input", str(folder), "the folder has other files; name a new folder")
+        raise NotAllowed("--keep-input", str(folder), code="folder_not_empty")
 
 
 def keep_input(values: Mapping[str, Any], folder: Path) -> str:
@@ -53,8 +53,7 @@ def check_display() -> None:
 
 
 def _no_display(cause: str) -> FailedRun:
-    return FailedRun("YADE's 3-D view cannot be opened", cause=cause,
-                     remedy="use a terminal on a desktop, or set DISPLAY")
+    return FailedRun(code="no_display", cause=cause)
 
 
 def view(values: Mapping[str, Any], folder: Path) -> None:
@@ -68,4 +67,4 @@ def view(values: Mapping[str, Any], folder: Path) -> None:
     if status == NO_DISPLAY:
         raise _no_display(f"YADE cannot connect to the display {os.environ.get('DISPLAY', '')!r}")
     if status != 0:
-        raise FailedRun(f"YADE ended with status {status}", case=values["case"]["name"])
+        raise FailedRun(code="yade_view_ended", status=status, case=values["case"]["name"])

@@ -65,7 +65,7 @@ def find_yade() -> str:
     wanted = os.environ.get("STATEJUMP_YADE", "yade")
     found = which(wanted)
     if found is None:
-        raise FailedRun(code="no_yade", command=wanted)
+        raise FailedRun(code="yade_missing", command=wanted)
     return found
 
 

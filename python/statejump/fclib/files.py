@@ -40,7 +40,7 @@ def read(path: str | Path) -> Problem:
 
     path = Path(path)
     if not is_file(path):
-        raise Unreadable(code="no_such_file", file=path)
+        raise Unreadable(code="file_not_found", file=path)
     try:
         if not h5py.is_hdf5(path):
             raise Unreadable(code="not_hdf5", file=path)
@@ -50,7 +50,7 @@ def read(path: str | Path) -> Problem:
     except StatejumpError as error:
         raise error.located(file=path) from None
     except (OSError, RuntimeError, MemoryError) as error:
-        raise Unreadable(code="cannot_be_read", cause=" ".join(str(error).split()), file=path) from None
+        raise Unreadable(code="read_failed", cause=" ".join(str(error).split()), file=path) from None
 
 
 def _problem(file: h5py.File) -> Problem:
@@ -107,7 +107,7 @@ def _group(parent: h5py.Group, name: str) -> h5py.Group:
 
     found = parent.get(name)
     if not isinstance(found, h5py.Group):
-        raise Unreadable(code="fclib_group_missing" if found is None else "fclib_no_group",
+        raise Unreadable(code="fclib_group_missing" if found is None else "fclib_not_group",
                          group=f"{parent.name.rstrip('/')}/{name}")
     return found
 
@@ -118,9 +118,9 @@ def _numbers(parent: h5py.Group, name: str, whole: bool) -> NDArray[Any]:
     place = f"{parent.name}/{name}"
     found = parent.get(name)
     if not isinstance(found, h5py.Dataset):
-        raise Unreadable(code="fclib_data_missing" if found is None else "fclib_no_data_set", data_set=place)
+        raise Unreadable(code="fclib_data_missing" if found is None else "fclib_not_data_set", data_set=place)
     if found.shape is None or len(found.shape) > 1 or found.dtype.kind not in ("iu" if whole else "iuf"):
-        raise Unreadable(code="fclib_no_numbers", data_set=place, whole_="whole " if whole else "")
+        raise Unreadable(code="fclib_not_number_list", data_set=place, whole_="whole " if whole else "")
     values: NDArray[Any] = np.atleast_1d(found[()]).astype(np.int64 if whole else float)
     if not np.isfinite(values).all():
         raise Unreadable(code="fclib_not_finite", data_set=place)
@@ -134,7 +134,7 @@ def _vector(parent: h5py.Group, name: str) -> NDArray[np.float64]:
 def _number(parent: h5py.Group, name: str) -> int:
     values = _numbers(parent, name, whole=True)
     if values.size != 1:
-        raise Unreadable(code="fclib_no_number", group=parent.name, data_set=name, entries=values.size)
+        raise Unreadable(code="fclib_not_number", group=parent.name, data_set=name, entries=values.size)
     return int(values[0])
 
 

@@ -42,14 +42,14 @@ def displacements(deck: Sequence[str], set_name: str) -> list[dict[int, np.ndarr
     """
     program = shutil.which(PROGRAM)
     if program is None:
-        raise StatejumpError(code="no_calculix", program=PROGRAM)
+        raise StatejumpError(code="calculix_missing", program=PROGRAM)
     with scratch() as folder:
         (folder / "deck.inp").write_text("\n".join(deck) + "\n", encoding="ascii")
         try:
             done = subprocess.run([program, "deck"], cwd=folder, capture_output=True, text=True, errors="replace",
                                   stdin=subprocess.DEVNULL, timeout=LONGEST_S, check=False)
         except subprocess.TimeoutExpired:
-            raise FailedRun(code="calculix_too_slow", limit_s=LONGEST_S) from None
+            raise FailedRun(code="calculix_timeout", limit_s=LONGEST_S) from None
         said = [" ".join(line.split()).partition("; please")[0] for line in done.stdout.splitlines()
                 if "*ERROR" in line]
         if done.returncode or said or "Job finished" not in done.stdout:

@@ -255,7 +255,7 @@ def identified(
     """Identify a joint; see :func:`statejump.identify`."""
     for key, given in (("normal_force_N", normal_force_N), ("journal_radius_m", journal_radius_m)):
         if given is not None and not 0 < given < float("inf"):
-            raise NotAllowed(key, given, code="not_positive")
+            raise NotAllowed(key, given, code="not_positive", unit="N" if key.endswith("_N") else "m")
     if not (isinstance(confidence, (int, float)) and confidence in CONFIDENCE):
         raise NotAllowed("confidence", confidence, code="out_of_range", allowed=CONFIDENCE)
     names = list(MODELS) if model == AUTO else [model] if isinstance(model, str) else list(model)

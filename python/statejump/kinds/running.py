@@ -43,8 +43,7 @@ def run(case: Case, name: str, progress: Progress, *, trace: Trace | None = None
 
 def _traced(case: Case, name: str, progress: Progress, trace: Trace) -> Run:
     if name == "dynamic":
-        raise StatejumpError(cause="a trace shows the quasi-static solver, not the motion", case=case.name,
-                             remedy="leave out 'dynamic' or 'trace'")
+        raise StatejumpError(code="trace_of_motion", case=case.name)
     model = require(case, TracedModel)
     check_memory(case, "reduced")
     with shown(progress, LABELS[name]) as tell:

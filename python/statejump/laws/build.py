@@ -51,7 +51,7 @@ def build(header: Path, folder: Path | None = None) -> Path:
     """
     header = Path(header)
     if not is_file(header):
-        raise Unreadable(code="no_header", file=header)
+        raise Unreadable(code="header_file_missing", file=header)
     compiler = find_compiler()
     kernel = kernel_hash(KERNEL_INCLUDE)
     if kernel != _engine.kernel_hash():
@@ -63,11 +63,11 @@ def build(header: Path, folder: Path | None = None) -> Path:
             made = compile_law(compiler, header.resolve(), kernel, Path(scratch))
             found = _engine.inspect_user_law(str(made))
             if found["problem"]:
-                raise StatejumpError(found["problem"].replace(str(made), str(header)), code="law_unusable", file=header)
+                raise StatejumpError(found["problem"].replace(str(made), str(header)), code="bad_law", file=header)
             target = folder / f"{found['kind']}_{found['name']}.so"
             write_bytes(target, made.read_bytes())
     except OSError as error:
-        raise NotWritten(code="cannot_be_written", cause=error.strerror, file=folder) from None
+        raise NotWritten(code="write_failed", cause=error.strerror, file=folder) from None
     _engine.load_user_laws()
     return target
 

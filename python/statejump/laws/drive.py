@@ -82,7 +82,7 @@ def drive(
     except StatejumpError as error:
         raise error.located(file=file) from None
     if not (isinstance(steps_per_row, int) and steps_per_row >= 1):
-        raise NotAllowed("steps_per_row", steps_per_row, code="no_count")
+        raise NotAllowed("steps_per_row", steps_per_row, code="not_positive_integer")
     rows = len(next(iter(columns.values())))
     if (rows - 1) * steps_per_row >= MOST_STEPS:
         raise NotAllowed("steps_per_row", steps_per_row, code="too_many_law_steps", rows=rows, most=MOST_STEPS)
@@ -109,7 +109,7 @@ def drive(
         )
     except _engine.EngineFailure as failure:
         key = next(name for name in arguments if name.startswith(failure.key or ""))
-        raise NotAllowed(key, arguments[key], failure.cause, code="engine_argument") from None
+        raise NotAllowed(key, arguments[key], failure.cause, code="law_argument_out_of_range") from None
     problem = answer.pop("problem")
     if problem:
         reached = row[len(answer["slide_x_m"])]
@@ -133,7 +133,7 @@ def _driven(name: str) -> tuple[str, Law]:
             names.append(law.name)
     for kind in DRIVEN:
         if problem := _engine.law_problem(kind, name):
-            raise NotAllowed("law", name, problem, code="law_unusable")
+            raise NotAllowed("law", name, problem, code="bad_law")
     raise NotAllowed("law", name, code="not_one_of", allowed=tuple(names), known=", ".join(dict.fromkeys(names)))
 
 
@@ -162,7 +162,7 @@ def _check(columns: Mapping[str, np.ndarray], kind: str, law: Law) -> None:
     if "normal_force_N" in columns:
         below = np.flatnonzero(columns["normal_force_N"] < 0)
         if below.size:
-            raise NotAllowed("normal_force_N", float(columns["normal_force_N"][below[0]]), code="bodies_pull",
+            raise NotAllowed("normal_force_N", float(columns["normal_force_N"][below[0]]), code="tensile_force",
                              item=f"row {below[0] + 1}")
     if "tangential_force_N" in columns and columns["tangential_force_N"][0] != 0:
         raise NotAllowed("tangential_force_N", float(columns["tangential_force_N"][0]), code="first_row_not_zero",
@@ -173,7 +173,7 @@ def _check(columns: Mapping[str, np.ndarray], kind: str, law: Law) -> None:
     if "time_s" in columns:
         late = np.flatnonzero(np.diff(columns["time_s"]) <= 0)
         if late.size:
-            raise NotAllowed("time_s", float(columns["time_s"][late[0] + 1]), code="rows_do_not_grow",
+            raise NotAllowed("time_s", float(columns["time_s"][late[0] + 1]), code="history_times_not_increasing",
                              item=f"row {late[0] + 2}")
     if kind == "dissipation" and law.parameters and "normal_force_N" in columns:
         raise NotAllowed("normal_force_N", code="law_needs_penetration", law=law.name)

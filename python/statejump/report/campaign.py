@@ -96,7 +96,7 @@ class CampaignDocument:
             if self.command not in (plan.MONTECARLO, plan.SWEEP) or self.model not in words.MODELS:
                 raise ValueError(f"no campaign is {self.command!r} of model {self.model!r}")
         except (KeyError, ValueError, TypeError, AttributeError) as error:
-            raise Unreadable(code="damaged", cause=" ".join(str(error).split()), file=path) from None
+            raise Unreadable(code="damaged", cause=" ".join(str(error).split()), file=path, object="/") from None
         self.seed: Any | None = attributes.get("seed")
         self.title = str(campaign.get("title") or campaign.get("name"))
         self.attributes = {key: value for key, value in attributes.items() if key not in ("campaign", "case")}

@@ -99,6 +99,6 @@ def write(documents: Sequence[Document | CampaignDocument | UnsolvedDocument], p
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise NotWritten(code="cannot_be_written", file=path, cause=error.strerror or str(error)) from None
+        raise NotWritten(code="write_failed", file=path, cause=error.strerror or str(error)) from None
     with write_atomically(path) as stream:
         stream.write(text)

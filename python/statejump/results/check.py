@@ -31,7 +31,7 @@ def check(file: h5py.File, path: Path) -> None:
         if model not in MODELS:
             raise Unreadable(code="model_unknown_in_file", file=path, model=model, models=" or ".join(MODELS))
     if not models:
-        raise Unreadable(code="no_model", file=path)
+        raise Unreadable(code="result_without_model", file=path)
     axes: dict[tuple[str, str], list[tuple[str, int]]] = {}
     for place, item in found.items():
         _check_attributes(place, item, path)
@@ -54,7 +54,7 @@ def check(file: h5py.File, path: Path) -> None:
 
 
 def _damaged(path: Path, cause: str) -> Unreadable:
-    return Unreadable(code="damaged", cause=cause, file=path)
+    return Unreadable(code="damaged", cause=cause, file=path, object=cause.split()[0])
 
 
 def _check_missing(found: dict[str, Any], models: list[str], path: Path) -> None:

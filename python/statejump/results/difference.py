@@ -103,7 +103,7 @@ def check_comparable(first: Result, second: Result) -> None:
         more = f", and {len(physical) - 1} more" if len(physical) > 1 else ""
         raise StatejumpError(code="cases_differ", key_that_differs=physical[0], more=more)
     if first.names != second.names:
-        raise StatejumpError(code="items_differ")
+        raise StatejumpError(code="result_items_differ")
 
 
 def pairs(first: Result, second: Result) -> list[tuple[str, str]]:
@@ -112,7 +112,7 @@ def pairs(first: Result, second: Result) -> list[tuple[str, str]]:
     if common:
         return common
     if not first.models or not second.models:
-        raise StatejumpError(code="no_run")
+        raise StatejumpError(code="result_without_run")
     return [(next(iter(first.models)), next(iter(second.models)))]
 
 

@@ -73,5 +73,5 @@ def write(result: Result, path: Path) -> Path:
     try:
         book.save(path)
     except OSError as error:
-        raise NotWritten(code="cannot_be_written", file=path, cause=error.strerror or str(error)) from None
+        raise NotWritten(code="write_failed", file=path, cause=error.strerror or str(error)) from None
     return path

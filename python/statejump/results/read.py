@@ -41,7 +41,9 @@ def read(path: str | Path) -> Result:
     except RecursionError:
         raise Unreadable(code="objects_too_deep", file=path) from None
     except (KeyError, ValueError, TypeError, AttributeError, IndexError) as error:
-        raise Unreadable(code="damaged", cause=" ".join(str(error).split()), file=path) from None
+        cause = " ".join(str(error).split())
+        named = cause.split()[0] if cause.startswith("/") else "/"  # else HDF5's own message
+        raise Unreadable(code="damaged", cause=cause, file=path, object=named) from None
     for problem in problems(result):
         raise Unreadable(code="scene_damaged", file=path, why=" ".join(problem.split()))
     return result

@@ -68,7 +68,7 @@ def write(data: vtkDataObject, path: Path, time_s: float | None = None) -> None:
     writer.SetWriteToOutputString(True)
     writer.SetInputData(data)
     if not writer.Write():
-        raise NotWritten(code="cannot_be_written", file=path)
+        raise NotWritten(code="write_failed", file=path)
     write_bytes(path, writer.GetOutputString().encode())
 
 

@@ -104,7 +104,7 @@ class ItemColumns(Sequence[ItemType], Generic[ItemType]):
         self._model, self._length = model, len(table)
         self._fields = fields_of(model)
         if not self._length:
-            raise NotAllowed(section, code="no_table", table=section)
+            raise NotAllowed(section, code="not_table_list", table=section)
         for key in table.columns:
             if key not in self._fields:
                 raise UnknownKey(key, item=f"tables.{section}", **suggestion(key, list(self._fields)))
@@ -367,7 +367,7 @@ def _checked(section: str, table: ItemTable, key: str, field: attrs.Attribute[An
         try:
             rule.check(key, given if plain else [text for text in given if text])
             if key == "name" and not given:
-                raise NotAllowed(key, given, code="empty_text")
+                raise NotAllowed(key, given, code="empty_string")
         except NotAllowed as refused:
             refused.item = _where(section, table, place)
             raise
@@ -427,4 +427,4 @@ def _refuse(section: str, table: ItemTable, key: str, rule: Rule, place: int) ->
     except NotAllowed as refused:
         refused.item = item
         raise
-    raise NotAllowed(key, given, rule.needs(), item=item)
+    raise NotAllowed(key, given, rule.needs(), code="wrong_value", item=item)

@@ -22,7 +22,7 @@ class Item(Section):
 
     def __attrs_post_init__(self) -> None:
         if not self.name:
-            raise NotAllowed("name", self.name, code="empty_text")
+            raise NotAllowed("name", self.name, code="empty_string")
 
 
 def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[ItemType]:
@@ -40,7 +40,7 @@ def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[Ite
         return ItemColumns(model, section, value)
     if not isinstance(value, list) or not value or not all(isinstance(table, dict) for table in value):
         given = ABSENT if isinstance(value, (list, dict)) else value
-        raise NotAllowed(section, given, code="no_table", table=section)
+        raise NotAllowed(section, given, code="not_table_list", table=section)
     quick = _Quick(model)
     ranges, lists, free, free_lists, taken = quick.ranges, quick.lists, quick.free, quick.free_lists, quick.taken
     items = []
@@ -112,7 +112,7 @@ class _Quick(Generic[ItemType]):
         try:
             self.rules[key].check(key, converted)
             if key == "name" and not given:
-                raise NotAllowed(key, given, code="empty_text")
+                raise NotAllowed(key, given, code="empty_string")
         except NotAllowed as refused:
             refused.value = given
             raise

@@ -90,7 +90,7 @@ def with_keys_moved(model: type[Section], data: Mapping[str, Any], file: str = "
         if not isinstance(target, Mapping):
             continue  # whoever reads the section refuses it
         if name in target:
-            raise NotAllowed(old, part[key], code="key_twice", new_key=now, old_key=old)
+            raise NotAllowed(old, part[key], code="deprecated_key_duplicated", new_key=now, old_key=old)
         data = {**data, section: {name: value for name, value in part.items() if name != key}}
         data[there] = {**data.get(there, {}), name: part[key]}  # which may be the same section
     return data
@@ -101,7 +101,8 @@ def attribute_of(model: type[Section], path: str) -> attrs.Attribute[Any]:
     known, pattern = keys_of(model), pattern_of(path)
     if pattern not in known:
         now = model.MOVED.get(path)
-        raise UnknownKey(path, **(suggestion(path, list(known)) if now is None else {"code": "key_moved", "now": now}))
+        renamed = {"code": "key_renamed", "now": str(now)}
+        raise UnknownKey(path, **(suggestion(path, list(known)) if now is None else renamed))
     return known[pattern]
 
 
@@ -133,7 +134,7 @@ def set_value(model: type[Section], data: dict[str, Any], path: str, value: Any)
 def _no_item(section: str, item: str, key: str, names: Sequence[str]) -> dict[str, Any]:
     """Return the fields of the UnknownKey for an item that is not there."""
     if not names:
-        return {"code": "no_such_table", "table": section}
+        return {"code": "section_not_in_case", "table": section}
     if any(sign in item for sign in "*?["):
         known = ", ".join(names[:5]) + (", ..." if len(names) > 5 else "")
         return {"code": "no_item_fits", "table": section, "pattern": item, "known": known}

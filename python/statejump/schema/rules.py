@@ -104,7 +104,7 @@ def _switch(rule: Rule, key: str, value: Any) -> None:
 
 def _text(rule: Rule, key: str, value: Any) -> None:
     if not isinstance(value, str):
-        raise NotAllowed(key, value, code="no_text")
+        raise NotAllowed(key, value, code="not_string")
     if not value.isprintable() and printable(value) != value:
         raise NotAllowed(key, value, code="control_characters")
     if rule.known is not None:
@@ -115,9 +115,9 @@ def _text(rule: Rule, key: str, value: Any) -> None:
 
 def _numbers(rule: Rule, key: str, value: Any) -> None:
     if not isinstance(value, (list, tuple)):
-        raise NotAllowed(key, value, code="not_numbers", unit=rule.unit)
+        raise NotAllowed(key, value, code="not_number_list", unit=rule.unit)
     if rule.length is not None and len(value) != rule.length:
-        raise NotAllowed(key, value, code="wrong_number_of_numbers", length=rule.length, unit=rule.unit)
+        raise NotAllowed(key, value, code="wrong_list_length", length=rule.length, unit=rule.unit)
     for item in value:
         try:
             _number(rule, key, item)
@@ -127,7 +127,7 @@ def _numbers(rule: Rule, key: str, value: Any) -> None:
 
 def _texts(rule: Rule, key: str, value: Any) -> None:
     if not isinstance(value, (list, tuple)) or not all(isinstance(item, str) for item in value):
-        raise NotAllowed(key, value, code="not_texts")
+        raise NotAllowed(key, value, code="not_string_list")
     if rule.known is not None:
         for item in value:
             try:

@@ -47,7 +47,7 @@ def structure(model: type[SectionType], data: Mapping[str, Any]) -> SectionType:
             if data[name] is None and attribute.default is None:
                 continue  # as to_dict() has it
             if not isinstance(data[name], Mapping):
-                raise NotAllowed(name, data[name], code="not_a_section", wanted=name)
+                raise NotAllowed(name, data[name], code="not_section", wanted=name)
             made[name] = _section(keys, name, data[name])
     return model(**made)
 

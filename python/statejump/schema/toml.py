@@ -25,11 +25,11 @@ def read_toml(path: str | Path, what: str) -> tuple[str, dict[str, Any]]:
             raise Unreadable(code="file_too_large", file=path, largest=size(LARGEST_BYTES))
         text = content.decode("utf-8-sig")  # editors of Windows write a byte order mark
     except FileNotFoundError:
-        raise Unreadable(code="no_such_case_file", file=path, of=what) from None
+        raise Unreadable(code="case_file_not_found", file=path, of=what) from None
     except UnicodeDecodeError:
         raise Unreadable(code="toml_not_utf8", file=path) from None
     except OSError as failure:
-        raise Unreadable(code="cannot_be_read", cause=failure.strerror, file=path) from None
+        raise Unreadable(code="read_failed", cause=failure.strerror, file=path) from None
     try:
         return text, tomllib.loads(text)
     except tomllib.TOMLDecodeError as failure:

@@ -90,7 +90,7 @@ class Design:
         if way.shape != (3,) or not np.isfinite(way).all() or not np.linalg.norm(way) > 0:
             raise NotAllowed("axis", axis, code="no_direction")
         if focal_length_m is not None and not 0 < focal_length_m < np.inf:
-            raise NotAllowed("focal_length_m", focal_length_m, code="not_positive_with_unit")
+            raise NotAllowed("focal_length_m", focal_length_m, code="not_positive", unit="m")
         frame = _frame(position, way / np.linalg.norm(way))
         middle = position.mean(axis=0)
         local = (position - middle) @ frame.T

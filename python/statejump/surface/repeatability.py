@@ -37,14 +37,14 @@ def repeatability(change_m: Any, length_m: float, share: float = 0.99, confidenc
     :raises StatejumpError: no sample, no such length or share
     """
     if not 0 < length_m < np.inf:
-        raise NotAllowed("length_m", length_m, code="not_positive_with_unit")
+        raise NotAllowed("length_m", length_m, code="not_positive", unit="m")
     for key, value in (("share", share), ("confidence", confidence)):
         if not 0 < value < 1:
             raise NotAllowed(key, value, code="not_a_fraction")
     found = np.abs(np.asarray(change_m, dtype=float))
     found = np.sort(found[np.isfinite(found)]) / length_m * 1e6
     if not len(found):
-        raise StatejumpError(code="no_sample_value")
+        raise StatejumpError(code="samples_without_value")
     count, tail = len(found), (1 - confidence) / 2
     first, last = int(binom.ppf(tail, count, share)), int(binom.ppf(1 - tail, count, share))
     return Repeatability(float(np.quantile(found, share)), float(found[max(first - 1, 0)]),

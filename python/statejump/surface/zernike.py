@@ -24,7 +24,7 @@ def noll(term: int) -> tuple[int, int]:
     :raises StatejumpError: there is no such term
     """
     if not isinstance(term, int) or term < 1:
-        raise NotAllowed("term", term, code="no_count")
+        raise NotAllowed("term", term, code="not_positive_integer")
     degree = 0
     while (degree + 1) * (degree + 2) // 2 < term:
         degree += 1

@@ -165,7 +165,7 @@ class SpringSliderCase(Case):
             no_length_left(key, constant, self)
             return
         if constant is not None:
-            raise NotAllowed(key, constant, code="only_without_expansion_section")
+            raise NotAllowed(key, constant, code="conflicting_key", other="[expansion]")
         expansion.check(self.expansion, "expansion.")
         try:
             assert self.bar_program is not None
@@ -185,7 +185,8 @@ class SpringSliderCase(Case):
         for side, key in ((-1, "clearance_minus_m"), (1, "clearance_plus_m")):
             for change in self.temperature_range_K:
                 if not self.clearance_m(side, change) > 0:
-                    raise NotAllowed(f"joint.{key}", getattr(joint, key), code="clearance_closes", at_K=change)
+                    raise NotAllowed(f"joint.{key}", getattr(joint, key), code="clearance_closes", inner="pad",
+                                     outer="slot", at_K=change)
         if joint.clearance_minus_m >= link.stress_free_length_m:
             raise NotAllowed("joint.clearance_minus_m", joint.clearance_minus_m, code="not_below_link_length",
                              stress_free_length_m=link.stress_free_length_m)
@@ -197,11 +198,12 @@ class SpringSliderCase(Case):
             raise NotAllowed("joint.preload_force_N", joint.preload_force_N, code="preload_above_rigidity",
                              friction_force_N=self.friction_force_N, rigidity=rigidity)
         if joint.play_m and not self.friction_force_N:
-            raise NotAllowed("joint.play_m", joint.play_m, code="play_without_friction")
+            raise NotAllowed("joint.play_m", joint.play_m, code="play_without_friction",
+                             needed_keys="joint.friction_coefficient above 0")
         if joint.stop_stiffness_N_per_m is not None:
             for key in ("pad_thermal_expansion_per_K", "slot_thermal_expansion_per_K"):
                 if getattr(joint, key):
-                    raise NotAllowed(f"joint.{key}", getattr(joint, key), code="soft_stops_do_not_expand")
+                    raise NotAllowed(f"joint.{key}", getattr(joint, key), code="soft_stop_expansion")
         if self.dem_settings.time_step_s is not None:
             stable = stable_step.stable_time_step(self)
             if self.dem_settings.time_step_s > stable:

@@ -36,7 +36,7 @@ KEYS_OF_TYPES = {
 }
 # What a key of a [[force]] must be.
 NEEDS: dict[str, dict[str, Any]] = {
-    "name": {"code": "no_text"},
+    "name": {"code": "not_string"},
     "force_N": {"code": "force_components", "largest_N": LARGEST_FORCE_N},
     "force_rate_N_per_K": {"code": "force_rate"},
     "temperature_change_K": {"code": "force_temperatures", "least_K": -LARGEST_TEMPERATURE_CHANGE_K,
@@ -86,7 +86,7 @@ def read_forces(name: str, value: Any) -> list[Force]:
     """
     given = [value] if isinstance(value, Mapping) else value
     if not isinstance(given, list) or not given or not all(isinstance(table, Mapping) for table in given):
-        raise NotAllowed(name, value, code="no_forces", name=name)
+        raise NotAllowed(name, value, code="force_section_missing", name=name)
     known = fields_of(Force)
     found = []
     for number, table in enumerate(given, start=1):
@@ -176,9 +176,9 @@ class StaticsCase(Case):
         for key, types in KEYS_OF_TYPES.items():
             value = getattr(joint, key)
             if value is None and joint.type in types:
-                raise MissingKey(f"joint.{key}", code="needed_by_type", type=joint.type)
+                raise MissingKey(f"joint.{key}", code="missing_for_joint_type", type=joint.type)
             if value is not None and joint.type not in types:
-                raise NotAllowed(f"joint.{key}", value, code="only_with_type",
+                raise NotAllowed(f"joint.{key}", value, code="wrong_joint_type",
                                  types=" or ".join((repr(name) for name in types)))
         if joint.lobe_amplitude_m is not None and joint.clearance_m is not None:
             if not joint.lobe_amplitude_m < joint.clearance_m:
@@ -194,7 +194,7 @@ class StaticsCase(Case):
         for load in loads:
             x, y, z = load.force_N
             if hypot(x, y, z) == 0:
-                raise NotAllowed(f"force {load.name!r}", [0, 0, 0], code="no_force")
+                raise NotAllowed(f"force {load.name!r}", [0, 0, 0], code="no_nonzero_force")
             if self.joint.type in ("journal", "lobed") and z != 0:
                 raise NotAllowed(f"force {load.name!r}", list(load.force_N), code="force_out_of_plane",
                                  type=self.joint.type)

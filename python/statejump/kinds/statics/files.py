@@ -66,7 +66,7 @@ def write_vtp(statics: Statics, folder: Path) -> Path:
 
         from statejump.results.vtk_data import add_array, cells, points, write  # VTK as well
     except ImportError as failure:
-        raise StatejumpError(code="no_vtk", file=target, cause=str(failure)) from None
+        raise StatejumpError(code="vtk_missing", file=target, cause=str(failure)) from None
     polygons, count = statics.pieces["polygons_m"], np.array(statics.pieces["polygon_forces"], dtype=np.int32)
     corners = np.concatenate(polygons)
     data = vtkPolyData()

@@ -72,7 +72,7 @@ def read_mesh(case: StaticsCase) -> _engine.RestMesh:
     try:
         from statejump.kinds.statics import mesh_files  # VTK, 0.2 s, which may be missing
     except ImportError as failure:
-        raise MeshUnusable(code="no_vtk", cause=str(failure), **about) from None
+        raise MeshUnusable(code="vtk_missing", cause=str(failure), **about) from None
     if path.suffix.lower() not in mesh_files.READERS:
         raise NotAllowed(**about, code="suffix_unknown", suffixes=", ".join(mesh_files.READERS))
     surface = mesh_files.triangles_of(path)

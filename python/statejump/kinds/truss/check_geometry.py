@@ -84,5 +84,5 @@ def _supports(truss: ResolvedTruss) -> None:
     if not held.any():
         raise NoSupport(code="no_support", loose=loose)
     first = [names[at] for at in firsts[: MOST_LISTED + 1]]
-    raise NoSupport(code="truss_in_parts", nodes=loose[:1], loose=loose, parts=parts, one_of_each=listed(first),
+    raise NoSupport(code="disconnected_truss", nodes=loose[:1], loose=loose, parts=parts, one_of_each=listed(first),
                     loose_node=loose[0])

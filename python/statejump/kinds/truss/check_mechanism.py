@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from statejump.core.errors import MissingKey, NotAllowed
+from statejump.core.errors import MissingKey, NotAllowed, StatejumpError
 from statejump.kinds.truss.arrays import said, vectors
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.mechanism import Drive
@@ -42,7 +42,7 @@ def check(case: TrussSections, links: Mapping[str, Any]) -> None:
             if link.mass_kg is None:
                 raise MissingKey("mass_kg", code="mass_of_body_missing", of=key, **where)
             if case.motion.masses == "lumped":
-                raise NotAllowed("motion.masses", "lumped", code="body_with_lumped_masses", link=link.name, of=key)
+                raise NotAllowed("motion.masses", "lumped", code="lumped_mass_of_body", link=link.name, of=key)
         if link.centre_of_mass_m is not None and dimension == 3 and link.centre_of_mass_m[1]:
             raise NotAllowed("centre_of_mass_m", link.centre_of_mass_m, code="centre_not_on_line", **where)
     driven: dict[str, str] = {}
@@ -68,23 +68,22 @@ def _check_program(drive: Drive, where: Mapping[str, Any]) -> None:
         return
     if drive.angular_velocity_rad_per_s is not None or drive.ramp_s:
         key = "ramp_s" if drive.ramp_s else "angular_velocity_rad_per_s"
-        raise NotAllowed(key, getattr(drive, key), code="only_without_table", **where)
+        raise NotAllowed(key, getattr(drive, key), code="conflicting_key", other="a table", **where)
     if len(times) != len(speeds) or not times:
         raise NotAllowed("table_angular_velocity_rad_per_s", speeds, code="drive_table_length", times=len(times),
                          **where)
     for before, after in zip(times, times[1:]):
         if not after > before:
-            raise NotAllowed("table_time_s", times, code="times_must_increase", after=after, before=before, **where)
+            raise NotAllowed("table_time_s", times, code="drive_times_not_increasing", after=after,
+                             before=before, **where)
 
 
-def refused_at_rest(truss: ResolvedTruss) -> str | None:
-    """Return why a truss has no quasi-static path; None: it has one."""
+def check_at_rest(truss: ResolvedTruss) -> None:
+    """Raise StatejumpError for a truss without a quasi-static path."""
     for name in truss.drives.names[:1]:
-        return f"drive {name!r} turns a link, which is motion: 'statejump reduced --dynamic' runs the case"
+        raise StatejumpError(code="driven_truss", case=truss.name, drive=name)
     for joint in JOINTS:
         unable = joint.path_refuses(truss.joints[joint.section])
         if unable is not None:
-            name, why = unable
-            return (f"{joint.section} {name!r} {why}: 'statejump reduced --dynamic' runs the case with motion.start = "
-                    "'drawn'")
-    return None
+            name, code = unable
+            raise StatejumpError(code=code, case=truss.name, joint=name, part=f"{joint.section} {name!r}")

@@ -92,8 +92,8 @@ def _expansions(case: TrussSections) -> None:
     for link in where_wrong(case.link, wrong):
         where = {"item": f"link {link.name!r}"}
         if link.expansion is not None and link.thermal_expansion_per_K is not None:
-            raise NotAllowed("thermal_expansion_per_K", link.thermal_expansion_per_K, code="only_without_expansion",
-                             **where)
+            raise NotAllowed("thermal_expansion_per_K", link.thermal_expansion_per_K, code="conflicting_key",
+                             other="expansion", **where)
         if link.expansion is not None:
             known_name("expansion", link.expansion, link.expansion, expansions, "expansion", **where)
         elif link.thermal_expansion_per_K is None:
@@ -130,7 +130,8 @@ def _members(case: TrussSections) -> None:
 def _alternatives(case: TrussSections) -> None:
     for link in where_wrong(case.link, lambda links: said(links, "density_kg_per_m3") & said(links, "mass_kg")):
         if link.density_kg_per_m3 is not None and link.mass_kg is not None:
-            raise NotAllowed("mass_kg", link.mass_kg, code="only_without_density", item=f"link {link.name!r}")
+            raise NotAllowed("mass_kg", link.mass_kg, code="conflicting_key", other="density_kg_per_m3",
+                             item=f"link {link.name!r}")
     for element in ELEMENTS:
         for item in where_wrong(listed_elements(case, element), element.may_be_wrong_keys):
             element.check_keys(item)

@@ -37,7 +37,7 @@ def check(case: TrussSections, resolve: Callable[[], ResolvedTruss]) -> None:
     :param resolve: returns its arrays; called when its references are valid
     """
     if case.tables is not None:
-        raise NotAllowed("section [tables]", code="tables_only_in_case_file")
+        raise NotAllowed("section [tables]", code="tables_of_case_file")
     _programs(case)
     _expansions(case)
     _names(case)
@@ -54,7 +54,7 @@ def _regularised(case: TrussSections) -> None:
     scheme = "with motion.scheme = 'regularised'"
     for key, usual in (("displacement_tolerance_m", None), ("theta", 0.5), ("restitution", 0.0)):
         if getattr(case.motion, key) != usual:
-            raise NotAllowed(f"motion.{key}", getattr(case.motion, key), code="not_read_by_scheme", scheme=scheme)
+            raise NotAllowed(f"motion.{key}", getattr(case.motion, key), code="unused_by_scheme", scheme=scheme)
     if case.motion.masses != "lumped":
         raise NotAllowed("motion.masses", case.motion.masses, code="masses_not_lumped", scheme=scheme)
     if case.reduced_settings.sticking == "rigid":
@@ -71,7 +71,7 @@ def _programs(case: TrussSections) -> None:
             raise
         lasts = program.cycles * program.period_s
         if abs(lasts - case.duration_s) > thermal.SAME_TIME * case.duration_s:
-            raise NotAllowed("period_s", program.period_s, code="program_of_other_duration",
+            raise NotAllowed("period_s", program.period_s, code="program_duration_differs",
                              item=f"program {item.name!r}", cycles=program.cycles, lasts=lasts,
                              wanted_s=case.duration_s)
 
@@ -92,7 +92,7 @@ def _names(case: TrussSections) -> None:
         seen: set[str] = set()
         for number, item in enumerate(each(getattr(case, section), "name"), start=1):
             if item.name in seen:
-                raise NotAllowed("name", item.name, code="name_taken", item=f"{section} {number}", part=section)
+                raise NotAllowed("name", item.name, code="duplicate_name", item=f"{section} {number}", part=section)
             seen.add(item.name)
 
 

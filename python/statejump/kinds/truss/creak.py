@@ -136,7 +136,7 @@ def creak(case: TrussCase, node: str, tell: Tell = lambda share: None) -> Creak:
     names = case.resolve().nodes.names
     if node not in names:
         some = ", ".join(names[:8]) + (" …" if len(names) > 8 else "")
-        raise NotAllowed("node", node, code="no_such_node_of", case=case.name, known=some)
+        raise NotAllowed("node", node, code="undefined_node", case=case.name, known=some)
     if case.motion.displacement_tolerance_m is not None:
         raise NotAllowed("motion.displacement_tolerance_m", case.motion.displacement_tolerance_m,
                          code="spectrum_of_unequal_steps", case=case.name)

@@ -22,7 +22,7 @@ from statejump.core.progress import Tell
 from statejump.core.run import Run
 from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION
 from statejump.kinds.truss.case import TrussCase
-from statejump.kinds.truss.check_mechanism import refused_at_rest
+from statejump.kinds.truss.check_mechanism import check_at_rest
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import Torsion
@@ -37,9 +37,12 @@ CONTACT_GROUPS = 30  # bits of a body's mask in YADE that are free to use
 PATH_SHARE = 0.1  # fraction of the reported progress of a DEM run that belongs to its path
 
 
-def refuse(case: TrussCase, why: str, **fields: Any) -> StatejumpError:
+REMEDY = "'statejump reduced' can run the case"
+
+
+def refuse(case: TrussCase, code: str, why: str, **fields: Any) -> StatejumpError:
     """Return the error for an item that the DEM cannot represent."""
-    return StatejumpError(code="dem_cannot_run", cause=why, case=case.name, **fields)
+    return StatejumpError(code=code, cause=why, remedy=REMEDY, case=case.name, **fields)
 
 
 def stable_time_step(case: TrussCase, path: Course) -> float:
@@ -125,8 +128,8 @@ def _contact_groups(truss: ResolvedTruss, case: TrussCase, reach_m: np.ndarray) 
         if free is None:
             name = [name for joint in JOINTS if len(joint.contact_nodes(truss.joints[joint.section]))
                     for name in truss.joints[joint.section].names][np.flatnonzero(own)[place]]
-            raise refuse(case, f"joint {name!r} is within reach of more than {CONTACT_GROUPS} other joints, "
-                               "the DEM cannot keep their contacts apart", joint=name)
+            raise refuse(case, "dem_joints_too_close", f"joint {name!r} is within reach of more than {CONTACT_GROUPS} "
+                               "other joints, the DEM cannot keep their contacts apart", joint=name)
         group[members] = free
     found[own] = group
     return found
@@ -135,13 +138,11 @@ def _contact_groups(truss: ResolvedTruss, case: TrussCase, reach_m: np.ndarray) 
 def check(case: TrussCase) -> None:
     """Raise StatejumpError if the DEM cannot represent an item, before anything is solved."""
     truss = case.resolve()
-    refused = refused_at_rest(truss)
-    if refused is not None:
-        raise StatejumpError(cause=refused, case=case.name)
+    check_at_rest(truss)
     for index in np.flatnonzero(truss.bodies.own)[:1]:
-        raise refuse(case, f"link {truss.links.names[index]!r} is a body of its own, the DEM has rods")
+        raise refuse(case, "dem_body", f"link {truss.links.names[index]!r} is a body of its own, the DEM has rods")
     for name in truss.constraints.names[:1]:
-        raise refuse(case, f"constraint {name!r} holds displacements together, the DEM has no constraints")
+        raise refuse(case, "dem_constraint", f"constraint {name!r} constrains displacements, the DEM has no constraints")
     mass = lumped_mass_kg(truss)
     nodes = truss.nodes
     for joint in JOINTS:
@@ -155,11 +156,11 @@ def check(case: TrussCase) -> None:
                                                f"dem.friction_law = {case.dem_settings.friction_law!r}")
         if unable is not None:
             name, why = unable
-            raise refuse(case, f"{joint.section} {name!r} {why}", joint=name)
+            raise refuse(case, "dem_joint", f"{joint.section} {name!r} {why}", joint=name)
     free = ~blocked_directions(truss).all(axis=1)
     for index in np.flatnonzero(free & (mass <= 0))[:1]:
-        raise refuse(case, f"node {nodes.names[index]!r} has no mass because no link ends there, the DEM needs one",
-                     nodes=(nodes.names[index],))
+        raise refuse(case, "dem_node_without_mass", f"node {nodes.names[index]!r} has no mass because no link ends "
+                     "there, the DEM needs one", nodes=(nodes.names[index],))
     roles: dict[int, tuple[Any, ...]] = {}
     for joint in JOINTS:
         names = truss.joints[joint.section].names
@@ -168,17 +169,18 @@ def check(case: TrussCase) -> None:
                 if node == GROUND:
                     continue
                 if node in roles and (roles[node] != role or not part.shared):
-                    raise refuse(case, f"{joint.section} {name!r} gives node {nodes.names[node]!r} a second contact "
-                                       "part, in the DEM a node has one", joint=name, nodes=(nodes.names[node],))
+                    raise refuse(case, "dem_second_contact", f"{joint.section} {name!r} gives node "
+                                       f"{nodes.names[node]!r} a second contact part, in the DEM a node has one",
+                                 joint=name, nodes=(nodes.names[node],))
                 roles[node] = role
     for element in ELEMENTS:
         elements = truss.elements[element.section]
-        unable = element.dem_refuses(elements)
+        unable_element = element.dem_refuses(elements)
         if element.not_in_dem and elements.names:
-            unable = elements.names[0], element.not_in_dem
-        if unable is not None:
-            name, why = unable
-            raise refuse(case, f"{element.section} {name!r} {why}")
+            unable_element = elements.names[0], "dem_element", element.not_in_dem
+        if unable_element is not None:
+            name, code, why = unable_element
+            raise refuse(case, code, f"{element.section} {name!r} {why}")
     if truss.dimension == 3:
         _refuse_tilted_torsion(case, truss)
 
@@ -201,7 +203,7 @@ def _refuse_tilted_torsion(case: TrussCase, truss: ResolvedTruss) -> None:
         for link in ends[ends != GROUND]:
             start, end = position[links.nodes[link]]
             if abs((end - start) @ axis) > SAME_DIRECTION * np.linalg.norm(end - start):
-                raise refuse(case, f"{name} has link {links.names[link]!r} that is "
+                raise refuse(case, "dem_torsion_out_of_plane", f"{name} has link {links.names[link]!r} that is "
                                    "not across its axis, the DEM has torsion springs in a plane only")
 
 
@@ -211,8 +213,9 @@ def _refuse_far_turns(case: TrussCase, path: Course) -> None:
         joints = path.truss.joints[joint.section]
         turned = joint.largest_turn_rad(path, joints) if joints.names else np.zeros(0)
         for index in np.flatnonzero(turned > pi / 2)[:1]:
-            raise refuse(case, f"{joint.section} {joints.names[index]!r} turns by {turned[index]:.3g} rad, more than "
-                               "π/2 is beyond what the DEM can tell from its opposite", joint=joints.names[index])
+            raise refuse(case, "dem_large_rotation", f"{joint.section} {joints.names[index]!r} rotates by "
+                               f"{turned[index]:.3g} rad, the DEM cannot distinguish more than π/2 from its opposite",
+                               joint=joints.names[index])
 
 
 def blocked_directions(truss: ResolvedTruss) -> np.ndarray:
@@ -241,7 +244,7 @@ def resolved(case: TrussCase, path: Course) -> dict[str, Any]:
     truss, mass = path.truss, lumped_mass_kg(path.truss)
     ends = path.cycle_ends if isinstance(path, TrussPath) else {}
     if ends and len(path.states["time_s"]) <= len(ends["time_s"]):
-        raise refuse(case, "the path is too large to be kept as a whole")
+        raise refuse(case, "dem_path_too_large", "the path is too large to be kept as a whole")
     reach = [joint.reach_m(path, truss.joints[joint.section]) for joint in JOINTS]
     groups = np.split(_contact_groups(truss, case, np.concatenate(reach)), np.cumsum([len(own) for own in reach]))
     _refuse_far_turns(case, path)

@@ -136,8 +136,7 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
 
     truss, samples = case.resolve(), case.samples_per_cycle
     if truss.nodes.fixed[:, :truss.dimension].all():
-        raise StatejumpError("every node is held in all directions", cause="nothing moves",
-                             remedy="leave a direction of a node free, or run without --dynamic", case=case.name)
+        raise StatejumpError(code="no_free_dof", case=case.name)
     for joint in JOINTS if case.motion.start != "drawn" else ():
         unable = joint.path_refuses(truss.joints[joint.section])
         if unable is not None:
@@ -162,8 +161,8 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
         )
     except _engine.EngineFailure as failure:
         if failure.item and failure.allowed:
-            raise NotAllowed(str(failure.key), failure.value, code="engine_refused", item=failure.item, case=truss.name,
-                             needed=failure.allowed) from None
+            raise NotAllowed(str(failure.key), failure.value, code="rejected_by_engine", item=failure.item,
+                             case=truss.name, needed=failure.allowed) from None
         raise EngineFailed(failure, remedy=_remedy(case, failure), case=truss.name, place=truss.name) from None
     events = TrussEvents(truss, **found.pop("events"))
     if not found["complete"] and len(found["states"].get("time_s", ())) < 2:

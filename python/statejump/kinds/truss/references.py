@@ -34,7 +34,7 @@ def known_name(key: str, value: Any, name: str, known: Mapping[str, Any], what: 
     if nearest:
         raise NotAllowed(key, value, code="misspelt_reference", meant=nearest[0], **where)
     if known:
-        raise NotAllowed(key, value, code="no_such_reference", known=listed(list(known)), **where)
+        raise NotAllowed(key, value, code="undefined_reference", known=listed(list(known)), **where)
     raise NotAllowed(key, value, code="reference_without_section", **where)
 
 
@@ -47,7 +47,7 @@ def known_nodes(names: list[str], least: int, nodes: Mapping[str, Any], where: M
         if name not in nodes:
             known_name("nodes", names, name, nodes, "node", **where)
     if len(names) == 2 and names[0] == names[1]:
-        raise NotAllowed("nodes", names, code="nodes_not_different", **where)
+        raise NotAllowed("nodes", names, code="equal_nodes", **where)
 
 
 def known_links(names: list[str], links: Mapping[str, Any], where: Mapping[str, Any]) -> None:
@@ -57,7 +57,7 @@ def known_links(names: list[str], links: Mapping[str, Any], where: Mapping[str, 
     for name in names:
         known_name("links", names, name, links, "link", **where)
     if len(names) == 2 and names[0] == names[1]:
-        raise NotAllowed("links", names, code="links_not_different", **where)
+        raise NotAllowed("links", names, code="equal_links", **where)
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ def vector(key: str, value: list[float] | None, unit: str, dimension: int, direc
     if value is None:
         return
     if len(value) != dimension:
-        raise NotAllowed(key, value, code="wrong_number_of_components", dimension=dimension, unit=unit, **where)
+        raise NotAllowed(key, value, code="wrong_dimension", dimension=dimension, unit=unit, **where)
     if direction and not any(value):
         raise NotAllowed(key, value, code="zero_vector", **where)
 
@@ -147,7 +147,7 @@ def _turned_links(truss: ResolvedTruss, section: str, items: Any, rows: slice, j
     index = int(np.argmax(wrong))
     where = f"{section} {items.names[rows][index]!r}"
     if apart[index]:
-        raise NotAllowed("links", [links.names[link] for link in pairs[index]], code="links_without_place", item=where)
+        raise NotAllowed("links", [links.names[link] for link in pairs[index]], code="links_not_adjacent", item=where)
     raise NotAllowed("axis", axes[index].tolist(), code="axis_along_link", item=where,
                      link=links.names[pairs[index, int(np.argmax(along[index]))]])
 

@@ -11,12 +11,12 @@ import numpy as np
 from statejump import _engine
 from statejump.core import thermal
 from statejump.core.engine_failures import EngineFailed
-from statejump.core.errors import Interrupted, StatejumpError
+from statejump.core.errors import Interrupted
 from statejump.core.progress import Tell
 from statejump.core.start import FRICTIONLESS
 from statejump.core.thermal import MemberProgram, Thermal
 from statejump.kinds.truss.case import TrussCase
-from statejump.kinds.truss.check_mechanism import refused_at_rest
+from statejump.kinds.truss.check_mechanism import check_at_rest
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import JointType
@@ -177,9 +177,7 @@ def path(
     :raises FailedRun: mechanism, unloaded joint or no equilibrium; with names and temperature
     :raises StatejumpError: a link is driven
     """
-    refused = refused_at_rest(truss)
-    if refused is not None:
-        raise StatejumpError(cause=refused, case=truss.name)
+    check_at_rest(truss)
     try:
         found = _engine.truss_path(
             **engine_items(truss), increments_per_branch=increments_per_branch, locate_events=locate_events,

@@ -16,7 +16,7 @@ from statejump.kinds.truss.resolved import ResolvedTruss
 
 
 def _refuse(case: TrussCase, why: str, **fields: Any) -> StatejumpError:
-    return StatejumpError(code="regularised_cannot", case=case.name, why=why, **fields)
+    return StatejumpError(code="regularised_not_supported", case=case.name, why=why, **fields)
 
 
 def _moves_along(truss: ResolvedTruss, node: int, axis: np.ndarray) -> bool:

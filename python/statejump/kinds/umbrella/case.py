@@ -275,7 +275,7 @@ class UmbrellaCase(Case):
             name = getattr(self.joint, key)
             problem = _engine.law_problem(kind, name)
             if problem:  # a law of one's own that is known and cannot be used
-                raise NotAllowed(f"joint.{key}", name, problem, code="law_unusable")
+                raise NotAllowed(f"joint.{key}", name, problem, code="bad_law")
         dissipation = laws.law("dissipation", self.joint.dissipation_law)
         may_be_zero = any(p.name == "restitution" and p.allows(0) for p in dissipation.parameters)
         if self.joint.restitution == 0 and not may_be_zero:
@@ -290,29 +290,31 @@ class UmbrellaCase(Case):
         joint = self.joint
         clearance = joint.radial_clearance_m
         if not check_radii(self.bearing_radius_m, joint.journal_radius_m):
-            raise NotAllowed("joint.radial_clearance_m", clearance, code="radii_equal",
-                             journal_radius_m=joint.journal_radius_m)
+            raise NotAllowed("joint.radial_clearance_m", clearance, code="clearance_below_precision",
+                             radius_key="joint.journal_radius_m", radius_m=joint.journal_radius_m)
         for part in ("journal", "bearing"):
             expansion = getattr(joint, f"{part}_thermal_expansion_per_K")
             for change in self.temperature_range_K:
                 if 1 + expansion * change <= 0:
-                    raise NotAllowed(f"joint.{part}_thermal_expansion_per_K", expansion, code="part_without_radius",
+                    raise NotAllowed(f"joint.{part}_thermal_expansion_per_K", expansion, code="no_radius_left",
                                      part=part, at_K=change)
         for change in self.temperature_range_K:
             if not self.clearance_m(change) > 0:
-                raise NotAllowed("joint.radial_clearance_m", clearance, code="clearance_of_rib_closes", at_K=change)
+                raise NotAllowed("joint.radial_clearance_m", clearance, code="clearance_closes", inner="journal",
+                                 outer="bearing", at_K=change)
         if joint.friction_v1_m_per_s <= joint.friction_v0_m_per_s:
-            raise NotAllowed("joint.friction_v1_m_per_s", joint.friction_v1_m_per_s, code="not_above_v0",
-                             friction_v0_m_per_s=joint.friction_v0_m_per_s)
+            raise NotAllowed("joint.friction_v1_m_per_s", joint.friction_v1_m_per_s,
+                             code="friction_velocities_unordered", friction_v0_m_per_s=joint.friction_v0_m_per_s)
 
     def _check_start(self) -> None:
         start, clearance = self.start, self.joint.radial_clearance_m
         if start.mode == "loaded":
             self._check_loaded()
         elif start.contact_angle_rad != 0:
-            raise NotAllowed("start.contact_angle_rad", start.contact_angle_rad, code="only_with_loaded_start")
+            raise NotAllowed("start.contact_angle_rad", start.contact_angle_rad, code="requires_loaded_start")
         elif start.eccentricity_m > clearance:
-            raise NotAllowed("start.eccentricity_m", start.eccentricity_m, code="beyond_clearance", clearance=clearance)
+            raise NotAllowed("start.eccentricity_m", start.eccentricity_m, code="exceeds_clearance",
+                             clearance=clearance)
         if self.ensemble.start_spread_m > clearance:
             raise NotAllowed("ensemble.start_spread_m", self.ensemble.start_spread_m,
                              code="not_above_zero_to_clearance", clearance=clearance)
@@ -321,18 +323,19 @@ class UmbrellaCase(Case):
         start, joint, spring = self.start, self.joint, self.torsion_spring
         for key in ("eccentricity_m", "eccentricity_angle_rad"):
             if getattr(start, key) != 0:
-                raise NotAllowed(f"start.{key}", getattr(start, key), code="equilibrium_decides")
+                raise NotAllowed(f"start.{key}", getattr(start, key), code="set_by_equilibrium")
         for key in ("stiffness_N_m_per_rad", "bias_rad"):
             if getattr(spring, key) == 0:
-                raise NotAllowed("start.mode", start.mode, code="spring_does_not_load", spring_key=key)
+                raise NotAllowed("start.mode", start.mode, code="spring_without_preload", spring_key=key)
         if start.friction == FRICTIONLESS and start.contact_angle_rad != 0:
-            raise NotAllowed("start.contact_angle_rad", start.contact_angle_rad, code="angle_of_frictionless")
+            raise NotAllowed("start.contact_angle_rad", start.contact_angle_rad, code="angle_without_friction")
         holds = laws.law("friction", joint.friction_law).holds_static_load
         largest = atan(joint.friction_coefficient) if holds else 0.0
         if abs(start.contact_angle_rad) > largest:
             if not largest:
-                raise NotAllowed("start.contact_angle_rad", start.contact_angle_rad, code="friction_holds_no_load")
-            raise NotAllowed("start.contact_angle_rad", start.contact_angle_rad, code="angle_beyond_friction",
+                raise NotAllowed("start.contact_angle_rad", start.contact_angle_rad,
+                                 code="friction_without_static_load")
+            raise NotAllowed("start.contact_angle_rad", start.contact_angle_rad, code="angle_outside_friction_cone",
                              least_rad=-largest, largest_rad=largest)
 
     def _check_run(self) -> None:
@@ -347,4 +350,4 @@ class UmbrellaCase(Case):
         ):
             steps = getattr(self.value_named(part), key)
             if steps % samples != 0:
-                raise NotAllowed(f"{part}.{key}", steps, code="no_multiple_of_samples", samples=samples)
+                raise NotAllowed(f"{part}.{key}", steps, code="not_multiple_of_samples", samples=samples)

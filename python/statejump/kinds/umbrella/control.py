@@ -33,7 +33,7 @@ def control(
         refuse_runs(runs, case)
         return control_loaded.study(case, jump_below, with_dem, tell)
     if runs is not None and runs < 2:
-        raise NotAllowed("--runs", runs, code="below_two")
+        raise NotAllowed("--runs", runs, code="below_minimum", least=2)
     return control_ensemble.study(case, jump_below, runs or RUNS, with_dem, tell)
 
 

@@ -42,8 +42,8 @@ class QuasiStatic:
 
     def _path(self, links: str) -> Any:
         if links not in self.paths:
-            raise NotAllowed("links", links, code="must_be_named", allowed=tuple(self.paths),
-                             names=" or ".join(map(repr, self.paths)))
+            raise NotAllowed("links", links, code="unknown_name", allowed=tuple(self.paths),
+                             known=" or ".join(map(repr, self.paths)))
         return self.paths[links]
 
     def frame(self, links: str = RIGID) -> pandas.DataFrame:

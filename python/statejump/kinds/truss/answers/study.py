@@ -191,7 +191,7 @@ def _of_cycles(case: TrussCase, cycles: int | None) -> TrussCase:
         return case
     for program in case.program:
         if program.cycles is not None:
-            raise NotAllowed("cycles", ABSENT, code="program_with_own_cycles", program=program.name)
+            raise NotAllowed("cycles", ABSENT, code="program_has_own_cycles", program=program.name)
     changed = case.changed({"thermal.cycles": cycles})
     assert isinstance(changed, TrussCase)
     # The file that was given is named with the answers; how many cycles were run, the resolved case says.

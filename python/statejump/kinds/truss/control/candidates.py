@@ -71,7 +71,7 @@ def candidates(case: TrussCase, places: Places) -> list[Candidate]:
     for one in found + wanted:
         if told.count(one.parameter) > 1:
             change, _, value = one.parameter.partition(" ")
-            raise NotAllowed({"scale": "--free"}.get(change, "--add-spring"), value, code="there_twice")
+            raise NotAllowed({"scale": "--free"}.get(change, "--add-spring"), value, code="duplicate")
     return found + wanted
 
 
@@ -95,9 +95,9 @@ def _spring(case: TrussCase, one: str, two: str) -> Candidate:
         known_name("--add-spring", told, name, dict.fromkeys(truss.nodes.names), "node", case=case.name)
     ends = [truss.nodes.names.index(name) for name in (one, two)]
     if not distances(truss.nodes.position_m, np.array([ends]))[0] > 0:
-        raise NotAllowed("--add-spring", told, code="spring_between_one_place", case=case.name)
+        raise NotAllowed("--add-spring", told, code="coincident_spring_nodes", case=case.name)
     if truss.nodes.fixed[ends].all():
-        raise NotAllowed("--add-spring", told, code="spring_between_fixed_nodes", case=case.name)
+        raise NotAllowed("--add-spring", told, code="spring_between_supports", case=case.name)
     links, springs = truss.links, truss.springs
     bars = links.young_modulus_Pa * links.cross_section_area_m2 / links.stress_free_length_m
     size = float(np.ptp(truss.nodes.position_m, axis=0).max())
@@ -123,7 +123,7 @@ def _scaled(case: TrussCase, path: str) -> Candidate:
     if not wanted:
         known_names = suggestion(item, names, f"{section}.", f".{key}")
         raise UnknownKey("--free", value=path,
-                         **(known_names if names else {"code": "no_such_table", "table": section}))
+                         **(known_names if names else {"code": "section_not_in_case", "table": section}))
     values = known[section, key]
     which = _has_value(values) & (np.array([name in wanted for name in names], dtype=bool))
     if not which.any():

@@ -154,8 +154,9 @@ class ElementType(Generic[ItemType, ArraysType]):
 
     # ---------------------------------------------------------------- DEM
 
-    def dem_refuses(self, elements: ArraysType) -> tuple[str, str] | None:
-        """Return name and reason of an element that the DEM does not have, though it has others of the type."""
+    def dem_refuses(self, elements: ArraysType) -> tuple[str, str, str] | None:
+        """Return name, code of the error and reason of an element that the DEM does not have, though it has others of
+        the type."""
         return None
 
 
@@ -194,7 +195,7 @@ def check_lengths(truss: ResolvedTruss, section: str, names: Sequence[str], ends
     for index in np.flatnonzero(distances(truss.nodes.position_m, ends) == 0)[:1]:
         nodes = [truss.nodes.names[node] for node in ends[index]]
         place = truss.nodes.position_m[ends[index, 0]][: truss.dimension].tolist()
-        raise StatejumpError(code="zero_length", item=f"{section} {names[index]!r}", key="nodes", value=nodes,
+        raise StatejumpError(code="coincident_nodes", item=f"{section} {names[index]!r}", key="nodes", value=nodes,
                              nodes=nodes, ends=" and ".join(map(repr, nodes)), place_m=place, part=section)
 
 

@@ -59,7 +59,8 @@ class SpringType(BetweenNodes[Spring, Springs]):
 
     def check_keys(self, item: Spring) -> None:
         if item.preload_N is not None and item.free_length_m is not None:
-            raise NotAllowed("preload_N", item.preload_N, code="only_without_free_length", **self.where(item.name))
+            raise NotAllowed("preload_N", item.preload_N, code="conflicting_key", other="free_length_m",
+                             **self.where(item.name))
 
     def may_be_wrong_keys(self, items: ItemColumns[Spring]) -> np.ndarray:
         return np.asarray(said(items, "preload_N") & said(items, "free_length_m"))
@@ -105,10 +106,10 @@ class SpringType(BetweenNodes[Spring, Springs]):
         return [([spring for spring in items if not spring.cable], "spring"),
                 ([spring for spring in items if spring.cable], "cable")]
 
-    def dem_refuses(self, elements: Springs) -> tuple[str, str] | None:
+    def dem_refuses(self, elements: Springs) -> tuple[str, str, str] | None:
         for index in np.flatnonzero(elements.free_length_m <= 0)[:1]:
-            return elements.names[index], (f"has the free length {elements.free_length_m[index]:.6g} m, "
-                                           "the DEM needs one above 0")
+            return elements.names[index], "dem_spring_free_length", (
+                f"has the free length {elements.free_length_m[index]:.6g} m, the DEM needs one above 0")
         return None
 
 

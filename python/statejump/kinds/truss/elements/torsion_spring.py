@@ -85,9 +85,10 @@ class TorsionSpringType(ElementType[TorsionSpring, TorsionSprings]):
     def legend(self, elements: TorsionSprings) -> str:
         return f"torsion spring, {scaled(elements.stiffness_N_m_per_rad, 1.0, 'N m/rad')}"
 
-    def dem_refuses(self, elements: TorsionSprings) -> tuple[str, str] | None:
+    def dem_refuses(self, elements: TorsionSprings) -> tuple[str, str, str] | None:
         for index in np.flatnonzero(np.abs(elements.bias_rad) > pi / 2)[:1]:
-            return elements.names[index], "has a bias above π/2, beyond what the DEM can tell from its opposite"
+            return elements.names[index], "dem_large_rotation", (
+                "has a bias above π/2, which the DEM cannot distinguish from its opposite")
         return None
 
 

@@ -140,7 +140,7 @@ def umbrella(
     :raises NotAllowed: cables on a single rib
     """
     if cable_preload_N and n == 1:
-        raise NotAllowed("cable_preload_N", cable_preload_N, code="single_rib")
+        raise NotAllowed("cable_preload_N", cable_preload_N, code="rib_without_neighbour")
     made = document(
         name or f"umbrella_{n}", f"Umbrella antenna, {n} ribs" if n > 1 else "Umbrella rib as a truss",
         f"{PAPER}, Tables 2 and 3, section 4", 2 if n == 1 else 3, temperature_change_K, shape, cycles, period_s,

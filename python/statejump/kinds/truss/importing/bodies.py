@@ -20,8 +20,6 @@ from statejump.kinds.truss.importing.supports import SAME, basis_of, held_direct
 
 # Nodes nearer than this share of the size of the truss are at one place: decks have eight digits.
 ONE_PLACE = 1e-9
-APART = "it holds nodes together at which bars end and that are apart, which needs rotations"
-ON_ARM = "an equation of a node on a rigid arm, which needs rotations"
 
 
 def settle_bodies(deck: Deck) -> None:
@@ -86,11 +84,11 @@ class _Bodies:
         others = [node for node in body.nodes if node != kept]
         far = [node for node in others if not self.near(kept, node)]
         if set(far) & ends:
-            deck.refuse(body.card, APART, body.line)
+            deck.refuse(body.card, "separate_rigid_nodes", body.line)
         elif any(len(held_directions(deck, node)) for node in far):
-            deck.refuse(body.card, "a support beside the place at which bars end", body.line)
+            deck.refuse(body.card, "support_off_bar_ends", body.line)
         elif any(of.get(kept) != of.get(node) for node in borne for of in (deck.temperature, deck.initial)):
-            deck.refuse(body.card, "its nodes at one place have different temperatures", body.line)
+            deck.refuse(body.card, "unequal_temperatures", body.line)
         else:
             for node in far:
                 self._move_by_lever(body, kept, node)
@@ -157,8 +155,7 @@ def _take_followers(deck: Deck) -> None:
                 len(held_directions(deck, node))):
             deck.leave(one.card, "nothing acts on its node, which follows the others", one.line)
         elif node in turned or not one.equations:
-            deck.refuse(one.card, "it distributes the loads of a node over others in a way that needs rotations",
-                        one.line)
+            deck.refuse(one.card, "load_distribution", one.line)
         else:
             deck.equations += one.equations
 
@@ -169,7 +166,7 @@ def _follow_joined(deck: Deck, joined: Mapping[str, str]) -> None:
         one.terms[:] = [(joined.get(node, node), way, factor) for node, way, factor in one.terms]
     lost = [one for one in deck.equations if any(node not in deck.nodes for node, _, _ in one.terms)]
     for one in lost:
-        deck.refuse(one.card, ON_ARM, one.line, one.card.lstrip("*"))
+        deck.refuse(one.card, "node_on_rigid_arm", one.line, one.card.lstrip("*"))
     deck.equations[:] = [one for one in deck.equations if not any(one is other for other in lost)]
 
 
@@ -204,8 +201,7 @@ def _hold_loose(deck: Deck) -> None:
         force = np.array(deck.force.get(node, [0.0] * 3))
         if np.linalg.norm(rest @ force) > SAME * np.linalg.norm(force):
             line, card = deck.force_line.get(node, (0, "force"))
-            deck.refuse(card, f"a force on node {node} in a direction in which no bar is stiff", line,
-                        f"{card.lstrip('*')}.UNUSED")
+            deck.refuse(card, "force_without_stiffness", line, f"{card.lstrip('*')}.UNUSED", node=node)
         for direction in basis_of(rest):
             if not is_held(deck, node, direction):
                 deck.hold(node, [float(part) for part in direction])

@@ -66,7 +66,7 @@ def _put_in(made: Document, given: Mapping[str, str], dimension: int) -> list[st
             try:
                 values[key] = float(text)
             except ValueError:
-                raise NotAllowed(key, text, code="not_a_number") from None
+                raise NotAllowed(key, text, code="not_number") from None
     nodes, links = ({item["name"]: item for item in made[part]} for part in ("node", "link"))
     if in_link:
         if LINK not in given:
@@ -97,7 +97,7 @@ def _section(path: Path, section: str, known: Sequence[str]) -> dict[str, Any]:
 def _axis(text: str, dimension: int, revolute: bool) -> list[float]:
     allowed = "xyz" if revolute else "xyz"[:dimension]
     if text not in AXES or text not in allowed:
-        raise NotAllowed("axis", text, "must be " + ", ".join(allowed) + ("" if revolute else " or link"))
+        raise NotAllowed("axis", text, code="unknown_name", known=", ".join(allowed) + ("" if revolute else " or link"))
     return AXES[text][:dimension]
 
 

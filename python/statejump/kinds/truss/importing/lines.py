@@ -36,7 +36,7 @@ class Line(int):
 def text_of(path: Path, most: int = LARGEST_BYTES) -> list[str]:
     """Return the lines of a file. :raises Unreadable: there is none, it is too large or no text"""
     if not is_file(path):
-        raise Unreadable(code="no_such_file", file=path)
+        raise Unreadable(code="file_not_found", file=path)
     try:
         with path.open("rb") as stream:
             content = stream.read(most + 1)
@@ -47,9 +47,9 @@ def text_of(path: Path, most: int = LARGEST_BYTES) -> list[str]:
         # Comments in the language of the user; names and numbers are ASCII in either.
         text = content.decode("latin-1")
         if "\x00" in text:
-            raise Unreadable(code="not_text", file=path) from None
+            raise Unreadable(code="not_text_file", file=path) from None
     except OSError as failure:
-        raise Unreadable(code="cannot_be_read", cause=failure.strerror, file=path) from None
+        raise Unreadable(code="read_failed", cause=failure.strerror, file=path) from None
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
@@ -95,5 +95,5 @@ class Source:
         if not path.is_relative_to(self.folder):
             raise Unreadable(code="include_outside", file=self.path, line=line, included=shown)
         if not is_file(path):
-            raise Unreadable(code="no_included_file", file=self.path, line=line, included=shown)
+            raise Unreadable(code="included_file_not_found", file=self.path, line=line, included=shown)
         return path

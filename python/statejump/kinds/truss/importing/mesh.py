@@ -43,7 +43,7 @@ def read(path: Path) -> Deck:
     deck = Deck(path)
     points = np.asarray(mesh.points, dtype=float)
     if points.ndim != 2 or points.shape[1] not in (2, 3) or not np.isfinite(points).all():
-        raise deck.fail(0, "the points are not two or three finite numbers each")
+        raise deck.fail(0, "mesh_bad_data", problem="the points are not two or three finite numbers each")
     deck.room(0, len(points))
     for number, point in enumerate(points, start=1):
         x, y, z = (*map(float, point), 0.0)[:3]
@@ -64,14 +64,15 @@ def _add(deck: Deck, mesh: Any, block: int, kind: str, ends: np.ndarray) -> None
     """Add the bars of a block of lines."""
     deck.room(0, len(deck.bars) + len(ends))
     if len(ends) and not (0 <= ends.min() and ends.max() < len(deck.nodes)):
-        raise deck.fail(0, f"cells {kind} name points that are not there")
+        raise deck.fail(0, "mesh_bad_data", problem=f"cells {kind} name points that are not there")
     known = {}
     for name, key in DATA.items():
         values = mesh.cell_data[name][block] if name in mesh.cell_data else None
         if values is not None:
             known[key] = np.asarray(values, dtype=float).ravel()
             if len(known[key]) != len(ends) or not np.isfinite(known[key]).all():
-                raise deck.fail(0, f"cell data {quoted(name)} are not one finite number for each line")
+                raise deck.fail(0, "mesh_bad_data",
+                                problem=f"cell data {quoted(name)} are not one finite number for each line")
             deck.take(f"cell data {quoted(name)}", "number of its link", len(ends))
     for place, nodes in enumerate(ends):
         first, second = (str(int(node) + 1) for node in nodes[:2])
@@ -84,7 +85,7 @@ def _add(deck: Deck, mesh: Any, block: int, kind: str, ends: np.ndarray) -> None
 
 def _read(path: Path) -> Any:
     if not is_file(path):
-        raise Unreadable(code="no_such_file", file=path)
+        raise Unreadable(code="file_not_found", file=path)
     check_size(path, LARGEST_BYTES)
     return _by_vtk(path) if path.suffix.lower() in BY_VTK else _by_meshio(path)
 

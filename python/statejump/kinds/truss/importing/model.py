@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from statejump.core.error_codes import CODES
 from statejump.core.errors import NotAllowed, StatejumpError, Unreadable, printable
 from statejump.core.tables import Shown
 from statejump.kinds.truss.importing.lines import LARGEST_BYTES, text_of
+from statejump.kinds.truss.importing.reasons import REASONS, TABLE_REASON
 
 __all__ = ["LARGEST_BYTES", "Bar", "Deck", "Options", "Spring", "quoted", "text_of"]
 
@@ -139,7 +142,7 @@ class Deck:
     :param mass: lumped at nodes
     :param mass_scale: factor of all masses and densities
     :param gravity: acceleration of all masses
-    :param refused: first line, reason and count by card and the option that waives it
+    :param refused: first line, reason, its sentence and count by card and the option that waives it
     :param taken: count by card and what became of it
     :param left: first line and count by card and why it was left out
     :param named_units: the file names the units of its numbers
@@ -168,7 +171,7 @@ class Deck:
     taken: dict[tuple[str, str], int] = field(default_factory=dict)
     left: dict[tuple[str, str], tuple[int, int]] = field(default_factory=dict)
     step: int = 0  # which static one is taken; 0: none
-    refused: dict[tuple[str, str], tuple[int, str, int]] = field(default_factory=dict)
+    refused: dict[tuple[str, str], tuple[int, str, str, int]] = field(default_factory=dict)
     waived: set[str] = field(default_factory=set)
     named_units: bool = False
     choices: list[str] = field(default_factory=list)
@@ -182,19 +185,22 @@ class Deck:
         first, count = self.left.get((card, why), (line, 0))
         self.left[card, why] = (first, count + 1)
 
-    def refuse(self, card: str, why: str, line: int, waiver: str | None = None) -> None:
+    def refuse(self, card: str, why: str, line: int, waiver: str | None = None, **values: str) -> None:
         """Note that something of a card has influence and is not supported; ``--ignore`` leaves it out.
 
+        :param why: key of ``REASONS``, or a sentence of the table of cards
         :param waiver: what ``--ignore`` must name; None: the card. It ends with ``=`` or begins with ``--`` where it
             is an option of its own
+        :param values: numbers and names in the sentence of the reason
         """
+        reason, why = (why, REASONS[why].format_map(values)) if why in REASONS else (TABLE_REASON, why)
         waiver = waiver or card
         if waiver.upper() in self.options.ignored or card.upper() in self.options.ignored:
             self.waived.add(waiver.upper() if waiver.upper() in self.options.ignored else card.upper())
             self.leave(card, f"{why}; left out by --ignore", line)
             return
-        first, said, count = self.refused.get((card, waiver), (line, why, 0))
-        self.refused[card, waiver] = (first, said, count + 1)
+        first, *said, count = self.refused.get((card, waiver), (line, reason, why, 0))
+        self.refused[card, waiver] = (first, said[0], said[1], count + 1)
 
     def settle(self) -> None:
         """Refuse what is not supported. :raises StatejumpError: one sentence with card, line and option"""
@@ -202,15 +208,15 @@ class Deck:
             return
         # Bending first: no other card matters where the user has to decide about it.
         found = sorted(self.refused.items(), key=lambda item: (item[0][1] != BENDING, item[1][0]))
-        (card, waiver), (line, why, _) = found[0]
-        shown = [f"{quoted(also)[1:-1]} (line {at})" for (also, _), (at, _, _) in found[1:MOST_SHOWN + 1]]
+        (card, waiver), (line, reason, why, _) = found[0]
+        shown = [f"{quoted(also)[1:-1]} (line {at})" for (also, _), (at, *_) in found[1:MOST_SHOWN + 1]]
         others = f"; also {', '.join(shown)}" if shown else ""
         if len(found) > MOST_SHOWN + 1:
             others += f" and {len(found) - MOST_SHOWN - 1} more"
         card = quoted(card)[1:-1]
         raise StatejumpError(
-            f"line {line}: {card} is not supported" if line else f"{card} is not supported", cause=f"{why}{others}",
-            file=self.path,
+            f"line {line}: {card} is not supported" if line else "", code="deck_not_supported", card=card,
+            reason=reason, why=f"{why}{others}", line=line, file=self.path,
             remedy=f"{waiver} takes it as a pin-jointed bar" if waiver == BENDING else f"{waiver} says which"
             if waiver.startswith("--") else f"--ignore {_argument(waiver)} leaves it out")
 
@@ -219,19 +225,26 @@ class Deck:
         for name in sorted(self.options.ignored - self.waived):
             raise NotAllowed("--ignore", name, code="nothing_to_ignore")
 
-    def fail(self, line: int, what: str, cause: str | None = None) -> Unreadable:
-        """Return why the deck cannot be read."""
-        return Unreadable(f"line {line}: {what}" if line else what, cause=cause, file=self.path)
+    def fail(self, line: int, code: str, card: str = "", **details: Any) -> Unreadable:
+        """Return why the deck cannot be read.
+
+        :param line: 0 if unknown
+        :param code: of ``CODES``, which names the details
+        :param card: the card or keyword that is meant
+        """
+        where = [f"line {line}"] if line else []
+        what = ": ".join([*where, *filter(None, [card]), CODES[code].what.format_map(details)])
+        return Unreadable(what, code=code, file=self.path, line=line, card=card, **details)
 
     def room(self, line: int, count: int) -> None:
         """Raise Unreadable for more items than any truss has."""
         if count > MOST_ITEMS:
-            raise self.fail(line, f"there are more than {MOST_ITEMS} items")
+            raise self.fail(line, "deck_too_many_items", most=MOST_ITEMS)
 
     def add_node(self, line: int, name: str, position: tuple[float, float, float]) -> None:
         """Add a node. :raises Unreadable: another one has its name"""
         if name in self.nodes:
-            raise self.fail(line, f"node {quoted(name)} is there twice")
+            raise self.fail(line, "deck_duplicate", what_it_is="node", name=quoted(name))
         self.room(line, len(self.nodes) + 1)
         self.nodes[name] = position
 

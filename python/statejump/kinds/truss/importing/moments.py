@@ -47,6 +47,6 @@ class Turning:
         if not np.any(moment):
             self.deck.leave(card, "it is 0", line)
         elif self.bends(node, moment):
-            self.deck.refuse(card, "a moment that bends beams: nodes of a truss do not rotate", line, waiver)
+            self.deck.refuse(card, "bending_moment", line, waiver)
         else:
             self.deck.leave(card, "a moment that only twists bars moves no node", line)

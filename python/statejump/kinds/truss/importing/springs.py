@@ -24,7 +24,7 @@ def add_spring(deck: Deck, line: int, card: str, name: str, stiffness: float,
         deck.leave(card, "it has no stiffness or no node", line)
         return
     if stiffness < 0:
-        deck.refuse(card, "its stiffness is negative", line)
+        deck.refuse(card, "negative_stiffness", line)
         return
     if len(ends) == 2 and (len(free := [end for end in ends if not is_held(deck, *end)]) < 2) and _across(deck, ends):
         if not free:
@@ -38,15 +38,15 @@ def add_spring(deck: Deck, line: int, card: str, name: str, stiffness: float,
     else:
         second, other = ends[1]
         if first == second:
-            deck.refuse(card, "it joins two components of one node", line)
+            deck.refuse(card, "same_node", line)
             return
         way = np.subtract(deck.nodes[second], deck.nodes[first])
         length = np.linalg.norm(way)
         if length == 0:
-            deck.refuse(card, "its nodes are at one place", line)
+            deck.refuse(card, "coincident_nodes", line)
             return
         if _across(deck, ends):
-            deck.refuse(card, "it acts across the line between its nodes", line)
+            deck.refuse(card, "lateral_stiffness", line)
             return
         deck.springs.append(Spring(name, first, second, stiffness, card, line))
     deck.take(card, "spring")

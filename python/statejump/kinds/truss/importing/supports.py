@@ -28,7 +28,7 @@ def supports(deck: Deck, node: str, dimension: int) -> dict[str, Any]:
     _, sizes, spanned = np.linalg.svd(rest)
     oblique = spanned[:int(np.sum(sizes > SAME))]
     if len(oblique) > 1:
-        raise deck.fail(0, f"node {node} is held in two oblique directions", "a case holds axes and one more direction")
+        raise deck.fail(0, "deck_two_oblique_supports", node=node)
     made: dict[str, Any] = {}
     if along_axes := [axis for axis in "xyz"[:dimension] if "xyz".index(axis) in along]:
         made["fixed"] = along_axes

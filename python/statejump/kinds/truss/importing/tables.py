@@ -31,7 +31,7 @@ def read(nodes: Path, bars: Path) -> Deck:
         name, fixed = _text(row, "name"), _text(row, "fixed")
         deck.add_node(line, name, (_number(row, "x_m"), _number(row, "y_m"), _optional(row, "z_m") or 0.0))
         if set(fixed) - set("xyz "):
-            raise deck.fail(line, f"fixed = {quoted(fixed)}", "must be of the letters x, y and z")
+            raise deck.fail(line, "deck_bad_value", problem=f"fixed = {quoted(fixed)} is not of the letters x, y and z")
         deck.fix(name, fixed.replace(" ", ""))
         x, y, z = (_optional(row, f"force_{axis}_N") or 0.0 for axis in "xyz")
         deck.load(name, (x, y, z))
@@ -41,7 +41,7 @@ def read(nodes: Path, bars: Path) -> Deck:
         ends = (_text(row, "first"), _text(row, "second"))
         for end in ends:
             if end not in deck.nodes:
-                raise deck.fail(line, f"there is no node {quoted(end)}")
+                raise deck.fail(line, "deck_undefined", what_it_is="node", name=quoted(end))
         modulus, area, expansion = (_number(row, key) for key in BAR[3:])
         deck.bars.append(Bar(
             _text(row, "name"), ends, "row of bars", modulus, area, expansion, _optional(row, "poisson_ratio"),
@@ -55,7 +55,7 @@ def _rows(deck: Deck, path: Path, needed: Sequence[str], more: Sequence[str]) ->
     """Return the rows of a table by column, with their lines; numbers in SI units."""
     deck.path = path
     if not is_file(path):
-        raise Unreadable(code="no_such_file", file=path)
+        raise Unreadable(code="file_not_found", file=path)
     with open_table(path, LARGEST_BYTES) as table:
         try:
             columns = matched(table.header, (*needed, *more))
@@ -63,7 +63,7 @@ def _rows(deck: Deck, path: Path, needed: Sequence[str], more: Sequence[str]) ->
             raise refused.located(file=path) from None
         missing = [key for key in needed if key not in {column.key for column in columns}]
         if missing:
-            raise deck.fail(1, f"column {missing[0]} is missing", "needed are " + ", ".join(needed))
+            raise deck.fail(1, "missing_column", column=missing[0], needed=", ".join(needed))
         found: list[tuple[int, dict[str, Cell]]] = []
         for lines, rows in table.blocks():
             deck.room(lines[-1], len(found) + len(rows))

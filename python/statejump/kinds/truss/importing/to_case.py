@@ -106,7 +106,7 @@ def _check_unused(deck: Deck, used: set[str]) -> None:
     acting += [(deck.mass_line[node], node, "mass") for node, mass in deck.mass.items() if mass]
     for (line, card), node, what in acting:
         if node not in used:
-            deck.refuse(card, f"a {what} on node {node}, where no bar ends", line, f"{card.lstrip('*')}.UNUSED")
+            deck.refuse(card, "no_bar_at_node", line, f"{card.lstrip('*')}.UNUSED", what=what, node=node)
     for node in [node for node in deck.nodes if node not in used]:
         deck.leave(f"node {node}" if len(deck.nodes) < 50 else "node", "no bar ends there", 0)
 

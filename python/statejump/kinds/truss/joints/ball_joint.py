@@ -111,7 +111,7 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
 
     def path_refuses(self, joints: BallJoints) -> tuple[str, str] | None:
         for index in np.flatnonzero(joints.rigid)[:1]:
-            return joints.names[index], "has contact = 'rigid', of which a path does not say how it begins to slide"
+            return joints.names[index], "rigid_ball_joint_at_rest"
         return None
 
     def engine_arrays(self, truss: ResolvedTruss, joints: BallJoints) -> dict[str, Any]:

@@ -178,7 +178,8 @@ class JointType(Generic[ItemType, ArraysType]):
         return {}
 
     def path_refuses(self, joints: ArraysType) -> tuple[str, str] | None:
-        """Return name and reason of a joint that has no quasi-static path: it moves from ``motion.start = "drawn"``."""
+        """Return name and code of the error of a joint without a quasi-static path: it moves from ``motion.start =
+        "drawn"``."""
         return None
 
     # ---------------------------------------------------------------- result

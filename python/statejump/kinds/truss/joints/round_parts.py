@@ -77,7 +77,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
             if link is None:
                 # Nothing at hand says how such a part turns.
                 if not nodes[node].fixed and nodes[node].guide_normal is None:
-                    raise MissingKey(link_key, code="turning_part_unsupported", nodes=(node,), part=part,
+                    raise MissingKey(link_key, code="rotating_part_unsupported", nodes=(node,), part=part,
                                      node_wanted=node, **where)
                 continue
             known_name(link_key, link, link, links, "link", **where)
@@ -87,10 +87,10 @@ class RoundParts(JointType[ItemType, ArraysType]):
                                  node_wanted=node, **where)
         inner, outer = (f"{part}_node" for part in (self.inner, self.outer))
         if getattr(item, inner) == getattr(item, outer):
-            raise NotAllowed(inner, getattr(item, inner), code="same_node", outer=outer, **where)
+            raise NotAllowed(inner, getattr(item, inner), code="equal_nodes_of_joint", outer=outer, **where)
         inner, outer = (f"{part}_link" for part in (self.inner, self.outer))
         if getattr(item, outer) is not None and getattr(item, outer) == getattr(item, inner):
-            raise NotAllowed(inner, getattr(item, inner), code="same_link", outer=outer, **where)
+            raise NotAllowed(inner, getattr(item, inner), code="equal_links_of_joint", outer=outer, **where)
 
     def may_be_wrong_references(self, items: ItemColumns[ItemType], around: Around) -> np.ndarray:
         nodes, links = ([places.of(items, f"{part}_{what}") for part in self.parts]
@@ -119,14 +119,14 @@ class RoundParts(JointType[ItemType, ArraysType]):
                                      **self.where(joints.names[index]))
             for index in np.flatnonzero(~(self.clearance_m(joints, changes) > 0))[:1]:
                 raise NotAllowed("radial_clearance_m", float(joints.radial_clearance_m[index]),
-                                 code="round_clearance_closes", temperature_change_K=float(changes[index]),
+                                 code="clearance_closes", temperature_change_K=float(changes[index]),
                                  inner=self.inner, outer=self.outer, at_K=changes[index],
                                  **self.where(joints.names[index]))
         inner, outer = (self.radius_m(joints, part) for part in (self.inner, self.outer))
         for index in np.flatnonzero(~(outer > inner))[:1]:
             raise NotAllowed("radial_clearance_m", float(joints.radial_clearance_m[index]),
-                             code="clearance_too_small_for", part=self.inner, radius_m=inner[index],
-                             **self.where(joints.names[index]))
+                             code="clearance_below_precision", radius_key=f"{self.inner}_radius_m",
+                             radius_m=float(inner[index]), **self.where(joints.names[index]))
         for index in np.flatnonzero(apart_m > joints.radial_clearance_m)[:1]:
             own, other = (truss.nodes.names[getattr(joints, f"{part}_node")[index]]
                           for part in (self.inner, self.outer))

@@ -195,8 +195,8 @@ class SliderType(AlongAxis[Slider, Sliders]):
             raise NotAllowed("stop_stiffness_N_per_m", float(joints.stop_stiffness_N_per_m[index]), code="stop_missing",
                              **self.where(joints.names[index]))
         for index in np.flatnonzero(played & (joints.friction_limit_N == 0))[:1]:
-            raise NotAllowed("play_m", float(joints.play_m[index]), code="slider_play_without_friction",
-                             **self.where(joints.names[index]))
+            raise NotAllowed("play_m", float(joints.play_m[index]), code="play_without_friction",
+                             needed_keys="friction_coefficient and normal_force_N", **self.where(joints.names[index]))
         for index in np.flatnonzero(played & (truss.sticking == "partial_slip"))[:1]:
             raise NotAllowed("play_m", float(joints.play_m[index]), code="play_with_partial_slip",
                              **self.where(joints.names[index]))

@@ -73,7 +73,7 @@ def _check(model: Model, block: Block) -> bool:
     deck = model.deck
     letters = block.name.replace(" ", "")
     if letters not in BY_LETTERS:
-        deck.refuse(f"*{block.name}", "the keyword is unknown", block.line, block.name)
+        deck.refuse(f"*{block.name}", "unknown_card", block.line, block.name)
         return False
     block.name, known = BY_LETTERS[letters]
     if known.use == REFUSED:
@@ -94,7 +94,7 @@ def _check_parameters(model: Model, block: Block, known: Card) -> None:
     for name, value in list(block.parameters.items()):
         field = by_letters.get(name.replace(" ", ""))
         if field is None:
-            model.deck.refuse(f"*{block.name}, {name}", "the parameter is unknown", block.line, f"{block.name}.{name}")
+            model.deck.refuse(f"*{block.name}, {name}", "unknown_parameter", block.line, f"{block.name}.{name}")
             continue
         written = field.name.replace("_", " ")
         if written != name:

@@ -27,7 +27,7 @@ def flat(model: Model, blocks: list[Block]) -> list[tuple[Block, Scope]]:
             scope = _scope(model, block)
             name = block.parameters.get("PART", "").upper()
             if name not in parts:
-                raise model.deck.fail(block.line, f"there is no part {quoted(name)}")
+                raise model.deck.fail(block.line, "deck_undefined", what_it_is="part", name=quoted(name))
             found += [(one, scope) for one in parts[name]]
             model.deck.take("*INSTANCE", "a part, shifted and rotated")
             model.deck.room(block.line, len(found))
@@ -52,7 +52,7 @@ def _scope(model: Model, block: Block) -> Scope:
     if len(block.data) > 1:
         turn = model.numbers(*block.data[1])
         if len(turn) != 7 or turn[:3] == turn[3:6]:
-            raise model.deck.fail(block.data[1][0], "*INSTANCE: a rotation needs two points and an angle")
+            raise model.deck.fail(block.data[1][0], "deck_incomplete", "*INSTANCE", needed="two points and an angle")
     if not shift.any() and not turn:
         return Scope(prefix)
     return Scope(prefix, _move(shift, turn))

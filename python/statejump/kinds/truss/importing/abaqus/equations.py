@@ -17,7 +17,7 @@ def equation(model: Model, block: Block, scope: Scope) -> None:
         while rest and len(parts) < 3 * count:
             parts += [word for word in rest.pop(0)[1] if word]
         if len(parts) != 3 * count:
-            raise model.deck.fail(begun, f"*EQUATION has not {count} terms")
+            raise model.deck.fail(begun, "deck_incomplete", "*EQUATION", needed=f"{count} terms")
         _add(model, begun, [parts[at:at + 3] for at in range(0, 3 * count, 3)], scope)
 
 
@@ -27,8 +27,7 @@ def _add(model: Model, line: int, parts: list[list[str]], scope: Scope) -> None:
         nodes = model.nodes_of(line, word, scope)
         at, value = model.whole(line, direction), model.number(line, factor)
         if len(nodes) != 1 or not 1 <= at <= 3:
-            model.deck.refuse("*EQUATION", "an equation of sets of nodes" if len(nodes) != 1 else
-                              "an equation of a rotation or a temperature", line, "EQUATION")
+            model.deck.refuse("*EQUATION", "node_sets" if len(nodes) != 1 else "rotation", line, "EQUATION")
             return
         for node in nodes:
             if value:

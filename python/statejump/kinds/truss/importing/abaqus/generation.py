@@ -10,12 +10,12 @@ from statejump.kinds.truss.importing.abaqus.keywords import Block
 from statejump.kinds.truss.importing.abaqus.mesh import add_element, add_node
 from statejump.kinds.truss.importing.abaqus.model import Model, Scope
 from statejump.kinds.truss.importing.coordinates import rotated
-from statejump.kinds.truss.importing.model import quoted
+from statejump.kinds.truss.importing.model import MOST_ITEMS, quoted
 
 
 def _place(model: Model, line: int, name: str) -> np.ndarray:
     if name not in model.deck.nodes:
-        raise model.deck.fail(line, f"there is no node {name}")
+        raise model.deck.fail(line, "deck_undefined", what_it_is="node", name=name)
     return np.array(model.deck.nodes[name])
 
 
@@ -29,7 +29,7 @@ def ngen(model: Model, block: Block, scope: Scope) -> None:
     """Nodes between two others, on a straight line or an arc about a point."""
     line_kind = block.parameters.get("LINE", "").upper()
     if line_kind not in ("", "C"):
-        model.deck.refuse("*NGEN, LINE", "a parabola", block.line, "NGEN.LINE")
+        model.deck.refuse("*NGEN, LINE", "parabola", block.line, "NGEN.LINE")
         return
     made: list[str] = []
     for line, words in block.data:
@@ -37,7 +37,8 @@ def ngen(model: Model, block: Block, scope: Scope) -> None:
         first, last = (int(name.rpartition(".")[2]) for name in ends)
         step = model.whole(line, words[2]) if len(words) > 2 and words[2] else 1
         if step == 0 or (last - first) % step:
-            raise model.deck.fail(line, f"*NGEN: steps of {step} do not lead from {first} to {last}")
+            raise model.deck.fail(line, "deck_bad_value", "*NGEN",
+                                  problem=f"steps of {step} do not lead from {first} to {last}")
         start, end = (_place(model, line, name) for name in ends)
         count = abs(last - first) // step
         model.deck.room(line, len(model.deck.nodes) + count)
@@ -67,7 +68,7 @@ def _arc(model: Model, line: int, words: list[str], scope: Scope, start: np.ndar
     normal = np.array(model.numbers(line, words[7:10])) if len(words) > 9 else np.cross(start - centre, end - centre)
     size = np.linalg.norm(normal)
     if size == 0:
-        raise model.deck.fail(line, "*NGEN: the arc has no plane")
+        raise model.deck.fail(line, "deck_bad_geometry", "*NGEN", problem="the arc has no plane")
     normal = normal / size
     first, second = start - centre, end - centre
     angle = degrees(atan2(float(normal @ np.cross(first, second)), float(first @ second)))
@@ -79,11 +80,12 @@ def nfill(model: Model, block: Block, scope: Scope) -> None:
     made: list[str] = []
     for line, words in block.data:
         if len(words) < 3:
-            raise model.deck.fail(line, "*NFILL needs two sets and the number of intervals")
+            raise model.deck.fail(line, "deck_incomplete", "*NFILL", needed="two sets and the number of intervals")
         first, last = (model.nodes_of(line, word, scope) for word in words[:2])
         count, step = model.whole(line, words[2]), model.whole(line, words[3]) if len(words) > 3 and words[3] else 1
         if len(first) != len(last) or count < 1:
-            raise model.deck.fail(line, "*NFILL: the sets differ in size, or there is no interval")
+            raise model.deck.fail(line, "deck_bad_value", "*NFILL",
+                                  problem="the sets differ in size, or there is no interval")
         model.deck.room(line, len(model.deck.nodes) + count * len(first))
         for start, end in zip(first, last):
             begin, way = _place(model, line, start), _place(model, line, end) - _place(model, line, start)
@@ -104,12 +106,12 @@ def ncopy(model: Model, block: Block, scope: Scope) -> None:
     source = list(model.nodes_of(block.line, model.needed(block, "OLD SET"), scope))
     times = model.whole(block.line, block.parameters.get("MULTIPLE") or "1")
     if "SHIFT" not in block.parameters or not block.data:
-        raise model.deck.fail(block.line, "*NCOPY has no SHIFT")
+        raise model.deck.fail(block.line, "deck_incomplete", "*NCOPY", needed="SHIFT")
     line, words = block.data[0]
     shift = np.array((model.numbers(line, words) + [0.0] * 3)[:3])
     turn = model.numbers(*block.data[1]) if len(block.data) > 1 else []
     if turn and len(turn) != 7:
-        raise model.deck.fail(block.data[1][0], "*NCOPY: a rotation needs two points and an angle")
+        raise model.deck.fail(block.data[1][0], "deck_incomplete", "*NCOPY", needed="two points and an angle")
     model.deck.room(line, len(model.deck.nodes) + times * len(source))
     made: list[str] = []
     for number in range(1, times + 1):
@@ -131,14 +133,14 @@ def elgen(model: Model, block: Block, scope: Scope) -> None:
     for line, words in block.data:
         master = model.name(line, words[0], scope)
         if master not in model.elements:
-            raise model.deck.fail(line, f"there is no element {master}")
+            raise model.deck.fail(line, "deck_undefined", what_it_is="element", name=master)
         given = [model.whole(line, word) if word else 1 for word in words[1:]]
         rows = [((given[at:at + 3] + [1, 1, 1])[:3]) for at in (0, 3, 6)]
         made.append(master)
         copies = [(0, 0)]
         for count, node_step, element_step in rows:
-            if count * len(copies) > 10**6:
-                raise model.deck.fail(line, "there are more than 1000000 items")
+            if count * len(copies) > MOST_ITEMS:
+                raise model.deck.fail(line, "deck_too_many_items", most=MOST_ITEMS)
             copies = [(nodes + node_step * number, elements + element_step * number)
                       for number in range(max(count, 1)) for nodes, elements in copies]
         _copies(model, line, master, copies[1:], made)
@@ -165,7 +167,7 @@ def elcopy(model: Model, block: Block, scope: Scope) -> None:
     for one in model.elements_of(block.line, old, scope):
         _copies(model, block.line, one.name, [(node_step, element_step)], made)
     if not made:
-        raise model.deck.fail(block.line, f"the set {quoted(old)} has no elements")
+        raise model.deck.fail(block.line, "deck_undefined", what_it_is="element in set", name=quoted(old))
     if group := block.parameters.get("NEW SET"):
         model.add(block.line, model.element_sets, scope.prefix + group.upper(), made)
     model.deck.take("*ELCOPY", "elements", len(made))

@@ -59,8 +59,8 @@ def _parameter(deck: Deck, number: int, text: str) -> dict[str, str]:
     """Return the name and the value of a line of ``*PARAMETER``."""
     name, _, value = (part.strip() for part in text.partition("#")[0].partition("="))
     if name and finite_number(value) is None:
-        raise deck.fail(number, f"*PARAMETER: {quoted(value)} is not a finite number; write numbers in place of "
-                                "expressions")
+        raise deck.fail(number, "deck_bad_number", "*PARAMETER", text=quoted(value),
+                        wanted="a finite number; write numbers in place of expressions")
     return {name: value} if name else {}
 
 
@@ -100,7 +100,7 @@ def blocks(deck: Deck, path: Path) -> Iterator[Block]:
             joined, begun = "", 0
             continue
         if current is None:
-            raise deck.fail(number, "data before the first keyword")
+            raise deck.fail(number, "deck_bad_syntax", problem="data before the first keyword")
         if current.name == "PARAMETER":
             values.update(_parameter(deck, number, text))
             continue

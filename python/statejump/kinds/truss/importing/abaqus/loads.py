@@ -50,7 +50,7 @@ def transform(model: Model, block: Block, scope: Scope) -> None:
     kind = block.parameters.get("TYPE", "R").upper()[:1]
     values = model.numbers(*block.data[0]) if block.data else []
     if len(values) < 6:
-        raise model.deck.fail(block.line, "*TRANSFORM needs two points")
+        raise model.deck.fail(block.line, "deck_incomplete", "*TRANSFORM", needed="two points")
     first, second = np.array(values[:3]), np.array(values[3:6])
     frame: Frame | None = None
     if kind == "R":
@@ -58,10 +58,10 @@ def transform(model: Model, block: Block, scope: Scope) -> None:
     elif kind == "C":
         frame = about_axis(first, second)
     else:
-        model.deck.refuse("*TRANSFORM, TYPE", "only R and C are read", block.line, "TRANSFORM.TYPE")
+        model.deck.refuse("*TRANSFORM, TYPE", "unsupported_type", block.line, "TRANSFORM.TYPE", only="R and C")
         return
     if frame is None:
-        raise model.deck.fail(block.line, "*TRANSFORM: its points give no directions")
+        raise model.deck.fail(block.line, "deck_bad_geometry", "*TRANSFORM", problem="its points give no directions")
     for node in model.nodes_of(block.line, model.needed(block, "NSET"), scope):
         model.frames[node] = frame
     model.deck.take("*TRANSFORM", "directions of supports and forces")
@@ -72,7 +72,7 @@ def initial(model: Model, block: Block, scope: Scope) -> None:
     kind = block.parameters.get("TYPE", "").upper()
     if kind != "TEMPERATURE":
         card = f"*INITIAL CONDITIONS, TYPE={quoted(kind)[1:-1]}"
-        model.deck.refuse(card, "only temperatures are read", block.line, "INITIAL CONDITIONS")
+        model.deck.refuse(card, "unsupported_type", block.line, "INITIAL CONDITIONS", only="TEMPERATURE")
         return
     _temperatures(model, model.deck.initial, block, scope)
 
@@ -92,7 +92,7 @@ def _chosen(model: Model, steps: list[Step]) -> int:
     """Return the place of the chosen step: that of --step, else the first static one, else the first."""
     wanted, count = model.deck.options.step or 0, len(steps) - 1
     if wanted > max(count, 1):
-        raise NotAllowed("--step", wanted, code="no_such_step", steps=count, plural="s" if count != 1 else "")
+        raise NotAllowed("--step", wanted, code="undefined_step", steps=count, plural="s" if count != 1 else "")
     if count == 0:
         return 0
     place: int = wanted or next((at for at, step in enumerate(steps) if at and step.static()), 1)
@@ -108,7 +108,7 @@ def _apply(model: Model, step: Step, state: State, amplitudes: dict[str, Block],
     """Apply a step: OP=NEW removes what former ones left, a force replaces that of a former one, forces of one step
     add up."""
     if last and step.perturbation and (state.force or state.gravity or state.temperature):
-        model.deck.refuse("*STEP, PERTURBATION", "small loads on the loaded state of a former step", step.line,
+        model.deck.refuse("*STEP, PERTURBATION", "perturbation_step", step.line,
                           "STEP.PERTURBATION")
     renewed: set[str] = set()
     forces: dict[tuple[str, int], tuple[float, int]] = {}
@@ -155,7 +155,7 @@ def _factor(model: Model, block: Block, amplitudes: dict[str, Block], period: fl
         return 1.0
     found = amplitudes.get(name.upper())
     if found is None:
-        raise model.deck.fail(block.line, f"there is no amplitude {quoted(name)}")
+        raise model.deck.fail(block.line, "deck_undefined", what_it_is="amplitude", name=quoted(name))
     given = found.parameters
     pairs = [value for line, words in found.data for value in model.numbers(line, words)]
     times, values = pairs[::2], pairs[1::2]
@@ -163,11 +163,12 @@ def _factor(model: Model, block: Block, amplitudes: dict[str, Block], period: fl
         given.get("DEFINITION", "TABULAR").upper() == "TABULAR" and block.name != "TEMPERATURE"
     constant = len(set(values)) == 1 and len(values) == len(times)  # known at any time, whatever the step is
     if not relative or not constant and (period is None or given.get("TIME")):
-        model.deck.refuse(f"*{block.name}, AMPLITUDE", "its value at the end of the step is not known", block.line,
+        model.deck.refuse(f"*{block.name}, AMPLITUDE", "amplitude_at_end_unknown", block.line,
                           f"{block.name}.AMPLITUDE")
         return None
     if len(times) != len(values) or not times or any(b <= a for a, b in zip(times, times[1:])):
-        raise model.deck.fail(found.line, "*AMPLITUDE: not pairs of rising times and values")
+        raise model.deck.fail(found.line, "deck_bad_value", "*AMPLITUDE",
+                              problem="not pairs of rising times and values")
     model.deck.take("*AMPLITUDE", "factor of loads")
     return float(np.interp(period or 0.0, times, values))
 
@@ -182,9 +183,9 @@ def _boundary(model: Model, block: Block, scope: Scope, state: State) -> None:
             first = model.whole(line, words[1]) if len(words) > 1 else 0
             last = model.whole(line, words[2]) if len(words) > 2 and words[2] else first
         if first == 0:
-            raise model.deck.fail(line, "*BOUNDARY needs a direction")
+            raise model.deck.fail(line, "deck_incomplete", "*BOUNDARY", needed="a direction")
         if len(words) > 3 and words[3] and model.number(line, words[3]) != 0 and first <= 3:
-            model.deck.refuse("*BOUNDARY", "a given displacement that is not 0", line, "BOUNDARY.VALUE")
+            model.deck.refuse("*BOUNDARY", "prescribed_displacement", line, "BOUNDARY.VALUE")
             continue
         if last > 3:
             model.deck.leave("*BOUNDARY", "directions above 3: ends of bars turn freely, temperatures are no supports",
@@ -200,12 +201,12 @@ def _cload(model: Model, block: Block, scope: Scope, forces: dict[tuple[str, int
            factor: float) -> None:
     for line, words in block.data:
         if len(words) < 3:
-            raise model.deck.fail(line, "*CLOAD needs node, direction and force")
+            raise model.deck.fail(line, "deck_incomplete", "*CLOAD", needed="node, direction and force")
         direction = model.whole(line, words[1])
         value = factor * model.number(line, words[2])
         if not 1 <= direction <= 6:
             if value:
-                model.deck.refuse("*CLOAD", "it is no force and no moment", line, "CLOAD.OTHER")
+                model.deck.refuse("*CLOAD", "unsupported_direction", line, "CLOAD.OTHER")
             continue
         for node in model.nodes_of(line, words[0], scope):
             before = forces.get((node, direction), (0.0, line))
@@ -217,14 +218,14 @@ def _dload(model: Model, block: Block, scope: Scope, state: State, factor: float
     for line, words in block.data:
         kind = words[1].upper() if len(words) > 1 else ""
         if kind != "GRAV":
-            model.deck.refuse(f"*DLOAD, {quoted(kind)[1:-1]}", "a load on elements that is not gravity", line,
+            model.deck.refuse(f"*DLOAD, {quoted(kind)[1:-1]}", "distributed_load", line,
                               f"DLOAD.{kind}")
             continue
         values = (model.numbers(line, words[2:6]) + [0.0] * 4)[:4]
         direction = np.array(values[1:4])
         size = np.linalg.norm(direction)
         if size == 0:
-            raise model.deck.fail(line, "*DLOAD: gravity without direction")
+            raise model.deck.fail(line, "deck_incomplete", "*DLOAD", needed="the direction of gravity")
         state.gravity[scope.prefix + words[0].upper() if words[0] else "EALL"] = (
             direction / size * values[0] * factor, line)
         model.deck.take("*DLOAD", "gravity")
@@ -233,10 +234,10 @@ def _dload(model: Model, block: Block, scope: Scope, state: State, factor: float
 def _temperatures(model: Model, found: dict[str, float], block: Block, scope: Scope) -> None:
     for line, words in block.data:
         if len(words) < 2:
-            raise model.deck.fail(line, f"*{block.name} needs node and temperature")
+            raise model.deck.fail(line, "deck_incomplete", f"*{block.name}", needed="node and temperature")
         values = model.numbers(line, words[1:])
         if any(values[1:]):
-            model.deck.refuse(f"*{block.name}", "temperatures that differ across a section", line,
+            model.deck.refuse(f"*{block.name}", "temperature_gradient", line,
                               f"{block.name}.GRADIENT")
         for node in model.nodes_of(line, words[0], scope):
             found[node] = values[0]
@@ -274,7 +275,7 @@ def _gravity(model: Model, state: State) -> None:
              and one.name in model.sections and model.sections[one.name].material.density]
     vectors = [acting.get(name, np.zeros(3)) for name in heavy]
     if any((one != vectors[0]).any() for one in vectors):
-        model.deck.refuse("*DLOAD, GRAV", "it acts on a part of the structure only",
+        model.deck.refuse("*DLOAD, GRAV", "gravity_on_part",
                           next(line for _, line in state.gravity.values()), "DLOAD.GRAV")
     elif vectors:
         model.deck.gravity[:] = [float(part) for part in vectors[0]]

@@ -35,7 +35,7 @@ def system(model: Model, block: Block, scope: Scope) -> None:
         in_xy = origin + np.cross([0.0, 0.0, 1.0], on_x - origin)
     found = by_axis("R", origin, on_x, in_xy)
     if found is None:
-        raise model.deck.fail(block.line, "*SYSTEM: its points span no plane")
+        raise model.deck.fail(block.line, "deck_bad_geometry", "*SYSTEM", problem="its points span no plane")
     model.system = found
 
 
@@ -43,7 +43,7 @@ def node(model: Model, block: Block, scope: Scope) -> None:
     """Nodes in rectangular or cylindrical coordinates."""
     kind = block.parameters.get("SYSTEM", "R").upper()[:1] or "R"
     if kind not in ("R", "C"):
-        model.deck.refuse("*NODE, SYSTEM", "spherical angles differ from program to program", block.line, "NODE.SYSTEM")
+        model.deck.refuse("*NODE, SYSTEM", "spherical_coordinates", block.line, "NODE.SYSTEM")
     frame = Frame(kind, model.system.origin, model.system.axes)
     plain = kind == "R" and model.system is BASIC and scope.move is None
     made = []
@@ -86,7 +86,7 @@ def element(model: Model, block: Block, scope: Scope) -> None:
         _add_element(model, begun, kind, pending[:count + 1] if count else pending, scope, made)
         pending, begun = [], 0
     if pending:
-        raise model.deck.fail(begun, f"element {quoted(pending[0])[1:-1]} has not {count} nodes")
+        raise model.deck.fail(begun, "deck_incomplete", f"element {quoted(pending[0])[1:-1]}", needed=f"{count} nodes")
     if group := block.parameters.get("ELSET"):
         model.add(block.line, model.element_sets, scope.prefix + group.upper(), made)
 
@@ -102,11 +102,11 @@ def _add_element(model: Model, line: int, kind: str, words: list[str], scope: Sc
 def add_element(model: Model, line: int, name: str, family: str, kind: str, nodes: list[str]) -> None:
     """Add an element whose nodes are there."""
     if name in model.elements:
-        raise model.deck.fail(line, f"element {name} is there twice")
+        raise model.deck.fail(line, "deck_duplicate", what_it_is="element", name=name)
     model.deck.room(line, len(model.elements) + 1)
     for end in nodes:
         if end not in model.deck.nodes:
-            raise model.deck.fail(line, f"element {name}: there is no node {end}")
+            raise model.deck.fail(line, "deck_undefined", f"element {name}", what_it_is="node", name=end)
     model.elements[name] = Element(name, family, kind, nodes, line)
 
 
@@ -116,9 +116,9 @@ def check_type(model: Model, block: Block) -> None:
     known = ELEMENTS.get(kind)
     card = f"*ELEMENT, TYPE={quoted(kind)[1:-1]}"
     if known is None:
-        model.deck.refuse(card, "it is no straight bar", block.line, kind)
+        model.deck.refuse(card, "not_a_straight_bar", block.line, kind)
     elif known[0] == BEAM and not model.deck.options.beams_as_bars:
-        model.deck.refuse(card, "the structure needs bending, which a truss does not have", block.line, BENDING)
+        model.deck.refuse(card, "bending", block.line, BENDING)
 
 
 def node_set(model: Model, block: Block, scope: Scope) -> None:
@@ -147,10 +147,10 @@ def _set(model: Model, block: Block, scope: Scope, nodes: bool) -> None:
         words = [word for word in words if word]
         if "GENERATE" in block.parameters:
             if len(words) not in (2, 3):
-                raise model.deck.fail(line, "GENERATE needs first, last and step")
+                raise model.deck.fail(line, "deck_incomplete", "GENERATE", needed="first, last and step")
             first, last, step = (model.whole(line, word) for word in [*words, "1"][:3])
             if step == 0:
-                raise model.deck.fail(line, "GENERATE with a step of 0")
+                raise model.deck.fail(line, "deck_bad_value", "GENERATE", problem="its step is 0")
             model.add(line, sets, name, model.range(nodes, of.prefix, first, last, step))
             continue
         for word in words:
@@ -160,6 +160,6 @@ def _set(model: Model, block: Block, scope: Scope, nodes: bool) -> None:
                 continue
             item = model.name(line, word, of)
             if item not in known:
-                raise model.deck.fail(line, f"there is no {'node' if nodes else 'element'} {item}")
+                raise model.deck.fail(line, "deck_undefined", what_it_is="node" if nodes else "element", name=item)
             model.add(line, sets, name, [item])
     model.deck.take(f"*{key}", "names")

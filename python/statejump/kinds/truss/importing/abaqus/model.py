@@ -87,7 +87,7 @@ class Model:
         """Return a number of a data line."""
         value = finite_number(text.lower().replace("d", "e"))
         if value is None:
-            raise self.deck.fail(line, f"{quoted(text)} is not a finite number")
+            raise self.deck.fail(line, "deck_bad_number", text=quoted(text), wanted="a finite number")
         return value
 
     def numbers(self, line: int, texts: Iterable[str]) -> list[float]:
@@ -97,7 +97,7 @@ class Model:
     def whole(self, line: int, text: str) -> int:
         """Return a whole number that is not negative."""
         if not text.isdecimal() or not text.isascii() or len(text) > 12:
-            raise self.deck.fail(line, f"{quoted(text)} is not a whole number")
+            raise self.deck.fail(line, "deck_bad_number", text=quoted(text), wanted="a whole number")
         return int(text)
 
     def name(self, line: int, text: str, scope: Scope) -> str:
@@ -105,13 +105,13 @@ class Model:
         instance, stop, number = text.rpartition(".")
         prefix = f"{instance.upper()}." if stop else scope.prefix
         if not number.isdecimal() or not number.isascii() or len(number) > 12:
-            raise self.deck.fail(line, f"{quoted(text)} is not a number of a node or element")
+            raise self.deck.fail(line, "deck_bad_number", text=quoted(text), wanted="a number of a node or element")
         return f"{prefix}{int(number)}"
 
     def needed(self, block: Block, key: str) -> str:
         """Return a parameter that must be there."""
         if not block.parameters.get(key):
-            raise self.deck.fail(block.line, f"*{block.name} has no {key}=")
+            raise self.deck.fail(block.line, "deck_incomplete", f"*{block.name}", needed=f"{key}=")
         return block.parameters[key]
 
     def add(self, line: int, sets: dict[str, dict[str, None]], name: str, items: Iterable[str]) -> None:
@@ -139,10 +139,10 @@ class Model:
         if found is not None:
             return found
         if not word.rpartition(".")[2].isdecimal():
-            raise self.deck.fail(line, f"there is no set of nodes {quoted(word)}")
+            raise self.deck.fail(line, "deck_undefined", what_it_is="set of nodes", name=quoted(word))
         name = self.name(line, word, scope)
         if name not in self.deck.nodes:
-            raise self.deck.fail(line, f"there is no node {name}")
+            raise self.deck.fail(line, "deck_undefined", what_it_is="node", name=name)
         return [name]
 
     def elements_of(self, line: int, word: str, scope: Scope) -> list[Element]:
@@ -151,7 +151,7 @@ class Model:
         if found is None:
             name = self.name(line, word, scope) if word.rpartition(".")[2].isdecimal() else ""
             if name not in self.elements:
-                raise self.deck.fail(line, f"there is no set of elements {quoted(word)}")
+                raise self.deck.fail(line, "deck_undefined", what_it_is="set of elements", name=quoted(word))
             found = [name]
         return [self.elements[name] for name in found if name in self.elements]
 
@@ -175,5 +175,5 @@ class Model:
     def refuse(self, block: Block, known: Card, parameter: str) -> None:
         """Refuse a parameter of a keyword."""
         found = known.parameter(parameter)
-        why = found.why if found else "the parameter is unknown"
+        why = found.why if found else "unknown_parameter"
         self.deck.refuse(f"*{block.name}, {parameter}", why, block.line, f"{block.name}.{parameter}")

@@ -26,12 +26,12 @@ def _of_material(model: Model, block: Block, counts: int) -> tuple[Material, lis
     :param counts: how many numbers stand before the temperature
     """
     if model.material is None:
-        raise model.deck.fail(block.line, f"*{block.name} before any *MATERIAL")
+        raise model.deck.fail(block.line, "deck_incomplete", f"*{block.name}", needed="a *MATERIAL before it")
     if not block.data:
-        raise model.deck.fail(block.line, f"*{block.name} has no data")
+        raise model.deck.fail(block.line, "deck_incomplete", f"*{block.name}", needed="data")
     rows = [(model.numbers(line, words) + [0.0] * counts)[:counts] for line, words in block.data]
     if any(row != rows[0] for row in rows):
-        model.deck.refuse(f"*{block.name}", "its numbers depend on temperature", block.data[1][0], block.name)
+        model.deck.refuse(f"*{block.name}", "temperature_dependent", block.data[1][0], block.name)
         return None
     model.deck.take(f"*{block.name}", "properties of links")
     return model.material, rows[0]
@@ -40,7 +40,7 @@ def _of_material(model: Model, block: Block, counts: int) -> tuple[Material, lis
 def elastic(model: Model, block: Block, scope: Scope) -> None:
     """Young's modulus and Poisson's ratio."""
     if block.parameters.get("TYPE", "").upper() not in ISOTROPIC:
-        model.deck.refuse("*ELASTIC, TYPE", "it is not isotropic", block.line, "ELASTIC.TYPE")
+        model.deck.refuse("*ELASTIC, TYPE", "anisotropic", block.line, "ELASTIC.TYPE")
         return
     if found := _of_material(model, block, 2):
         found[0].young_modulus, ratio = found[1]
@@ -56,13 +56,13 @@ def expansion(model: Model, block: Block, scope: Scope) -> None:
     kind = block.parameters.get("TYPE", "").upper()
     counts = {"ORTHO": 3, "ANISO": 6}.get(kind, 1)
     if kind not in (*ISOTROPIC, "ORTHO", "ANISO"):
-        model.deck.refuse("*EXPANSION, TYPE", "an unknown type", block.line, "EXPANSION.TYPE")
+        model.deck.refuse("*EXPANSION, TYPE", "unknown_type", block.line, "EXPANSION.TYPE")
         return
     if counts == 1 and model.material is not None and len({words[0] for _, words in block.data}) > 1:
         _expansion_table(model, model.material, block)
     elif found := _of_material(model, block, counts):
         if any(value != found[1][0] for value in found[1][:3]) or any(found[1][3:]):
-            model.deck.refuse("*EXPANSION, TYPE", "it differs from direction to direction", block.line,
+            model.deck.refuse("*EXPANSION, TYPE", "anisotropic", block.line,
                               "EXPANSION.TYPE")
             return
         found[0].expansion = found[1][0]
@@ -71,7 +71,8 @@ def expansion(model: Model, block: Block, scope: Scope) -> None:
 def _expansion_table(model: Model, of: Material, block: Block) -> None:
     rows = [model.numbers(line, words[:2]) for line, words in block.data]
     if any(len(row) < 2 for row in rows) or any(b[1] <= a[1] for a, b in zip(rows, rows[1:])):
-        raise model.deck.fail(block.line, "*EXPANSION: not pairs of a coefficient and a rising temperature")
+        raise model.deck.fail(block.line, "deck_bad_value", "*EXPANSION",
+                              problem="not pairs of a coefficient and a rising temperature")
     of.expansion_table = tuple((temperature, value) for value, temperature in rows)
     of.expansion_zero = model.number(block.line, block.parameters.get("ZERO") or "0")
     model.deck.take("*EXPANSION", "thermal expansion that follows the temperature")
@@ -87,7 +88,7 @@ def section(model: Model, block: Block, scope: Scope) -> None:
     """Area and material of the bars of a set. Other elements of the set are refused where they are."""
     name = model.needed(block, "MATERIAL").upper()
     if name not in model.materials:
-        raise model.deck.fail(block.line, f"there is no material {quoted(name)}")
+        raise model.deck.fail(block.line, "deck_undefined", what_it_is="material", name=quoted(name))
     shape = "AREA" if block.name == "SOLID SECTION" else block.parameters.get("SECTION", "").upper()
     values = model.numbers(*block.data[0]) if block.data else []
     why = f"*{block.name} {quoted(shape)[1:-1]} gives no area with its sizes"
@@ -103,7 +104,7 @@ def thickness(model: Model, block: Block, scope: Scope) -> None:
     for line, words in block.data:
         sizes = model.numbers(line, words[1:3])
         if not sizes:
-            raise model.deck.fail(line, "*NODAL THICKNESS needs a node and its sizes")
+            raise model.deck.fail(line, "deck_incomplete", "*NODAL THICKNESS", needed="a node and its sizes")
         for node in model.nodes_of(line, words[0], scope):
             model.thickness[node] = (sizes[0], sizes[-1] or sizes[0])
     model.deck.take("*NODAL THICKNESS", "cross-section area of links")
@@ -121,9 +122,7 @@ def _area(model: Model, block: Block, shape: str, values: list[float]) -> float 
     if shape == "CIRC" and given == 1:
         if model.deck.options.circ is None:
             model.deck.refuse(
-                f"*{block.name}, SECTION=CIRC", "its one length is a radius in Abaqus, a diameter in CalculiX and "
-                "FreeCAD",
-                block.line, "--circ radius|diameter")
+                f"*{block.name}, SECTION=CIRC", "radius_or_diameter", block.line, "--circ radius|diameter")
             return None
         if model.deck.options.circ == "radius":
             values = [2 * values[0]]
@@ -133,12 +132,13 @@ def _area(model: Model, block: Block, shape: str, values: list[float]) -> float 
 def general(model: Model, block: Block, scope: Scope) -> None:
     """A section by its area, with a material of its own."""
     if block.parameters.get("SECTION", "GENERAL").upper() != "GENERAL":
-        model.deck.refuse("*BEAM GENERAL SECTION, SECTION", "only GENERAL is read", block.line,
-                          "BEAM GENERAL SECTION.SECTION")
+        model.deck.refuse("*BEAM GENERAL SECTION, SECTION", "unsupported_type", block.line,
+                          "BEAM GENERAL SECTION.SECTION", only="GENERAL")
         return
     numeric = [model.numbers(line, words) for line, words in block.data]
     if len(numeric) < 2 or not numeric[0]:
-        raise model.deck.fail(block.line, "*BEAM GENERAL SECTION needs a line of areas and one of moduli")
+        raise model.deck.fail(block.line, "deck_incomplete", "*BEAM GENERAL SECTION",
+                              needed="a line of areas and one of moduli")
     moduli = numeric[2] if len(numeric) > 2 else numeric[1]
     made = Material(moduli[0], expansion=moduli[2] if len(moduli) > 2 else None)
     if "DENSITY" in block.parameters:
@@ -149,13 +149,14 @@ def general(model: Model, block: Block, scope: Scope) -> None:
 def spring(model: Model, block: Block, scope: Scope) -> None:
     """Stiffness of springs: a line of directions for SPRING1 and SPRING2, then the stiffness."""
     if not block.data:
-        raise model.deck.fail(block.line, "*SPRING has no stiffness")
+        raise model.deck.fail(block.line, "deck_incomplete", "*SPRING", needed="a stiffness")
     found = model.elements_of(block.line, model.needed(block, "ELSET"), scope)
     along = all(one.kind == "SPRINGA" for one in found)
     directions = [] if along else [model.whole(block.data[0][0], word) for word in block.data[0][1]]
     rows = [model.numbers(line, words) for line, words in block.data[0 if along else 1:]]
     if not rows or any(row[0] != rows[0][0] for row in rows):
-        raise model.deck.fail(block.line, "*SPRING: its stiffness depends on temperature, or there is none")
+        raise model.deck.fail(block.line, "deck_bad_value", "*SPRING",
+                              problem="its stiffness depends on temperature, or there is none")
     for one in found:
         if one.family != SPRING:
             continue
@@ -164,7 +165,7 @@ def spring(model: Model, block: Block, scope: Scope) -> None:
             ends = [(end, way) for end in one.nodes]
         else:
             if len(directions) < len(one.nodes) or not all(1 <= at <= 3 for at in directions[:len(one.nodes)]):
-                model.deck.refuse("*SPRING", "it acts on a rotation", block.line, "SPRING")
+                model.deck.refuse("*SPRING", "rotation", block.line, "SPRING")
                 return
             ends = [(end, model.frame(end).directions(model.deck.nodes[end])[at - 1])
                     for end, at in zip(one.nodes, directions)]
@@ -174,10 +175,10 @@ def spring(model: Model, block: Block, scope: Scope) -> None:
 def mass(model: Model, block: Block, scope: Scope) -> None:
     """Mass of the nodes of elements of type MASS."""
     if not block.data:
-        raise model.deck.fail(block.line, "*MASS has no data")
+        raise model.deck.fail(block.line, "deck_incomplete", "*MASS", needed="data")
     value = model.numbers(*block.data[0])[0]
     if value < 0:
-        raise model.deck.fail(block.line, "*MASS is negative")
+        raise model.deck.fail(block.line, "deck_bad_value", "*MASS", problem="a negative mass")
     for one in model.elements_of(block.line, model.needed(block, "ELSET"), scope):
         if one.family == MASS and value:
             model.deck.weigh(one.nodes[0], value, block.line, "*MASS")

@@ -80,7 +80,7 @@ def _check(reader: Reader, card: Card, given: control.Control) -> None:
     """Refuse a card or a field that is not supported; note those without influence."""
     deck, known = reader.deck, CARDS.get(card.name)
     if known is None:
-        deck.refuse(card.name, "the card is unknown", card.line)
+        deck.refuse(card.name, "unknown_card", card.line)
     elif known.sets and not _counts(reader, card):
         deck.leave(card.name, f"set {reader.whole(card, 0)} is not selected", card.line)
     elif card.name == "PARAM":
@@ -94,7 +94,7 @@ def _check(reader: Reader, card: Card, given: control.Control) -> None:
         deck.leave(card.name, "left out by --ignore", card.line)
     else:
         if known.bending and not deck.options.beams_as_bars:
-            deck.refuse(card.name, "the structure needs bending, which a truss does not have", card.line, BENDING)
+            deck.refuse(card.name, "bending", card.line, BENDING)
         if not known.own:
             _check_fields(reader, card)
 
@@ -106,7 +106,7 @@ def _check_fields(reader: Reader, card: Card) -> None:
             continue
         field = known.field(place)
         if field is None:
-            raise reader.fail(card, f"it has no field {place + 2}")
+            raise reader.fail(card, "deck_bad_syntax", problem=f"it has no field {place + 2}")
         if field.use == REFUSED and finite_number(BARE_EXPONENT.sub(r"\1e\2", text.lower().replace("d", "e"))) != 0:
             name = field.name if field.name != "-" else f"field {place + 2}"
             reader.deck.refuse(f"{card.name}.{name}", field.why, card.line)
@@ -121,11 +121,11 @@ def _param(reader: Reader, card: Card, given: control.Control) -> None:
         given.autospc = card[1].upper() != "NO"
     elif name == "ART_MASS":  # Y or N, mass of translations, of rotations
         if card[1].upper() == "Y" and reader.number(card, 2, 1.0) != 0:
-            reader.deck.refuse(f"PARAM.{name}", "a mass that is added at every node", card.line)
+            reader.deck.refuse(f"PARAM.{name}", "mass_at_every_node", card.line)
         else:
             reader.deck.leave(f"PARAM {name}", "it adds no mass to translations", card.line)
     elif known is None:
-        reader.deck.refuse(f"PARAM.{name}", "the parameter is unknown", card.line)
+        reader.deck.refuse(f"PARAM.{name}", "unknown_parameter", card.line)
     elif known.use == REFUSED:
         value = finite_number(card[1].lower())
         if card[1].upper() != "NO" and value not in ({0.0} if name in ("INREL", "HEATSTAT") else {1.0}):

@@ -10,7 +10,6 @@ from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.reader import Reader
 
 ALL, MOVES = frozenset("123456"), frozenset("123")
-PARTLY = "it couples some components only"
 
 
 def rbar(reader: Reader, card: Card) -> None:
@@ -18,7 +17,7 @@ def rbar(reader: Reader, card: Card) -> None:
     first, second = (reader.node(card, place) for place in (1, 2))
     if card.name == "RBAR1":
         if not MOVES <= set(card[3] or "123456"):
-            reader.deck.refuse(card.name, PARTLY, card.line)
+            reader.deck.refuse(card.name, "partial_coupling", card.line)
             return
     else:
         free = [frozenset(card[place]) for place in (3, 4)]
@@ -31,7 +30,7 @@ def rbar(reader: Reader, card: Card) -> None:
         hinge = free in ([ALL, frozenset()], [frozenset(), ALL]) and MOVES <= coupled[free.index(frozenset())] and \
             not coupled[free.index(ALL)]
         if not hinge and (len(free[0]) + len(free[1]) != 6 or coupled != [ALL - one for one in free]):
-            reader.deck.refuse(card.name, PARTLY, card.line)
+            reader.deck.refuse(card.name, "partial_coupling", card.line)
             return
     reader.deck.rigid.append(RigidBody(card.line, card.name, [first, second]))
 
@@ -42,16 +41,16 @@ def rbe2(reader: Reader, card: Card) -> None:
     texts = [text for text in card.fields[3:] if text]
     if texts and not texts[-1].isdecimal():  # its thermal expansion
         if reader.number(Card(card.line, card.name, [texts.pop()]), 0) != 0:
-            reader.deck.refuse("RBE2.ALPHA", "thermal expansion of a rigid body", card.line)
+            reader.deck.refuse("RBE2.ALPHA", "rigid_body_expansion", card.line)
     others = reader.several(card, texts)
     if not components <= ALL:
-        raise reader.fail(card, f"components {card[2]} are not of the digits 1 to 6")
+        raise reader.fail(card, "deck_bad_value", problem=f"components {card[2]} are not of the digits 1 to 6")
     if not components & MOVES:
         reader.deck.leave(card.name, "it couples rotations only", card.line)
     elif MOVES <= components:
         reader.deck.rigid.append(RigidBody(card.line, card.name, [first, *others]))
     elif any(reader.deck.nodes[other] != reader.deck.nodes[first] for other in others):
-        reader.deck.refuse(card.name, PARTLY, card.line)
+        reader.deck.refuse(card.name, "partial_coupling", card.line)
     else:
         for other in others:
             axes = reader.frames[reader.displacement_frame[other]].directions(reader.deck.nodes[other])
@@ -71,7 +70,7 @@ def rrod(reader: Reader, card: Card) -> None:
     way = np.subtract(reader.deck.nodes[second], reader.deck.nodes[first])
     length = float(np.linalg.norm(way))
     if not length:
-        raise reader.fail(card, f"nodes {first} and {second} are at one place")
+        raise reader.fail(card, "deck_bad_geometry", problem=f"nodes {first} and {second} are at one position")
     reader.deck.equations.append(
         Equation(card.line, card.name, [(second, way / length, 1.0), (first, way / length, -1.0)]))
 
@@ -88,8 +87,7 @@ def mpc(reader: Reader, card: Card) -> None:
         factor = reader.number(card, place + 2, 0.0)
         component = card[place + 1] or "0"
         if component not in MOVES:
-            what = "a scalar point" if component == "0" else "a rotation"
-            reader.deck.refuse(card.name, f"an equation of {what}", card.line)
+            reader.deck.refuse(card.name, "scalar_point" if component == "0" else "rotation", card.line)
             return
         node = reader.node(card, place)
         axes = reader.frames[reader.displacement_frame[node]].directions(reader.deck.nodes[node])

@@ -62,7 +62,7 @@ def split(deck: Deck) -> tuple[list[tuple[int, str]], list[Card]]:
     if begin is None:
         for number, line in lines:
             if line.strip().upper() == "CEND":
-                raise deck.fail(number, "a CEND without BEGIN BULK")
+                raise deck.fail(number, "deck_bad_syntax", problem="a CEND without BEGIN BULK")
     control = [] if begin is None else lines[:begin]
     return ([(number, text) for number, line in control if (text := line.split("$")[0].strip())],
             _cards(deck, lines[0 if begin is None else begin + 1:]))
@@ -81,7 +81,7 @@ def _cards(deck: Deck, lines: Iterable[tuple[int, str]]) -> list[Card]:
         if BEGIN_BULK.match(line):
             continue
         if line.upper().split()[0] == "BEGIN":
-            raise deck.fail(number, "superelements and further models are not read")
+            raise deck.fail(number, "deck_several_models")
         head, fields, mark = _fields(deck, number, line)
         if head.upper().startswith("ENDDATA"):
             break
@@ -101,12 +101,12 @@ def _cards(deck: Deck, lines: Iterable[tuple[int, str]]) -> list[Card]:
                 orphans.append((number, own, fields))
                 continue
             else:
-                raise deck.fail(number, "a continuation of nothing")
+                raise deck.fail(number, "deck_bad_syntax", problem="a continuation of nothing")
             _extend(deck, number, card, fields)
         else:
             name = head.rstrip("*").strip().upper()
             if not NAME.match(name):
-                raise deck.fail(number, f"{quoted(head)} is not the name of a card")
+                raise deck.fail(number, "deck_bad_syntax", problem=f"{quoted(head)} is not the name of a card")
             card = Card(number, name, fields)
             cards.append(card)
             deck.room(number, len(cards))
@@ -116,7 +116,7 @@ def _cards(deck: Deck, lines: Iterable[tuple[int, str]]) -> list[Card]:
     for number, own, fields in orphans:  # whose card stands below them
         marked = marks.take(own)
         if marked is None:
-            raise deck.fail(number, f"no card has the continuation mark {quoted(own)}")
+            raise deck.fail(number, "deck_bad_syntax", problem=f"no card has the continuation mark {quoted(own)}")
         _extend(deck, number, marked, fields)
     return cards
 
@@ -156,7 +156,7 @@ def _repeat(deck: Deck, number: int, head: str, fields: list[str], cards: list[C
         cards.append(last)
         return
     if not last.rule:
-        raise deck.fail(number, f"{quoted(head)} repeats nothing")
+        raise deck.fail(number, "deck_bad_syntax", problem=f"{quoted(head)} repeats nothing")
     for _ in range(int(count[1])):
         deck.room(number, len(cards))
         following = Card(number, last.name, _repeated(deck, number, last.rule, last))
@@ -173,7 +173,8 @@ def _repeated(deck: Deck, number: int, rule: list[str], last: Card) -> list[str]
         if text.startswith("*("):
             step, value = finite_number(text[2:].rstrip(")")), finite_number(made[place] or "0")
             if step is None or value is None:
-                raise deck.fail(number, f"{quoted(text)} cannot be added to {quoted(made[place])}")
+                raise deck.fail(number, "deck_bad_syntax",
+                                problem=f"{quoted(text)} cannot be added to {quoted(made[place])}")
             whole = (made[place] or "0").isdecimal() and step == int(step)
             made[place] = str(int(value + step)) if whole else repr(value + step)
         elif text != "=":
@@ -184,7 +185,7 @@ def _repeated(deck: Deck, number: int, rule: list[str], last: Card) -> list[str]
 def _extend(deck: Deck, number: int, card: Card, fields: list[str]) -> None:
     # A continuation begins at a multiple of eight: a half line of large fields is filled up by the next one.
     if len(card.fields) > MOST_FIELDS:
-        raise deck.fail(number, f"a card of more than {MOST_FIELDS} fields")
+        raise deck.fail(number, "deck_bad_syntax", problem=f"a card of more than {MOST_FIELDS} fields")
     if len(fields) == 8 and len(card.fields) % 8:
         card.fields += [""] * (8 - len(card.fields) % 8)
     card.fields += fields
@@ -200,7 +201,7 @@ def _fields(deck: Deck, number: int, line: str) -> tuple[str, list[str], str]:
         if beyond and beyond[0] and beyond[0][0] not in "+*" and (any(beyond[1:]) or _is_number(beyond[0])):
             return words[0], words[1:], ""  # continued without a line of its own: no mark is a number
         if any(beyond[1:]):
-            raise deck.fail(number, f"a line of more than {count + 2} free fields")
+            raise deck.fail(number, "deck_bad_syntax", problem=f"a line of more than {count + 2} free fields")
         mark = words[count + 1] if len(words) > count + 1 else ""
         return words[0], (words[1:count + 1] + [""] * count)[:count], mark.strip(" +*")
     head = line[:SMALL].strip()

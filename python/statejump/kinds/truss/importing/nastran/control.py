@@ -61,9 +61,9 @@ def read(deck: Deck, lines: list[tuple[int, str]]) -> Control:
         if words[:1] == ["SOL"] and len(words) > 1:
             control.solution = words[1].strip(",")
             if control.solution in HEAT:
-                deck.refuse(f"SOL {control.solution}", "heat transfer: its supports are temperatures", line, "SOL")
+                deck.refuse(f"SOL {control.solution}", "heat_transfer", line, "SOL")
         elif words[:2] == ["APP", "HEAT"]:  # of COSMIC
-            deck.refuse("APP HEAT", "heat transfer: its supports are temperatures", line, "APP")
+            deck.refuse("APP HEAT", "heat_transfer", line, "APP")
     common = _Subcase(0, 0, "")
     subcases: list[_Subcase] = []
     continued = False
@@ -73,7 +73,7 @@ def read(deck: Deck, lines: list[tuple[int, str]]) -> Control:
             continue
         found = COMMAND.match(text.upper())
         if found is None:
-            raise deck.fail(line, f"{quoted(text)} is not a command of the case control")
+            raise deck.fail(line, "deck_bad_syntax", problem=f"{quoted(text)} is not a command of the case control")
         name, option, value = found[1], (found[2] or "").strip(), found[3].strip()
         if name == "AUTOSPC":
             control.autospc = "NO" not in (value.split() or [option])
@@ -102,7 +102,7 @@ def _command(deck: Deck, line: int, of: _Subcase, name: str, option: str, value:
     if kind is not None:
         set_name = value.split(",")[0].strip()
         if not set_name.isdecimal():
-            raise deck.fail(line, f"{name} = {quoted(value)} is not the number of a set")
+            raise deck.fail(line, "deck_bad_value", problem=f"{name} = {quoted(value)} is not the number of a set")
         of.chosen[kind] = str(int(set_name))
     elif known is not None and known.use == REFUSED and (name != "ANALYSIS" or value.startswith("HEAT")):
         of.chosen[f"refused {name}"] = str(line)
@@ -112,10 +112,10 @@ def _choose(deck: Deck, control: Control, common: _Subcase, subcases: list[_Subc
     step = deck.options.step
     if step is not None and step not in [one.number for one in subcases] and not (step == 1 and not subcases):
         known = ", ".join(str(one.number) for one in subcases) or "1"
-        raise NotAllowed("--step", step, code="no_such_subcase", subcases=known)
+        raise NotAllowed("--step", step, code="undefined_subcase", subcases=known)
     taken = next((one for one in subcases if step in (None, one.number)), common)
     if taken.name and taken.name != "SUBCASE":
-        deck.refuse(taken.name, "it combines the results of other subcases", taken.line)
+        deck.refuse(taken.name, "subcase_combination", taken.line)
     control.chosen = {**common.chosen, **taken.chosen}
     for kind in [one for one in control.chosen if one.startswith("refused ")]:
         name = kind.split()[1]

@@ -16,7 +16,7 @@ def element(reader: Reader, card: Card, kind: str = "") -> str:
     """Return the name of an element. Masses may have the numbers of bars, as in decks that Nastran's makers ship."""
     name = reader.whole(card, 0)
     if kind + name in reader.elements:
-        raise reader.deck.fail(card.line, f"element {name} is there twice")
+        raise reader.deck.fail(card.line, "deck_duplicate", what_it_is="element", name=name)
     reader.elements.add(kind + name)
     reader.deck.room(card.line, len(reader.elements))
     return name
@@ -40,7 +40,7 @@ def bar(reader: Reader, card: Card) -> None:
         for place in (8, 9):
             if set(card[place]) & set("123"):
                 reader.deck.refuse(f"{card.name}.{'PA' if place == 8 else 'PB'}",
-                                   f"pin flags {quoted(card[place])} release forces", card.line)
+                                   "pin_flags", card.line, flags=quoted(card[place]))
     ends = (reader.node(card, 2), reader.node(card, 3))
     if beam and any(card.fields[10:16]):
         _check_offsets(reader, card, ends)
@@ -57,7 +57,7 @@ def _check_offsets(reader: Reader, card: Card, ends: tuple[str, str]) -> None:
         offsets.append(given @ frame.directions(reader.deck.nodes[end]))
     apart = np.linalg.norm(offsets[0] - offsets[1])
     if kinds[0] != kinds[1] and np.any(offsets) or apart > SAME * np.linalg.norm(offsets):
-        reader.deck.refuse(f"{card.name}.W1A-W3B", "offsets that differ from end to end need rotations", card.line)
+        reader.deck.refuse(f"{card.name}.W1A-W3B", "unequal_offsets", card.line)
     elif np.any(offsets):
         reader.deck.leave(card.name, "equal offsets of both ends: nodes of a truss do not rotate", card.line)
 
@@ -80,14 +80,13 @@ def celas(reader: Reader, card: Card) -> None:
     else:
         stiffness = reader.springs.get(reader.whole(card, 1, name), np.nan)
         if np.isnan(stiffness):
-            raise reader.fail(card, f"there is no PELAS {reader.whole(card, 1, name)}")
+            raise reader.fail(card, "deck_undefined", what_it_is="PELAS", name=reader.whole(card, 1, name))
     components = [card[place + 1] or "0" for place in (2, 4) if card[place] and card[place] != "0"]
     if components and set(components) <= set("456"):
         reader.deck.leave(card.name, "a spring of rotations: ends of bars turn freely", card.line)
         return
     if not set(components) <= set("123"):
-        what = "a scalar point" if "0" in components else "a rotation"
-        reader.deck.refuse(card.name, f"it joins {what}", card.line)
+        reader.deck.refuse(card.name, "scalar_point" if "0" in components else "rotation", card.line)
         return
     ends = []
     for place in (2, 4):
@@ -104,14 +103,14 @@ def cbush(reader: Reader, card: Card) -> None:
     number = reader.whole(card, 1, name)
     found = [one for one in reader.cards.get("PBUSH", []) if reader.whole(one, 0) == number]
     if not found:
-        raise reader.fail(card, f"there is no PBUSH {number}")
+        raise reader.fail(card, "deck_undefined", what_it_is="PBUSH", name=number)
     stiffness = _bush(reader, found[0])
     if any(stiffness[3:]):
         reader.deck.leave("PBUSH", "K4 to K6, stiffness of rotations: ends of bars turn freely", found[0].line)
     first = reader.node(card, 2)
     second = reader.node(card, 3) if card[3] and card[3] != "0" else None
     if second is None and not card[7] and any(card.fields[4:7]):
-        reader.deck.refuse(card.name, "a direction without CID of a spring to the ground", card.line)
+        reader.deck.refuse(card.name, "missing_coordinate_system", card.line)
         return
     if card[7]:
         axes = reader.frame(card, 7).directions(reader.deck.nodes[first])
@@ -124,7 +123,7 @@ def cbush(reader: Reader, card: Card) -> None:
         if not value:
             continue
         if not axes[place].any():
-            reader.deck.refuse(card.name, "it is stiff across the line between its nodes", card.line)
+            reader.deck.refuse(card.name, "lateral_stiffness", card.line)
             return
         ends = [(node, axes[place]) for node in (first, second) if node is not None]
         add_spring(reader.deck, card.line, card.name, name if place == 0 else f"{name}_{place + 1}", value, ends)
@@ -137,7 +136,7 @@ def _bush(reader: Reader, card: Card) -> list[float]:
         if row[1].upper() == "K":
             found = [reader.number(Card(card.line, card.name, row), place, 0.0) for place in range(2, 8)]
         elif row[1].upper() == "M" and any(row[2:]):
-            reader.deck.refuse("PBUSH.M", "mass of a spring", card.line)
+            reader.deck.refuse("PBUSH.M", "spring_mass", card.line)
     return found
 
 
@@ -155,7 +154,7 @@ def conm1(reader: Reader, card: Card) -> None:
     node = reader.node(card, 1)
     first, second, third = (reader.number(card, place, 0.0) for place in (3, 5, 8))
     if not first == second == third:
-        reader.deck.refuse(card.name, "the mass differs from one direction to another", card.line)
+        reader.deck.refuse(card.name, "anisotropic_mass", card.line)
         return
     weigh(reader, card, node, first)
 
@@ -163,7 +162,7 @@ def conm1(reader: Reader, card: Card) -> None:
 def weigh(reader: Reader, card: Card, node: str, mass: float) -> None:
     """Add a mass to a node."""
     if mass < 0:
-        raise reader.fail(card, "a negative mass")
+        raise reader.fail(card, "deck_bad_value", problem="a negative mass")
     if mass:
         reader.deck.weigh(node, mass, card.line, card.name)
         reader.deck.take(card.name, "mass of a node")
@@ -177,7 +176,8 @@ def _section(reader: Reader, line: int, of: Bar, name: str) -> Property:
     if of.kind in found:
         return found[of.kind]
     if len(found) != 1:
-        raise reader.deck.fail(line, f"{of.kind} {of.name}: there is no property {quoted(name)} that is read")
+        raise reader.deck.fail(line, "deck_undefined", f"{of.kind} {of.name}", what_it_is="supported property",
+                               name=quoted(name))
     return next(iter(found.values()))
 
 
@@ -194,7 +194,7 @@ def finish_bars(reader: Reader) -> None:
     ready += [(line, made, material, made.area or 0.0) for line, made, material in reader.conrods.values()]
     for line, made, name, mass_area in sorted(ready, key=lambda item: item[0]):
         if name not in reader.materials:
-            raise deck.fail(line, f"{made.kind} {made.name}: there is no MAT1 {name}")
+            raise deck.fail(line, "deck_undefined", f"{made.kind} {made.name}", what_it_is="MAT1", name=name)
         of = reader.materials[name]
         made.young_modulus, made.poisson_ratio, made.expansion = of.young_modulus, of.poisson_ratio, of.expansion
         made.reference_temperature = of.reference

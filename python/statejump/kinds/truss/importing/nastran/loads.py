@@ -27,7 +27,7 @@ def select(reader: Reader, control: Control) -> None:
         if control.solves(FREE_SOLUTIONS):
             reader.deck.leave("LOAD", f"set {chosen} is not in the deck, and this solution has no static loads", 0)
         else:
-            reader.deck.refuse("LOAD", f"set {chosen} is not in the deck", 0, "LOAD.SET")
+            reader.deck.refuse("LOAD", "missing_set", 0, "LOAD.SET", set_name=chosen)
 
 
 def _is_load(name: str) -> bool:
@@ -53,8 +53,7 @@ def _only(reader: Reader, kind: str) -> str | None:
                 first.setdefault(reader.name(card.line, text), card)
     if len(first) > 1:
         (one, _), (two, card) = list(first.items())[:2]
-        raise reader.deck.fail(card.line, f"{card.name} of set {two} beside set {one}",
-                               f"a case control with {kind.upper()} = must say which one counts")
+        raise reader.fail(card, "deck_ambiguous_set", first=one, second=two, command=kind.upper())
     return next(iter(first), None)
 
 
@@ -108,7 +107,7 @@ def _vector(reader: Reader, card: Card) -> tuple[str, np.ndarray]:
             way = np.cross(way, corners[3] - corners[2])
         length = np.linalg.norm(way)
         if length == 0:
-            raise reader.fail(card, "its nodes give no direction")
+            raise reader.fail(card, "deck_bad_geometry", problem="its nodes give no direction")
         vector = way / length * reader.number(card, 2)
     return node, vector * factor
 
@@ -117,7 +116,7 @@ def gravity(reader: Reader, card: Card) -> None:
     """GRAV: an acceleration of all masses."""
     frame = reader.frame(card, 1)
     if frame.kind != "R":
-        reader.deck.refuse(card.name, "its direction is that of a curved system", card.line)
+        reader.deck.refuse(card.name, "curvilinear_direction", card.line)
         return
     given = np.array([reader.number(card, place, 0.0) for place in (3, 4, 5)])
     vector = given @ frame.axes * reader.number(card, 2) * (reader.factor(card, "load") or 0.0)
@@ -130,7 +129,7 @@ def pload1(reader: Reader, card: Card) -> None:
     """A load along a bar as forces on its ends; a load across would bend it."""
     factor, name = reader.factor(card, "load") or 0.0, reader.whole(card, 1)
     if name not in reader.bars:
-        raise reader.fail(card, f"there is no bar {name}")
+        raise reader.fail(card, "deck_undefined", what_it_is="bar", name=name)
     ends = reader.bars[name][1].nodes
     first, second = (np.array(reader.deck.nodes[end]) for end in ends)
     length = float(np.linalg.norm(second - first))
@@ -139,10 +138,10 @@ def pload1(reader: Reader, card: Card) -> None:
     directions = {"FX": np.eye(3)[0], "FY": np.eye(3)[1], "FZ": np.eye(3)[2], "FXE": axis}
     along = directions.get(kind)
     if along is None or np.linalg.norm(np.cross(along, axis)) > ALONG:
-        reader.deck.refuse(card.name, "it acts across the bar, which would bend", card.line)
+        reader.deck.refuse(card.name, "lateral_load", card.line)
         return
     if scale not in ("LE", "FR"):
-        reader.deck.refuse(card.name, f"scale {quoted(card[3])[1:-1]}", card.line)
+        reader.deck.refuse(card.name, "load_scale", card.line, scale=quoted(card[3])[1:-1])
         return
     start, low = reader.number(card, 4), reader.number(card, 5)
     end = reader.number(card, 6) if card[6] else start
@@ -180,7 +179,7 @@ def temperatures(reader: Reader) -> None:
             for name in reader.deck.nodes:
                 found.setdefault(name, default)
         if reader.sets[kind] and not found:
-            reader.deck.refuse("TEMPERATURE", f"set {next(iter(reader.sets[kind]))} is not in the deck", 0)
+            reader.deck.refuse("TEMPERATURE", "missing_set", 0, set_name=next(iter(reader.sets[kind])))
     _left(reader)
 
 

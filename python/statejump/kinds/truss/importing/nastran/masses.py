@@ -16,14 +16,14 @@ def cmass(reader: Reader, card: Card) -> None:
     elif (number := reader.whole(card, 1, name)) in reader.masses:
         mass = reader.masses[number]
     else:
-        raise reader.fail(card, f"there is no PMASS {number}")
+        raise reader.fail(card, "deck_undefined", what_it_is="PMASS", name=number)
     ends = [place for place in (2, 4) if card[place] and card[place] != "0"]
     if len(ends) == 2:
-        reader.deck.refuse(card.name, "a mass between two components", card.line)
+        reader.deck.refuse(card.name, "mass_between_components", card.line)
     elif ends and card[ends[0] + 1] in ("4", "5", "6"):
         reader.deck.leave(card.name, "inertia of a rotation: nodes of a truss do not rotate", card.line)
     elif ends and card[ends[0] + 1] not in ("1", "2", "3"):
-        reader.deck.refuse(card.name, "mass of a scalar point", card.line)
+        reader.deck.refuse(card.name, "scalar_point", card.line)
     elif ends:
         node = reader.node(card, ends[0])
         masses = reader.component_masses.setdefault(node, [0.0] * 3)
@@ -40,7 +40,7 @@ def take_components(reader: Reader) -> None:
         axes = reader.frames[reader.displacement_frame[node]].directions(reader.deck.nodes[node])
         free = {mass for mass, axis in zip(masses, axes) if not is_held(reader.deck, node, axis)}
         if len(free) > 1:
-            reader.deck.refuse(card.name, "the mass differs from one direction to another", card.line)
+            reader.deck.refuse(card.name, "anisotropic_mass", card.line)
         elif free:
             weigh(reader, card, node, free.pop())
         else:

@@ -18,7 +18,7 @@ def read_nodes(reader: Reader) -> None:
     for card in reader.cards.get("GRID", []):
         name = reader.whole(card, 0)
         if name in grids and grids[name].fields != card.fields:
-            raise reader.deck.fail(card.line, f"node {quoted(name)} is there twice")
+            raise reader.deck.fail(card.line, "deck_duplicate", what_it_is="node", name=quoted(name))
         grids[name] = card
     _Places(reader, grids, defaults).place_all()
     for name, card in grids.items():
@@ -47,7 +47,7 @@ class _Places:
     def _add(self, card: Card, place: int) -> None:
         name = self.reader.whole(card, place)
         if name == "0" or name in self.systems and self.systems[name][0].fields != card.fields:
-            raise self.reader.fail(card, f"coordinate system {name} is there twice")
+            raise self.reader.fail(card, "deck_duplicate", what_it_is="coordinate system", name=name)
         self.systems[name] = (card, place)
         self.reader.deck.take(card.name, "coordinate system")
 
@@ -64,7 +64,7 @@ class _Places:
                         on_way.discard(waiting.pop())
                     elif needed[0] in on_way:
                         card = self.grids[name] if kind == "node" else self.systems[name][0]
-                        raise self.reader.fail(card, "coordinate systems depend on each other in a circle")
+                        raise self.reader.fail(card, "deck_circular_reference")
                     else:
                         waiting.append(needed[0])
                         on_way.add(needed[0])
@@ -85,7 +85,7 @@ class _Places:
             if not placed:
                 if not (other in self.systems if of == "system" else other in self.grids):
                     what = "coordinate system" if of == "system" else "GRID"
-                    raise reader.fail(card, f"there is no {what} {other}")
+                    raise reader.fail(card, "deck_undefined", what_it_is=what, name=other)
                 missing.append((of, other))
         return missing
 
@@ -107,7 +107,8 @@ class _Places:
             points = [np.array(reader.deck.nodes[reader.whole(card, place + further)]) for further in (1, 2, 3)]
         frame_found = by_points(card.name[-1], *points)
         if frame_found is None:
-            raise reader.fail(card, f"the points of coordinate system {name} span no plane")
+            raise reader.fail(card, "deck_bad_geometry",
+                              problem=f"the points of coordinate system {name} span no plane")
         reader.frames[name] = frame_found
 
 
@@ -115,14 +116,16 @@ def fix(reader: Reader, card: Card, components: str, nodes: list[str]) -> None:
     """Hold nodes in components of their displacement systems; blanks may stand between the components."""
     components = "".join(components.split())
     if not set(components) <= set("0123456"):
-        raise reader.fail(card, f"components {quoted(components)} are not of the digits 1 to 6")
+        raise reader.fail(card, "deck_bad_value",
+                          problem=f"components {quoted(components)} are not of the digits 1 to 6")
     moves = [int(one) - 1 for one in dict.fromkeys(components) if one in "123"]
     if set(components) & set("456"):
         reader.deck.leave(card.name, "components 4 to 6: ends of bars turn freely", card.line)
     for node in nodes if moves else ():
         frame = reader.frames.get(reader.displacement_frame[node])
         if frame is None:
-            raise reader.fail(card, f"there is no coordinate system {reader.displacement_frame[node]}")
+            raise reader.fail(card, "deck_undefined", what_it_is="coordinate system",
+                              name=reader.displacement_frame[node])
         directions = frame.directions(reader.deck.nodes[node])
         for one in moves:
             reader.deck.hold(node, directions[one])
@@ -141,6 +144,6 @@ def spc(reader: Reader, card: Card) -> None:
         if not card[place]:
             continue
         if card[place + 2] and reader.number(card, place + 2) != 0:
-            reader.deck.refuse(card.name, "a given displacement that is not 0", card.line)
+            reader.deck.refuse(card.name, "prescribed_displacement", card.line)
             continue
         fix(reader, card, card[place + 1], [reader.node(card, place)])

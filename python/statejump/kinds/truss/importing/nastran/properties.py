@@ -43,7 +43,7 @@ def ptube(reader: Reader, card: Card) -> None:
     second = reader.number(card, 5, 0.0) or outer
     areas = [pi * ((wall or size / 2) * (size - (wall or size / 2))) for size in (outer, second)]
     if min(areas) <= 0:
-        raise reader.fail(card, "outer diameter and wall make no section")
+        raise reader.fail(card, "deck_bad_value", problem="outer diameter and wall make no section")
     area, mean = profiles.taper([(0.0, areas[0]), (1.0, areas[1])])
     _add(reader, card, Property(reader.whole(card, 1), area, mass_area=mean, more=reader.number(card, 4, 0.0)))
 
@@ -55,7 +55,7 @@ def pbarl(reader: Reader, card: Card) -> None:
     given = [reader.number(card, 8 + at) for at in range(count) if card[8 + at]]
     more = reader.number(card, 8 + count, 0.0) if count else 0.0
     if count and any(card.fields[9 + count:]):
-        raise reader.fail(card, f"a section {shape} has {count} dimensions")
+        raise reader.fail(card, "deck_bad_value", problem=f"a section {shape} has {count} dimensions")
     area = profiles.nastran(shape, given) if len(given) == count else None
     _add(reader, card, Property(reader.whole(card, 1), area, sizes, more=more))
 
@@ -88,7 +88,7 @@ def pbeaml(reader: Reader, card: Card) -> None:
         if len(rest) < 3:
             break
         if rest[1].upper() not in (*STATIONS, ""):
-            raise reader.fail(card, f"{quoted(rest[1])} is not YES or NO")
+            raise reader.fail(card, "deck_bad_value", problem=f"{quoted(rest[1])} is not YES or NO")
         at, rest = _number(reader, card, rest[2]) if rest[2] else 1.0, rest[3:]
         if not rest:
             stations.append((at, stations[0][1], stations[0][2]))
@@ -112,7 +112,7 @@ def pbeam(reader: Reader, card: Card) -> None:
         place += 2 if row[0].upper() == "YES" and place + 1 < len(rows) \
             and rows[place + 1][0].upper() not in STATIONS else 1
     if any(any(row) for row in rows[place + 2:]):
-        raise reader.fail(card, "it has more lines than stations, shear and warping need")
+        raise reader.fail(card, "deck_bad_value", problem="it has more lines than stations, shear and warping need")
     _add(reader, card, _tapered(reader, card, stations, "it has no area"))
 
 
@@ -122,7 +122,7 @@ def _tapered(reader: Reader, card: Card, stations: list[tuple[float, float | Non
     if len(known) < len(stations) or not known or any(area <= 0 for _, area, _ in known):
         return Property(material, None, why)
     if any(not 0 <= at <= 1 for at, _, _ in known) or known[0][0] != 0:
-        raise reader.fail(card, "stations are not between 0 and 1")
+        raise reader.fail(card, "deck_bad_value", problem="stations are not between 0 and 1")
     if known[-1][0] < 1:  # as end A
         known.append((1.0, known[0][1], known[0][2]))
     more = sum((end[0] - start[0]) * (start[2] + end[2]) / 2 for start, end in zip(known, known[1:]))
@@ -134,7 +134,7 @@ def _add(reader: Reader, card: Card, made: Property) -> None:
     name, elements = reader.whole(card, 0), ELEMENTS[card.name]
     of_number = reader.properties.setdefault(name, {})
     if of_number.setdefault(elements, made) != made:
-        raise reader.fail(card, f"property {name} is there twice")
+        raise reader.fail(card, "deck_duplicate", what_it_is="property", name=name)
     reader.deck.take(card.name, "cross-section area of links")
 
 

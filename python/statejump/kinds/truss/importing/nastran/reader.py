@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from dataclasses import dataclass, field
+from typing import Any
 
 from statejump.core.reading import finite_number
 from statejump.kinds.truss.importing.coordinates import Frame
@@ -67,10 +68,10 @@ class Reader:
         if not text and default is not None:
             return default
         if not text:
-            raise self.deck.fail(card.line, f"{card.name}: field {place + 2} is empty")
+            raise self.fail(card, "deck_incomplete", needed=f"field {place + 2}")
         value = finite_number(BARE_EXPONENT.sub(r"\1e\2", text.lower().replace("d", "e")))
         if value is None:
-            raise self.deck.fail(card.line, f"{quoted(text)} is not a finite number")
+            raise self.deck.fail(card.line, "deck_bad_number", text=quoted(text), wanted="a finite number")
         return value
 
     def optional(self, card: Card, place: int) -> float | None:
@@ -87,14 +88,14 @@ class Reader:
     def name(self, line: int, text: str) -> str:
         """Return a whole number as a name."""
         if not text.isdecimal() or not text.isascii() or len(text) > 12:
-            raise self.deck.fail(line, f"{quoted(text)} is not a whole number above 0")
+            raise self.deck.fail(line, "deck_bad_number", text=quoted(text), wanted="a whole number above 0")
         return str(int(text))
 
     def node(self, card: Card, place: int) -> str:
         """Return a node that is there."""
         name = self.whole(card, place)
         if name not in self.deck.nodes:
-            raise self.deck.fail(card.line, f"there is no GRID {name}")
+            raise self.deck.fail(card.line, "deck_undefined", what_it_is="GRID", name=name)
         return name
 
     def several(self, card: Card, items: list[str]) -> list[str]:
@@ -110,7 +111,7 @@ class Reader:
             else:
                 name = self.name(card.line, items[place])
                 if name not in self.deck.nodes:
-                    raise self.fail(card, f"there is no GRID {name}")
+                    raise self.fail(card, "deck_undefined", what_it_is="GRID", name=name)
                 nodes.append(name)
                 place += 1
         return nodes
@@ -123,9 +124,9 @@ class Reader:
         """Return a coordinate system that is there."""
         name = self.whole(card, place, "0")
         if name not in self.frames:
-            raise self.deck.fail(card.line, f"{card.name}: there is no coordinate system {name}")
+            raise self.fail(card, "deck_undefined", what_it_is="coordinate system", name=name)
         return self.frames[name]
 
-    def fail(self, card: Card, what: str) -> Exception:
+    def fail(self, card: Card, code: str, **details: Any) -> Exception:
         """Return why a card cannot be read."""
-        return self.deck.fail(card.line, f"{card.name}: {what}")
+        return self.deck.fail(card.line, code, card.name, **details)
