@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, TypeVar, cast
 
 import numpy as np
 
@@ -160,6 +160,12 @@ class ElementType(Generic[ItemType, ArraysType]):
         return None
 
 
+class Ended(Protocol):
+    """Items of elements between two nodes."""
+
+    nodes: list[str]
+
+
 class EndsArrays:
     """Arrays of elements between two nodes."""
 
@@ -175,7 +181,7 @@ class BetweenNodes(ElementType[ItemType, EndsType]):
     """A type of element between two nodes: its items have ``nodes``, its arrays those of :class:`EndsArrays`."""
 
     def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
-        known_nodes(getattr(item, "nodes"), 2, nodes, self.where(item.name))
+        known_nodes(cast(Ended, item).nodes, 2, nodes, self.where(item.name))
 
     def may_be_wrong_references(self, items: ItemColumns[ItemType], around: Around) -> np.ndarray:
         return wrong_ends(around.nodes.of(items, "nodes"), 2)
