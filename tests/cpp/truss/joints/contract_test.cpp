@@ -29,7 +29,7 @@ class JointContract : public ::testing::Test {
     sample.model.validate();
     // Different displacements of about 1e-6 m, then contact.
     z = VectorXd::LinSpaced(system.unknowns(), 1e-6, 4e-6);
-    z.segment<3>(system.first_displacement(3)) += sample.touching;
+    z.segment<3>(system.dofs().at(3).row) += sample.touching;
     z.tail(system.force_count(0)).setConstant(3.0);
     start = system.begin(z, 0.1, system.all_stick(), 1.0);
   }
