@@ -79,6 +79,8 @@ constexpr int most_located = 32;
 /// The same of all joints while elements are slack: what hangs on dashpots touches and slides again
 /// and again, and carries nothing.
 constexpr int most_located_with_slack = 8;
+/// Steps since the last change after which none is located any more while elements are slack.
+constexpr int most_steps_with_slack = 256;
 /// Steps after one that did not converge before a longer one is tried.
 constexpr int most_held = 4;
 /// Steps of an eighth of one that passes a change come nearer to it by an eighth or more.
@@ -257,7 +259,7 @@ Path solve(const Model& model, const Options& options) {
             walker.follow_snap(times[b + 1], std::max(tolerance, shortest));
           }
           // Elements that hang on soft dashpots swing: stiffer ones carry them over longer steps.
-          const bool swings = end == StepEnd::not_converged && walker.is_slack;
+          const bool swings = end == StepEnd::not_converged && walker.has_slack();
           if (swings && (walker.flickers || ++swinging >= most_unconfirmed) && walker.damp()) {
             swinging = 0;
             stride = std::max(stride, 0.5 * tried);
@@ -267,6 +269,7 @@ Path solve(const Model& model, const Options& options) {
           ahead = walker.event_share * tried;
           foresaw = foresaw || (locating && !walker.slip_is_unstable);
         }
+        if (steps > most_steps_with_slack && walker.has_slack()) walker.flickers = true;
         if (++steps > options.most_steps) {
           FailureFields fields = failure_at(FailureKind::too_many_steps, model, walker.time);
           fields.numbers = {{"steps", options.most_steps}, {"last_step_s", goal - from}};
