@@ -107,8 +107,6 @@ const char* to_string(FailureKind kind) {
       return "no_continuation";
     case FailureKind::several_continuations:
       return "several_continuations";
-    case FailureKind::unsettled_joint:
-      return "unsettled_joint";
     case FailureKind::too_many_steps:
       return "too_many_steps";
     case FailureKind::law_left_range:
@@ -156,9 +154,6 @@ std::string cause(const FailureFields& fields) {
              ", the more the truss pushes";
     case FailureKind::several_continuations:
       return "statics does not choose between the ways in which " + joints(fields) + " may go on";
-    case FailureKind::unsettled_joint:
-      return "its status changed from " + fields.before + " to " + fields.after +
-             " again and again";
     case FailureKind::too_many_steps:
       return number_named(fields, "steps") +
              (fields.sought.empty() ? " steps since the last change of a joint, the last of "
@@ -215,8 +210,6 @@ std::string sentence(const FailureFields& fields) {
              ": " + why + "; " + remedy(fields);
     case FailureKind::several_continuations:
       return "the path parts" + where + ": " + why;
-    case FailureKind::unsettled_joint:
-      return joint(fields) + " does not settle" + where + ": " + why;
     case FailureKind::too_many_steps:
       return (fields.sought.empty() ? "no equilibrium by longer steps" : fields.sought) + where +
              ": " + why;

@@ -519,8 +519,9 @@ def test_soft_bar_does_not_hold_up_a_path() -> None:
 
 
 def test_no_step_is_divided_without_end() -> None:
-    """Newton's method finds states only so near to each other that a branch would take millions of steps."""
-    told = itertools.count()
-    with failing("too_many_steps", raised=FailedRun):
-        path(spoiled("ball_tripod", "ball_joint", 0, "friction_coefficient", 1e-320),
-             progress=lambda share: next(told) < 100_000)
+    """Newton's method finds states only so near to each other that a branch would take millions of steps on one set of
+    statuses: steps that take changes together pass."""
+    counted = itertools.count()
+    found = path(spoiled("ball_tripod", "ball_joint", 0, "friction_coefficient", 1e-320),
+                 progress=lambda share: next(counted) < 100_000)
+    assert found.complete

@@ -25,7 +25,6 @@ enum class FailureKind : unsigned char {
   not_converged,          ///< No equilibrium found: the iteration does not converge.
   no_continuation,        ///< Truss: no quasi-static continuation; unstable slip or snap-through.
   several_continuations,  ///< Truss: statics allows several continuations.
-  unsettled_joint,        ///< Truss: the status of a joint cycles.
   too_many_steps,         ///< Truss: the path needs too many steps.
   law_left_range,         ///< Dynamics: a contact law is evaluated outside its range.
   not_finite              ///< Dynamics: the time steps are too long.
@@ -63,8 +62,6 @@ struct FailureFields {
   std::string sought = {};
   /// Message of the law or part of the program that detected the failure.
   std::string cause = {};
-  std::string before = {};  ///< Previous status of an unsettled joint.
-  std::string after = {};   ///< New status of an unsettled joint.
   /// Further numbers: name with unit, value.
   std::vector<std::pair<std::string, double>> numbers = {};
 };

@@ -369,6 +369,8 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     const double rounding = system_->force_rounding(z);
     const Residuals left = residuals(at_);
     traced.iteration(left.balance, left.closure, left.force);
+    // Farther than the truss is large no equation of its start says where to go.
+    if (pivoted && system_->size() > 0.0 && length(z - begun_at) > system_->size()) return report;
     // Steps on other pieces of the branches say nothing of those on these.
     if (std::exchange(pieces, at_.pieces) != at_.pieces) {
       lengths.clear();
@@ -490,6 +492,10 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     const std::size_t taken = lengths.size();
     if (taken >= tuned.swing_steps && next_length > 0.5 * lengths[taken - tuned.swing_steps])
       next *= 0.5;
+    // Where a shorter step is the answer, one that shrinks no more is given up.
+    if (ahead && pivoted && taken >= 2 * tuned.swing_steps &&
+        next_length > 0.5 * lengths[taken - 2 * tuned.swing_steps])
+      return report;
     step = next;
     z += next;
     settled = false;

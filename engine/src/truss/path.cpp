@@ -76,6 +76,13 @@ constexpr int most_foreseen = 4;
 /// Changes of one joint in an increment that the solver locates. After more the energy balance
 /// alone limits the steps.
 constexpr int most_located = 32;
+/// The same of all joints while elements are slack: what hangs on dashpots touches and slides again
+/// and again, and carries nothing.
+constexpr int most_located_with_slack = 8;
+/// Steps since the last change after which none is located any more while elements are slack.
+constexpr int most_steps_with_slack = 256;
+/// Steps after one that did not converge before a longer one is tried.
+constexpr int most_held = 4;
 /// Steps of an eighth of one that passes a change come nearer to it by an eighth or more.
 constexpr double nearer = 0.95;
 
@@ -152,9 +159,6 @@ Path solve(const Model& model, const Options& options) {
   if (!options.cycle_ends_only) walker.path.states.push_back(walker.state);
   walker.path.cycle_ends.push_back(walker.state);
 
-  // In an increment a joint changes its status a few times, in a long chain as often as another one
-  // starts to slide; many more are no path but a flicker.
-  const int most_changes = 200 + 2 * static_cast<int>(joints);
   std::vector<int> changes(model.joints.size());
   const std::vector<double> times = corners(model);
   int cycle = 1;
@@ -191,7 +195,10 @@ Path solve(const Model& model, const Options& options) {
       int unconfirmed = 0;
       int swinging = 0;  // steps that did not converge while elements were slack
       walker.locates = true;
-      bool flickers = false;
+      walker.flickers = false;
+      int located = 0;  // changes while elements are slack
+      int held = 0;     // steps before a longer one is tried
+      walker.softest_level = 0.0;
       int unstable = 0;  // steps since the last change whose slip would be unstable
       while (walker.time < target && walker.path.complete) {
         tracer.begin_step(static_cast<int>(b) + 1, k);
@@ -202,7 +209,8 @@ Path solve(const Model& model, const Options& options) {
         const StepEnd end =
             walker.step_with_slack(goal, times[b + 1], std::max(tolerance, shortest));
         if (end == StepEnd::done) {
-          convergent = std::max(2.0 * convergent, tolerance);
+          if (held == 0) convergent = std::max(2.0 * convergent, tolerance);
+          held = std::max(0, held - 1);
           foreseen_from_here = 0;
           short_by_before = 1.0;
           // While a change is being located, the next one may be near, and to pass it costs a pivot
@@ -214,22 +222,20 @@ Path solve(const Model& model, const Options& options) {
           if (foresaw) unconfirmed = ahead >= nearer * least_ahead ? unconfirmed + 1 : 0;
           if (foresaw) least_ahead = std::min(least_ahead, ahead);
           foresaw = false;
-          if (!unchanged) {
+          // Those of a joint that flickers end no count of steps.
+          if (!unchanged && !walker.flickers) {
             steps = unconfirmed = unstable = swinging = 0;
             least_ahead = length;
           }
           for (; counted < walker.path.events.size(); ++counted) {
             const Event& event = walker.path.events[counted];
             if (walker.idle_changes.count(event.joint) > 0) continue;
-            flickers = flickers || changes[index(event.joint)] >= most_located;
-            if (++changes[index(event.joint)] <= most_changes) continue;
-            FailureFields fields = failure_at(FailureKind::unsettled_joint, model, walker.time);
-            fields.before = to_string(event.before);
-            fields.after = to_string(event.after);
-            fail_joint(std::move(fields), named(model, event.joint));
+            const bool is_often = ++changes[index(event.joint)] > most_located;
+            const bool are_many = walker.has_slack() && ++located > most_located_with_slack;
+            walker.flickers = walker.flickers || is_often || are_many;
           }
           // A change that recedes before the steps is passed, and those of a joint that flickers.
-          walker.locates = !flickers && unconfirmed < most_unconfirmed;
+          walker.locates = !walker.flickers && unconfirmed < most_unconfirmed;
         } else if (end == StepEnd::stopped) {
           walker.path.complete = false;
         } else if (end == StepEnd::imprecise) {
@@ -247,21 +253,23 @@ Path solve(const Model& model, const Options& options) {
           stride = std::max(
               foreseen && !moves ? walker.event_share * tried - 0.5 * tolerance : 0.125 * tried,
               tolerance);
-          if (end == StepEnd::not_converged) convergent = stride;
+          if (end == StepEnd::not_converged) held = most_held;
           if (walker.slip_is_unstable && ++unstable >= most_unconfirmed) {
             unstable = 0;
             walker.follow_snap(times[b + 1], std::max(tolerance, shortest));
           }
           // Elements that hang on soft dashpots swing: stiffer ones carry them over longer steps.
-          const bool swings = end == StepEnd::not_converged && walker.is_slack;
-          if (swings && ++swinging >= most_unconfirmed &&
-              walker.stiffen_slack(walker.origin.statuses)) {
+          const bool swings = end == StepEnd::not_converged && walker.has_slack();
+          if (swings && (walker.flickers || ++swinging >= most_unconfirmed) && walker.damp()) {
             swinging = 0;
+            stride = std::max(stride, 0.5 * tried);
           }
+          if (end == StepEnd::not_converged) convergent = stride;
           locating = end == StepEnd::event_inside;
           ahead = walker.event_share * tried;
           foresaw = foresaw || (locating && !walker.slip_is_unstable);
         }
+        if (steps > most_steps_with_slack && walker.has_slack()) walker.flickers = true;
         if (++steps > options.most_steps) {
           FailureFields fields = failure_at(FailureKind::too_many_steps, model, walker.time);
           fields.numbers = {{"steps", options.most_steps}, {"last_step_s", goal - from}};

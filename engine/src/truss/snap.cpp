@@ -23,30 +23,42 @@ constexpr double first_level = 4.0;
 constexpr double stiffest = 6.0;
 /// A snap is at rest where a step moves by this share of it.
 constexpr double at_rest = 1e-6;
+/// Steps that were not there, after which the softest dashpots that had one count as the softest.
+constexpr int most_refused = 3;
 /// Steps with the softest dashpots, each shorter than the last, after which a motion counts as
 /// slow.
 constexpr int most_slower = 16;
 /// Joints that a note of a snap names.
 constexpr std::size_t most_named = 3;
 
+/// Diameter of a joint's play [m]; 0: it has none.
+double play_of(const Joint& joint) {
+  return std::visit(
+      [](const auto& one) {
+        if constexpr (requires { one.radial_clearance; }) return 2.0 * one.radial_clearance;
+        return 0.0;
+      },
+      joint);
+}
+
 /// How far a structure moves within its plays [m]: the diameters of all, one behind the other, on
 /// the longest lever that an element makes of the structure's size.
 double all_plays(const Model& model, double size) {
   double sum = 0.0;
-  for (const Joint& joint : model.joints) {
-    sum += std::visit(
-        [](const auto& one) {
-          if constexpr (requires { one.radial_clearance; }) return 2.0 * one.radial_clearance;
-          return 0.0;
-        },
-        joint);
-  }
+  for (const Joint& joint : model.joints) sum += play_of(joint);
   double shortest = size;
   for (const Bar& link : model.links) {
     const double length = drawn_length(model, link.first, link.second);
     if (length > 0.0) shortest = std::min(shortest, length);
   }
   return shortest > 0.0 ? sum * size / shortest : sum;
+}
+
+/// The largest diameter of a play [m].
+double largest_play(const Model& model) {
+  double largest = 0.0;
+  for (const Joint& joint : model.joints) largest = std::max(largest, play_of(joint));
+  return largest;
 }
 
 /// What rounding of the forces moves by against dashpots that hardly hold [m].
@@ -68,6 +80,8 @@ double moved_by_rounding(const System& system, const VectorXd& z) {
 bool Walker::come_to_rest(const std::function<std::optional<double>(double level)>& step,
                           double drift) {
   double level = first_level;
+  double without = 0.0;  // highest level that had no step
+  int refused = 0;
   double whole = 0.0, last = 0.0;
   int slower = 0;
   for (int k = 0; k < most_snap_steps; ++k) {
@@ -75,13 +89,18 @@ bool Walker::come_to_rest(const std::function<std::optional<double>(double level
     if (!path.complete) return true;
     if (!moved) {
       if (level >= stiffest) return false;
+      without = std::max(without, level);
+      ++refused;
       level = std::min(stiffest, level + stiffer);
       continue;
     }
     whole += *moved;
-    if (level == 0.0 && *moved <= at_rest * whole + moved_by_rounding(system, z) + drift) {
-      return true;
-    }
+    const double ordinary = moved_by_rounding(system, z) + drift;
+    const double carried = system.slack_stiffness(level) * (*moved - drift);
+    const bool is_carried = carried > system.slack_stiffness(0.0) * largest_play(model);
+    const bool is_softest = refused >= most_refused && level <= without + stiffer;
+    if (is_softest && !is_carried) return true;
+    if (level == 0.0 && *moved <= at_rest * whole + ordinary) return true;
     // Elements that are slack swing on against dashpots that hardly hold, ever slower.
     slower = level == 0.0 && *moved <= last ? slower + 1 : 0;
     if (slower >= most_slower) return true;
@@ -108,6 +127,8 @@ bool Walker::follow_snap(double until, double tolerance) {
   const double stride = std::min(tolerance, (until - time) / (most_snap_steps + 1));
   const int moving = before.rate.size() == 0 ? 0 : system.displacements();
   const double drift = 2.0 * length_of(before.rate, moving) * stride;
+  is_snap = true;
+  const bool damped_before = origin.damps_contact;
   const bool rests = come_to_rest(
       [&](double level) -> std::optional<double> {
         const VectorXd from = z;
@@ -126,8 +147,11 @@ bool Walker::follow_snap(double until, double tolerance) {
         return std::nullopt;
       },
       drift);
+  // Where softer dashpots had no step, those that had go on.
+  const double level_after = slack_level;
   slack_level = level_before;
-  origin.damps_contact = false;
+  origin.damps_contact = damped_before;
+  is_snap = false;
   if (!path.complete) return true;
   const double whole = length_of(z - before.z, system.displacements());
   snap_travel += whole;
@@ -136,6 +160,11 @@ bool Walker::follow_snap(double until, double tolerance) {
     path.events.erase(path.events.begin() + events, path.events.end());
     path.states.resize(states, State{});
     return false;
+  }
+  if (level_after > level_before) {
+    slack_level = std::min(level_after, static_cast<double>(System::most_slack_level));
+    origin.damps_contact = true;
+    is_slack = true;
   }
   const double ordinary = drift * (time - before.time) / stride + moved_by_rounding(system, z);
   if (whole <= ordinary) return true;

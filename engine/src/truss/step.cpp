@@ -148,7 +148,8 @@ StepEnd Walker::step_to(double target, double tolerance) {
     ++path.solves;
     if (!is_short) {
       // Without dashpots the step says nothing of elements that become slack.
-      const bool is_free = any_open(trial_statuses) || report.end == SolveEnd::singular;
+      const bool is_free =
+          any_open(trial_statuses) || any_open(origin.statuses) || report.end == SolveEnd::singular;
       if (!is_free || is_slack) return StepEnd::not_converged;
       is_slack = true;
       return step_to(target, tolerance);
@@ -265,9 +266,13 @@ StepEnd Walker::step_to(double target, double tolerance) {
   const bool told = options.locate_events || events.size() <= 1;
   if (!is_short && told && rate.size() > 0 && rate_after.size() > 0) {
     event_share = locates ? first_turn(ends) : 1.0;
-    if (event_share < 1.0 || !follows_its_rates(ends)) {
+    const bool follows_rates = event_share == 1.0 && follows_its_rates(ends);
+    if (!follows_rates) {
       ++path.solves;
-      return StepEnd::event_inside;
+      if (event_share < 1.0 || is_slack || !any_open(origin.statuses)) return StepEnd::event_inside;
+      // What dashpots held so far nearly nothing else holds.
+      is_slack = true;
+      return step_to(target, tolerance);
     }
   }
   const bool smooth = trial_statuses == origin.statuses && !is_short;
@@ -294,7 +299,10 @@ StepEnd Walker::step_to(double target, double tolerance) {
         (!opened && trial_statuses == origin.statuses) || note_slack(target, trial, trial_statuses);
   }
   // Dashpots are no stiffer for long than steps need.
-  if (!origin.damps_contact) slack_level = is_slack ? std::max(0.0, slack_level - softer) : 0.0;
+  if (!is_snap) {
+    slack_level = is_slack ? std::max(softest_level, slack_level - softer) : 0.0;
+    if (slack_level == 0.0) after.damps_contact = false;
+  }
   note_not_unique(target);
   const std::vector<double>& asked = options.problem_times;
   if (path.problems.size() < asked.size() && target >= asked[path.problems.size()]) {
@@ -328,8 +336,10 @@ StepEnd Walker::step_with_slack(double target, double until, double tolerance) {
       return step_to(target, tolerance);
     } catch (const Failure&) {
       const Statuses reached = std::exchange(origin.statuses, before);
+      if (flickers && damp()) continue;
       if (stiffen_slack(before) || stiffen_slack(reached)) continue;
       if (follow_snap(until, tolerance)) return StepEnd::done;
+      if (damp()) continue;
       throw;
     }
   }

@@ -73,6 +73,11 @@ struct Walker {
   bool is_slack = false;
   /// Whether the last answer of note_slack() was that there are slack elements.
   bool is_loose = false;
+  /// Level below which dashpots do not soften until the next increment: steps had no solution
+  /// there.
+  double softest_level = 0.0;
+  bool flickers = false;     ///< Whether changes in this increment are no longer located.
+  bool is_snap = false;      ///< Whether dashpots let a snap come to rest.
   double slack_level = 0.0;  ///< Of these dashpots, see System::slack_stiffness().
   /// Levels by which dashpots become softer after a step.
   static constexpr double softer = 0.25;
@@ -141,7 +146,10 @@ struct Walker {
   void note_not_unique(double when);
   void refuse_mechanism(double when, const Statuses& statuses, JointModel joints) const;
   void refuse_buckled(double when);
+  /// Whether elements are slack, or were.
+  bool has_slack() const { return is_slack || is_loose || noted.count(NoteKind::slack) > 0; }
   bool stiffen_slack(const Statuses& statuses);
+  bool damp();
   StepEnd step_to(double target, double tolerance);
   StepEnd step_with_slack(double target, double until, double tolerance);
   bool come_to_rest(const std::function<std::optional<double>(double level)>& step, double drift);

@@ -937,7 +937,6 @@ CODES: dict[str, Code] = {
     "not_converged": Code(text="no equilibrium found: the iteration does not end"),
     "no_continuation": Code(text="the truss has no slow continuation: slip runs away or the truss snaps through"),
     "several_continuations": Code(text="statics does not choose between several continuations"),
-    "unsettled_joint": Code(text="the status of a joint changes without end"),
     "too_many_steps": Code(text="the path is found only in too many steps"),
     "law_left_range": Code(text="a contact law is evaluated outside of its range"),
 }

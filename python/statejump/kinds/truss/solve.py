@@ -186,7 +186,7 @@ def path(
             trace=trace,
         )
     except _engine.EngineFailure as failure:
-        raise _failed(truss, failure, locate_events) from None
+        raise _failed(truss, failure) from None
     events = TrussEvents(truss, **found.pop("events"))
     return TrussPath(truss=truss, events=events, **found)
 
@@ -207,11 +207,9 @@ def whole_path(truss: ResolvedTruss, tell: Tell = lambda share: None, **options:
     return found
 
 
-def _failed(truss: ResolvedTruss, failure: _engine.EngineFailure, locate_events: bool) -> EngineFailed:
+def _failed(truss: ResolvedTruss, failure: _engine.EngineFailure) -> EngineFailed:
     """Return the engine's failure with a remedy, if one is known."""
     remedy = None
-    if failure.kind == "unsettled_joint" and locate_events:
-        remedy = "set reduced.locate_events to false, which takes such changes together"
     if truss.start_friction == FRICTIONLESS and failure.time_s == 0:
         remedy = "set start.friction to 'stuck' if friction holds the truss at the start"
     return EngineFailed(failure, remedy=remedy, case=truss.name, place=truss.name)
