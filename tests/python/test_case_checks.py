@@ -170,7 +170,7 @@ def test_checks_of_the_geometry_of_a_rib() -> None:
 
 
 def test_checks_of_the_joint_of_a_rib() -> None:
-    assert refused("umbrella_damped", joint__journal_radius_m=100.0, joint__radial_clearance_m=1e-20) == failure("clearance_below_precision", key="joint.radial_clearance_m", value=1e-20, journal_radius_m=100.0)
+    assert refused("umbrella_damped", joint__journal_radius_m=100.0, joint__radial_clearance_m=1e-20) == failure("clearance_below_precision", key="joint.radial_clearance_m", value=1e-20, radius_key="joint.journal_radius_m", radius_m=100.0)
     both = {"joint__journal_thermal_expansion_per_K": 5e-4, "joint__bearing_thermal_expansion_per_K": 5e-4}
     made("umbrella_damped", **both, **STILL, thermal=COLD)
     for part in ("journal", "bearing"):
