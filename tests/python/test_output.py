@@ -104,7 +104,7 @@ def test_nothing_appears_if_one_thing_fails(tmp_path: Path, monkeypatch: pytest.
         with Results(tmp_path).folder("case") as folder:
             for name in ("a", "b"):
                 write_bytes(folder.staged / name, b"")
-            monkeypatch.setattr(os, call, failing)
+            monkeypatch.setattr(os, call, full_disk)
             folder.publish()
     assert not (tmp_path / "case").exists()
 
