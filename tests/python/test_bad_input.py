@@ -85,7 +85,7 @@ def test_unwritable_results(statejump, cases: Path, tmp_path: Path) -> None:
     (tmp_path / "results").write_text("a file where a folder should be")
     outcome = statejump("compare", cases / "table1.toml")
     assert outcome.status == 2
-    assert outcome.failure == failure("not_written", place="results folder results/table1",
+    assert outcome.failure == failure("write_failed", place="results folder results/table1",
                                       remedy="choose another with --results")
 
 
