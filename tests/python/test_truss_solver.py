@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from failures import failing, failure
+from failures import failure
 from statejump import _engine
 from statejump.kinds.spring_slider import reduced
-from statejump.core.errors import FailedRun, StatejumpError
+from statejump.core.errors import StatejumpError
 from statejump.kinds.loading import load_case, parse_case
 from statejump.kinds.truss import generate, solve
 from statejump.kinds.truss.generate.document import document, finished, node
