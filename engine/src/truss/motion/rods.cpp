@@ -21,7 +21,8 @@ Rods::Rods(const System& system, const Inertia& inertia) {
     const Bar& link = model.links[i];
     Rod rod;
     rod.first_move = moves_.size();
-    for (const auto& [end, sign] : {std::pair{link.second, 1.0}, std::pair{link.first, -1.0}}) {
+    for (const auto& [end, sense] : {std::pair{link.second, 1.0}, std::pair{link.first, -1.0}}) {
+      const double sign = sense;  // Clang captures no structured binding
       const NodeDofs& dofs = system.dofs().at(end);
       for (int k = 0; k < dofs.freedoms; ++k) {
         dofs.each_term(k, [&](int row, double factor) {
