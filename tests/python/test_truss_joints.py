@@ -34,4 +34,4 @@ def test_columns_are_outputs_of_the_engine(joint: object) -> None:
 def test_a_type_without_contacts_is_one_file(joint: object) -> None:
     telling = {path.relative_to(FOLDER).as_posix() for path in FOLDER.rglob("*.py")
                if joint.section in path.read_text(encoding="utf-8")}
-    assert telling == {f"joints/{joint.section}.py", "joints/__init__.py", "sections.py"}
+    assert telling == {f"joints/{joint.section}.py", "joints/__init__.py"}
