@@ -59,6 +59,11 @@ def test_a_case_is_one_object(cases: Path) -> None:
     assert repr(case) == "Case('table1', spring_slider)"
 
 
+def test_a_truss_has_its_name(cases: Path) -> None:
+    case = sj.load(cases / "trusses" / "chain_10.toml")
+    assert repr(case) == "Case('chain_10', truss)" and hash(case) == hash(case.changed({}))
+
+
 def test_a_section_may_not_hide_a_method() -> None:
     with pytest.raises(TypeError, match="dem_settings"):
         @definition

@@ -223,7 +223,6 @@ class TrussSections(ElementLists, JointLists, TrussParts):
     """The sections of a truss with frictional and clearance joints under one or several temperature programs."""
 
     KIND: ClassVar[str] = "truss"
-    __hash__ = Case.__hash__  # the lists' own would come first
 
     constraint: list[Constraint] = tables(Constraint, "sections [[constraint]]")
     drive: list[Drive] = tables(Drive, "sections [[drive]]")

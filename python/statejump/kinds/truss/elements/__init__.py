@@ -2,7 +2,7 @@
 """The registry of elements of a truss beside links: one file per type. :mod:`.protocol` documents a type."""
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from statejump.kinds.truss.elements.protocol import ElementType
 from statejump.kinds.truss.elements.spring import SPRING, Spring
@@ -16,6 +16,8 @@ ELEMENTS: tuple[ElementType[Any, Any], ...] = (SPRING, TORSION_SPRING)
 @definition
 class ElementLists(Section):
     """The lists of elements that a case has."""
+
+    NAMED: ClassVar[bool] = True  # as the case that has them
 
     spring: list[Spring] = tables(Spring, "sections [[spring]]")
     torsion_spring: list[TorsionSpring] = tables(TorsionSpring, "sections [[torsion_spring]]")

@@ -2,7 +2,7 @@
 """The registry of joints of a truss: one file per type. :mod:`.protocol` documents a type."""
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from statejump.kinds.truss.joints.ball_joint import BALL_JOINT, BallJoint
 from statejump.kinds.truss.joints.iwan_joint import IWAN_JOINT, IwanJoint
@@ -19,6 +19,8 @@ JOINTS: tuple[JointType[Any, Any], ...] = (SLIDER, REVOLUTE, LATCH_HINGE, IWAN_J
 @definition
 class JointLists(Section):
     """The lists of joints that a case has."""
+
+    NAMED: ClassVar[bool] = True  # as the case that has them
 
     slider: list[Slider] = tables(Slider, "sections [[slider]]")
     revolute: list[Revolute] = tables(Revolute, "sections [[revolute]]")
