@@ -147,7 +147,7 @@ def _move(deck: Deck, kept: str, gone: str) -> None:
 
 def _take_followers(deck: Deck) -> None:
     """Make means of other nodes equations. Leave out those that nothing acts on."""
-    used = carriers(deck) | {term[0] for one in deck.equations for term in one.terms}
+    used = carriers(deck) | deck.equation_directions().keys()
     turned = {moment.node for moment in deck.moments}
     for one in deck.followers:
         node = one.node
@@ -162,12 +162,14 @@ def _take_followers(deck: Deck) -> None:
 
 def _follow_joined(deck: Deck, joined: Mapping[str, str]) -> None:
     """Write equations of nodes that became one. Refuse those of nodes that a rigid arm replaced."""
+    kept = []
     for one in deck.equations:
-        one.terms[:] = [(joined.get(node, node), way, factor) for node, way, factor in one.terms]
-    lost = [one for one in deck.equations if any(node not in deck.nodes for node, _, _ in one.terms)]
-    for one in lost:
-        deck.refuse(one.card, "node_on_rigid_arm", one.line, one.card.lstrip("*"))
-    deck.equations[:] = [one for one in deck.equations if not any(one is other for other in lost)]
+        one.follow(joined)
+        if all(node in deck.nodes for node, _, _ in one.terms):
+            kept.append(one)
+        else:
+            deck.refuse(one.card, "node_on_rigid_arm", one.line, one.card.lstrip("*"))
+    deck.equations[:] = kept
 
 
 def _take_equations(deck: Deck, near: Callable[[str, str], bool]) -> None:
@@ -189,11 +191,7 @@ def _take_equations(deck: Deck, near: Callable[[str, str], bool]) -> None:
 def _hold_loose(deck: Deck) -> None:
     """Hold nodes at which no bar ends in the directions in which no equation moves them: nothing is stiff there."""
     ends = carriers(deck)
-    moved: dict[str, list[np.ndarray]] = {}
-    for one in deck.equations:
-        for node, way, _ in one.terms:
-            moved.setdefault(node, []).append(way)
-    for node, ways in moved.items():
+    for node, ways in deck.equation_directions().items():
         if node in ends:
             continue
         basis = basis_of(np.array(ways))
@@ -250,7 +248,7 @@ def _made_one(deck: Deck, equations: list[Equation], near: Callable[[str, str], 
             found += several
     join(deck, joined)
     for one in equations:
-        one.terms[:] = [(joined.get(node, node), way, factor) for node, way, factor in one.terms]
+        one.follow(joined)
     return found
 
 

@@ -2,7 +2,7 @@
 """What a deck says of a truss, whatever program it is for, and the account of what was taken and what was not."""
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -85,6 +85,10 @@ class Equation:
     line: int
     card: str
     terms: list[tuple[str, np.ndarray, float]]
+
+    def follow(self, joined: Mapping[str, str]) -> None:
+        """Name in its terms the nodes that others became."""
+        self.terms[:] = [(joined.get(node, node), way, factor) for node, way, factor in self.terms]
 
 
 @dataclass
@@ -175,6 +179,14 @@ class Deck:
     waived: set[str] = field(default_factory=set)
     named_units: bool = False
     choices: list[str] = field(default_factory=list)
+
+    def equation_directions(self) -> dict[str, list[np.ndarray]]:
+        """Return the directions in which equations move their nodes."""
+        found: dict[str, list[np.ndarray]] = {}
+        for one in self.equations:
+            for node, way, _ in one.terms:
+                found.setdefault(node, []).append(way)
+        return found
 
     def take(self, card: str, what: str, count: int = 1) -> None:
         """Note that something of a card became part of the truss."""

@@ -10,6 +10,7 @@ import numpy as np
 from statejump.core.errors import MissingKey, StatejumpError
 from statejump.kinds.truss.generate.document import Document, finished
 from statejump.kinds.truss.importing import expansions
+from statejump.kinds.truss.importing.bodies import carriers
 from statejump.kinds.truss.importing.joints import matching, put_in
 from statejump.kinds.truss.importing.model import Bar, Deck, Equation, Spring
 from statejump.kinds.truss.importing.supports import supports
@@ -50,9 +51,7 @@ def case_document(
     :param check_ignored: whether an item of ``Options.ignored`` that the deck does not have is refused
     :raises StatejumpError: a link lacks a number, there is no such node
     """
-    used = {end for bar in deck.bars for end in bar.nodes}
-    used |= {end for spring in deck.springs for end in (spring.first, spring.second) if end}
-    used |= {node for one in deck.equations for node, _, _ in one.terms}
+    used = carriers(deck) | deck.equation_directions().keys()
     _check_unused(deck, used)
     dimension = _dimension(deck, used)
     more = dict(sections or {})

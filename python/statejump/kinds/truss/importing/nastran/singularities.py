@@ -33,10 +33,7 @@ def hold_singular(reader: Reader) -> None:
         if spring.direction is not None:
             block = np.outer(spring.direction, spring.direction)
             stiffness[spring.first] = stiffness.get(spring.first, np.zeros((3, 3))) + block
-    tied: dict[str, list[np.ndarray]] = {}
-    for equation in deck.equations:
-        for node, way, _ in equation.terms:
-            tied.setdefault(node, []).append(way)
+    tied = deck.equation_directions()
     for node, block in stiffness.items():
         if node in bent:
             continue
