@@ -9,7 +9,7 @@ configure = { test -e $(BUILD)/build.ninja || cmake --preset demo -B $(BUILD); }
             cmake $(foreach part,$(1),-DSTATEJUMP_BUILD_$(part)=ON) $(BUILD) >/dev/null
 compile = cmake --build $(BUILD) --parallel $(JOBS)
 
-.PHONY: demo build test check quick bench package docs sanitize sanitize-threads sanitize-yade format clean
+.PHONY: demo build tests test check quick bench package docs sanitize sanitize-threads sanitize-yade format clean
 demo:
 	./scripts/setup.sh run build
 	$(call configure)
@@ -21,17 +21,16 @@ build:
 	$(call configure,REPORT)
 	$(compile)
 
-test:
+tests:
 	./scripts/setup.sh run build page test docs
 	$(call configure,REPORT TESTS)
 	$(compile)
+
+test: tests
 	ctest --test-dir $(BUILD) -LE '^check$$' --output-on-failure --parallel $(JOBS)
 
 # Slow checks of the sources, of the tests themselves, and of damaged files and killed processes.
-check:
-	./scripts/setup.sh run build page test docs
-	$(call configure,REPORT TESTS)
-	$(compile)
+check: tests
 	ctest --test-dir $(BUILD) -L '^check$$' --output-on-failure --parallel $(JOBS) --no-tests=error
 
 # Both models and their tests of some seconds each.
