@@ -11,7 +11,7 @@ namespace {
 /// A step rotates friction by little, and the error of a rotation falls with its square.
 constexpr int most_rotations = 50;
 /// Fraction of the bound that friction may have across its direction: its size is then off by half
-/// the square of it, which is where a contact is told to slip.
+/// the square of it, which is where a contact counts as slipping.
 constexpr double aside = 1e-4;
 /// The same for what a changed stiffness makes of it while it sticks.
 constexpr double stiffened = 1e-8;

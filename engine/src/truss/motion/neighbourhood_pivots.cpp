@@ -13,7 +13,7 @@ using Eigen::Index;
 
 namespace {
 
-/// Joints that a neighbourhood reaches at first; it doubles while more is felt at its edge.
+/// Joints that a neighbourhood reaches at first; it doubles while a correction reaches its edge.
 constexpr int first_layers = 4;
 /// Fraction of the largest change of a velocity that its edge may feel. The systems of the whole
 /// truss find the rest; a smaller fraction would spare none of them, because the sign of a residual

@@ -13,7 +13,7 @@ namespace statejump::truss::detail {
 /// Where slip spreads from one joint to the next, a step in which it passes many would be as many
 /// systems of the whole truss: every one shows the next joint only. Impulses act as far as sound
 /// travels in a step. So these systems have only the bodies and contacts within some layers around
-/// a contact, and grow while a correction is felt at their edge. What they find is a guess, which
+/// a contact, and grow while a correction reaches their edge. What they find is a guess, which
 /// is solved and checked as any other.
 class NeighbourhoodPivots {
  public:
@@ -25,7 +25,7 @@ class NeighbourhoodPivots {
 
   /// Unknowns of the neighbourhoods of all these contacts, as they are at first.
   Index reach_of(const std::vector<std::size_t>& contacts);
-  /// Pivots around a contact until none that is felt there is violated. False if that is not
+  /// Pivots around a contact until none that they reach is violated. False if that is not
   /// found, or if is_spent().
   bool settle(std::size_t contact);
   /// Violated contacts of all neighbourhoods so far.
@@ -47,7 +47,7 @@ class NeighbourhoodPivots {
   /// Bodies with which one shares a link, a constraint or a contact, and itself.
   template <class Visit>
   void each_neighbour(int body, Visit&& visit) const;
-  /// Whether the last move was felt at the edge, which then has become a wider one.
+  /// Whether the last move reached the edge, which then has become a wider one.
   bool grow_where_felt();
   /// Right side of a row of a contact.
   double right_side(Index i, bool across) const;
