@@ -490,12 +490,12 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     merit_before = merit;
     // Steps to and fro between the same two places meet in the middle.
     const std::size_t taken = lengths.size();
-    if (taken >= tuned.swing_steps && next_length > 0.5 * lengths[taken - tuned.swing_steps])
-      next *= 0.5;
+    const auto stalls = [&](std::size_t steps) {
+      return taken >= steps && next_length > 0.5 * lengths[taken - steps];
+    };
+    if (stalls(tuned.swing_steps)) next *= 0.5;
     // Where a shorter step is the answer, one that shrinks no more is given up.
-    if (ahead && pivoted && taken >= 2 * tuned.swing_steps &&
-        next_length > 0.5 * lengths[taken - 2 * tuned.swing_steps])
-      return report;
+    if (ahead && pivoted && stalls(2 * tuned.swing_steps)) return report;
     step = next;
     z += next;
     settled = false;

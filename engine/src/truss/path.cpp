@@ -14,10 +14,8 @@
 
 namespace statejump::truss {
 
-using detail::fail_joint;
 using detail::failure_at;
 using detail::index;
-using detail::named;
 using detail::Newton;
 using detail::StepEnd;
 using detail::System;
@@ -253,7 +251,6 @@ Path solve(const Model& model, const Options& options) {
           stride = std::max(
               foreseen && !moves ? walker.event_share * tried - 0.5 * tolerance : 0.125 * tried,
               tolerance);
-          if (end == StepEnd::not_converged) held = most_held;
           if (walker.slip_is_unstable && ++unstable >= most_unconfirmed) {
             unstable = 0;
             walker.follow_snap(times[b + 1], std::max(tolerance, shortest));
@@ -264,7 +261,10 @@ Path solve(const Model& model, const Options& options) {
             swinging = 0;
             stride = std::max(stride, 0.5 * tried);
           }
-          if (end == StepEnd::not_converged) convergent = stride;
+          if (end == StepEnd::not_converged) {
+            convergent = stride;
+            held = most_held;
+          }
           locating = end == StepEnd::event_inside;
           ahead = walker.event_share * tried;
           foresaw = foresaw || (locating && !walker.slip_is_unstable);

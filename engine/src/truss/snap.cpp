@@ -79,6 +79,7 @@ double moved_by_rounding(const System& system, const VectorXd& z) {
 /// @param drift what a step moves by without any unstable motion [m]
 bool Walker::come_to_rest(const std::function<std::optional<double>(double level)>& step,
                           double drift) {
+  const double most_carried = system.slack_stiffness(0.0) * largest_play(model);
   double level = first_level;
   double without = 0.0;  // highest level that had no step
   int refused = 0;
@@ -97,9 +98,8 @@ bool Walker::come_to_rest(const std::function<std::optional<double>(double level
     whole += *moved;
     const double ordinary = moved_by_rounding(system, z) + drift;
     const double carried = system.slack_stiffness(level) * (*moved - drift);
-    const bool is_carried = carried > system.slack_stiffness(0.0) * largest_play(model);
     const bool is_softest = refused >= most_refused && level <= without + stiffer;
-    if (is_softest && !is_carried) return true;
+    if (is_softest && carried <= most_carried) return true;
     if (level == 0.0 && *moved <= at_rest * whole + ordinary) return true;
     // Elements that are slack swing on against dashpots that hardly hold, ever slower.
     slower = level == 0.0 && *moved <= last ? slower + 1 : 0;
@@ -127,13 +127,13 @@ bool Walker::follow_snap(double until, double tolerance) {
   const double stride = std::min(tolerance, (until - time) / (most_snap_steps + 1));
   const int moving = before.rate.size() == 0 ? 0 : system.displacements();
   const double drift = 2.0 * length_of(before.rate, moving) * stride;
-  is_snap = true;
+  double level_after = level_before;
   const bool damped_before = origin.damps_contact;
   const bool rests = come_to_rest(
       [&](double level) -> std::optional<double> {
         const VectorXd from = z;
         const Statuses statuses = origin.statuses;
-        slack_level = level;
+        slack_level = level_after = level;
         origin.damps_contact = true;
         changed_at_start.clear();
         try {
@@ -147,11 +147,8 @@ bool Walker::follow_snap(double until, double tolerance) {
         return std::nullopt;
       },
       drift);
-  // Where softer dashpots had no step, those that had go on.
-  const double level_after = slack_level;
   slack_level = level_before;
   origin.damps_contact = damped_before;
-  is_snap = false;
   if (!path.complete) return true;
   const double whole = length_of(z - before.z, system.displacements());
   snap_travel += whole;
@@ -162,7 +159,8 @@ bool Walker::follow_snap(double until, double tolerance) {
     return false;
   }
   if (level_after > level_before) {
-    slack_level = std::min(level_after, static_cast<double>(System::most_slack_level));
+    // Where softer dashpots had no step, those that had go on.
+    slack_level = std::min(level_after, System::most_slack_level);
     origin.damps_contact = true;
     is_slack = true;
   }

@@ -154,7 +154,7 @@ bool Walker::note_slack(double when, const VectorXd& at, const Statuses& statuse
 /// Makes the dashpots of slack joints stiffer; false: there are none, or none stiffer.
 bool Walker::stiffen_slack(const Statuses& statuses) {
   if (!any_open(statuses) || slack_level >= System::most_slack_level) return false;
-  slack_level = std::min(slack_level + 1.0, static_cast<double>(System::most_slack_level));
+  slack_level = std::min(slack_level + 1.0, System::most_slack_level);
   is_slack = true;
   return true;
 }
@@ -162,10 +162,9 @@ bool Walker::stiffen_slack(const Statuses& statuses) {
 /// Lets dashpots hold all joints with play, or makes them stiffer, where elements are slack and
 /// steps have no solution; false: nothing is slack, or they are as stiff as may be.
 bool Walker::damp() {
-  constexpr auto most = static_cast<double>(System::stiffest_level);
-  if (!has_slack() || slack_level >= most) return false;
+  if (!has_slack() || slack_level >= System::stiffest_level) return false;
   softest_level = slack_level + 2.0 * softer;
-  slack_level = std::min(slack_level + 1.0, most);
+  slack_level = std::min(slack_level + 1.0, System::stiffest_level);
   origin.damps_contact = true;
   is_slack = true;
   return true;

@@ -299,10 +299,8 @@ StepEnd Walker::step_to(double target, double tolerance) {
         (!opened && trial_statuses == origin.statuses) || note_slack(target, trial, trial_statuses);
   }
   // Dashpots are no stiffer for long than steps need.
-  if (!is_snap) {
-    slack_level = is_slack ? std::max(softest_level, slack_level - softer) : 0.0;
-    if (slack_level == 0.0) after.damps_contact = false;
-  }
+  slack_level = is_slack ? std::max(softest_level, slack_level - softer) : 0.0;
+  if (slack_level == 0.0) after.damps_contact = false;
   note_not_unique(target);
   const std::vector<double>& asked = options.problem_times;
   if (path.problems.size() < asked.size() && target >= asked[path.problems.size()]) {

@@ -282,10 +282,10 @@ class System {
   double slack_stiffness(double level) const {
     return 1e-8 * std::pow(100.0, level) * stiffness_scale_;
   }
-  static constexpr int most_slack_level = 3;
+  static constexpr double most_slack_level = 3.0;
   /// Level of dashpots that hold a path while its steps have no solution with softer ones: as stiff
   /// as the stiffest element, so that what they hold back follows within a few steps.
-  static constexpr int stiffest_level = 4;
+  static constexpr double stiffest_level = 4.0;
   /// What rounding at z leaves of the forces at a node [N]: some 64 terms are added up there, each
   /// of a stiffness times a displacement.
   double force_rounding(const VectorXd& z) const;

@@ -77,7 +77,6 @@ struct Walker {
   /// there.
   double softest_level = 0.0;
   bool flickers = false;     ///< Whether changes in this increment are no longer located.
-  bool is_snap = false;      ///< Whether dashpots let a snap come to rest.
   double slack_level = 0.0;  ///< Of these dashpots, see System::slack_stiffness().
   /// Levels by which dashpots become softer after a step.
   static constexpr double softer = 0.25;
