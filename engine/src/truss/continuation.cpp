@@ -159,7 +159,7 @@ SolveReport Walker::slide_on(double target, bool is_short, VectorXd& to, Statuse
   note(first);
   const auto solve_on = [&](Statuses& branches) {
     return newton.solve(target, origin, JointModel::friction, 1.0, options.most_iterations, to,
-                        branches, {}, true);
+                        branches, {}, Newton::Effort::held);
   };
   const VectorXd found = to;
   SolveReport second = solve_on(sliding);
@@ -194,7 +194,7 @@ bool Walker::follows_its_rates(const Ends& ends) const {
   // What dashpots hold comes to rest at its own pace.
   const double slack =
       ends.start.slack_stiffness > 0.0
-          ? system.dashpot_force(ends.to, ends.to_time, ends.start, ends.statuses) /
+          ? lever() * system.dashpot_force(ends.to, ends.to_time, ends.start, ends.statuses) /
                 ends.start.slack_stiffness
           : 0.0;
   return apart <= std::max(before.lpNorm<Eigen::Infinity>(), after.lpNorm<Eigen::Infinity>()) +

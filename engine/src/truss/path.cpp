@@ -68,7 +68,7 @@ Eigen::VectorXd output(const Model& model, const State& state, int joint, std::s
 namespace {
 
 /// Steps in a row that ended before a foreseen change and came no nearer to it.
-constexpr int most_unconfirmed = 16;
+constexpr int most_unconfirmed = 8;
 /// Steps from one place that end before a foreseen change which does not come nearer.
 constexpr int most_foreseen = 4;
 /// Changes of one joint in an increment that the solver locates. After more the energy balance
@@ -248,9 +248,9 @@ Path solve(const Model& model, const Options& options) {
           foreseen_from_here = short_by > 0.5 * short_by_before ? foreseen_from_here + 1 : 0;
           short_by_before = short_by;
           const bool moves = foreseen && foreseen_from_here > most_foreseen;
-          stride = std::max(
-              foreseen && !moves ? walker.event_share * tried - 0.5 * tolerance : 0.125 * tried,
-              tolerance);
+          stride = foreseen ? walker.event_share * tried : 0.125 * tried;
+          if (foreseen) stride = moves ? 0.5 * stride : stride - 0.5 * tolerance;
+          stride = std::max(stride, tolerance);
           if (walker.slip_is_unstable && ++unstable >= most_unconfirmed) {
             unstable = 0;
             walker.follow_snap(times[b + 1], std::max(tolerance, shortest));

@@ -41,17 +41,11 @@ double play_of(const Joint& joint) {
       joint);
 }
 
-/// How far a structure moves within its plays [m]: the diameters of all, one behind the other, on
-/// the longest lever that an element makes of the structure's size.
-double all_plays(const Model& model, double size) {
+/// The diameters of all plays, one behind the other [m].
+double sum_of_plays(const Model& model) {
   double sum = 0.0;
   for (const Joint& joint : model.joints) sum += play_of(joint);
-  double shortest = size;
-  for (const Bar& link : model.links) {
-    const double length = drawn_length(model, link.first, link.second);
-    if (length > 0.0) shortest = std::min(shortest, length);
-  }
-  return shortest > 0.0 ? sum * size / shortest : sum;
+  return sum;
 }
 
 /// The largest diameter of a play [m].
@@ -67,6 +61,17 @@ double moved_by_rounding(const System& system, const VectorXd& z) {
 }
 
 }  // namespace
+
+/// How far a node moves where a joint gives way within its play, in what that moves by: the
+/// shortest element is the lever of a structure as large.
+double Walker::lever() const {
+  double shortest = system.size();
+  for (const Bar& link : model.links) {
+    const double length = drawn_length(model, link.first, link.second);
+    if (length > 0.0) shortest = std::min(shortest, length);
+  }
+  return shortest > 0.0 ? system.size() / shortest : 1.0;
+}
 
 /// Lets journals move within their play, held by dashpots while they slip, until they are at rest.
 ///
@@ -118,7 +123,7 @@ bool Walker::come_to_rest(const std::function<std::optional<double>(double level
 /// @param until time that is not passed [s]
 /// @returns false: dashpots do not hold it, or no joint has play; nothing has happened then
 bool Walker::follow_snap(double until, double tolerance) {
-  const double plays = all_plays(model, system.size());
+  const double plays = sum_of_plays(model) * lever();
   if (plays == 0.0 || !options.locate_events) return false;
   const Position before = position();
   const auto events = static_cast<std::ptrdiff_t>(path.events.size());

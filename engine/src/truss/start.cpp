@@ -241,7 +241,8 @@ SolveReport Walker::open_seated(const std::vector<int>& with_play, JointModel co
     seat_at(opened, next, with_play, trial);
     StepStart begin = system.begin(trial, 0.0, statuses, next);
     begin.slack_stiffness = system.slack_stiffness(slack_level);
-    report = newton.solve(0.0, begin, contact, next, options.most_iterations, trial, statuses);
+    report = newton.solve(0.0, begin, contact, next, options.most_iterations, trial, statuses, {},
+                          Newton::Effort::brief);
     if (next < 1.0) {
       ++path.solves;  // none of the path's states
     } else {
@@ -290,7 +291,8 @@ bool Walker::come_to_rest_at(double opening, JointModel contact, const std::vect
         VectorXd trial = z;
         Statuses statuses = origin.statuses;
         const SolveReport report =
-            newton.solve(0.0, begin, contact, opening, options.most_iterations, trial, statuses);
+            newton.solve(0.0, begin, contact, opening, options.most_iterations, trial, statuses, {},
+                         Newton::Effort::brief);
         ++path.solves;
         if (report.end == SolveEnd::stopped) path.complete = false;
         if (report.end != SolveEnd::converged) return std::nullopt;

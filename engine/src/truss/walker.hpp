@@ -149,6 +149,7 @@ struct Walker {
   bool has_slack() const { return is_slack || is_loose || noted.count(NoteKind::slack) > 0; }
   bool stiffen_slack(const Statuses& statuses);
   bool damp();
+  double lever() const;
   StepEnd step_to(double target, double tolerance);
   StepEnd step_with_slack(double target, double until, double tolerance);
   bool come_to_rest(const std::function<std::optional<double>(double level)>& step, double drift);

@@ -125,6 +125,9 @@ Vector<Dual> tangential_row(const BallJoint& joint, const Trial& trial, const Ba
   if (trial.model != JointModel::friction || joint.friction_coefficient == 0.0) return -carries;
   if (!is_slip(status) || bend.pull.squaredNorm().value() == 0.0) return bend.pull - carries;
   const Dual bound = joint.friction_coefficient * now.normal_force * bend.compliance;
+  // So deep inside the cone it sticks. Where rounding hides that, a pull of nearly nothing has no
+  // direction, and friction along it would turn about at every iteration.
+  if (bend.pull.squaredNorm() < 0.25 * bound * bound) return bend.pull * Dual(2.0) - carries;
   // What dashpots hold turns little in a step, and the direction has to be a smooth function of it.
   const bool turns = is_slip(trial.before) && !trial.damps_contact;
   return detail::slip_direction(joint, now, start, bend, turns) * bound - carries;
@@ -292,6 +295,10 @@ JointStatus BallJoint::decide(const Trial& trial, JointStatus status) const {
   }
   const BallBend<double> bend = bend_of(*this, trial, now);
   const double rounding = slide_rounding(trial, trial.length_rounding, trial.force_rounding);
+  // A step of Newton's method along one direction that leads back beyond where it began.
+  if (now.normal_force > slack + trial.force_rounding &&
+      bend.pull.dot(now.friction) < -rounding * now.friction.norm())
+    return JointStatus::stick;
   return bend.pull.norm() - bend.compliance * bound < -rounding ? JointStatus::stick : status;
 }
 
