@@ -3,6 +3,8 @@
 without stops: small displacements, in each step the minimum of energy and heat."""
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy.optimize import lsq_linear
 
@@ -11,7 +13,7 @@ from sketch import CLEARANCE, Document
 
 STEPS = 24  # of a monotone piece of the program
 MOST_SLIDERS = 40
-# Slides that turn within a step and second-order effects of large displacements, over the largest displacement.
+# Slides that turn within a step, over the largest displacement.
 TOLERANCE = 0.05
 
 
@@ -22,6 +24,34 @@ def applies(document: Document) -> bool:
     sliders = document.get("slider", [])
     stopped = any("clearance_minus_m" in slider for slider in sliders)
     return not others and not cables and not stopped and 0 < len(sliders) <= MOST_SLIDERS
+
+
+# Keys of loads, preloads and temperatures: small displacements are linear in them.
+LOADS = ("force_N", "gravity_m_per_s2", "preload_N", "normal_force_N", "temperature_change_max_K",
+         "table_temperature_change_K")
+# At this share of them the second-order effects of large displacements are this share of what they were, over the
+# displacements: where a structure itself differs by more than the tolerance, it is compared so.
+SMALL = 0.01
+
+
+def scaled(document: Document, share: float) -> Document:
+    """Return a document with its loads, preloads and temperatures multiplied by a share."""
+    places = {node["name"]: np.array(node["position_m"]) for node in document["node"]}
+
+    def moved(key: str, value: Any) -> Any:
+        if key in LOADS:
+            return (np.asarray(value) * share).tolist()
+        if isinstance(value, list):
+            return [moved(key, part) for part in value]
+        if not isinstance(value, dict):
+            return value
+        made = {name: moved(name, part) for name, part in value.items()}
+        if "stress_free_length_m" in value:
+            length = float(np.linalg.norm(np.subtract(*(places[name] for name in value["nodes"]))))
+            made["stress_free_length_m"] = length + share * (value["stress_free_length_m"] - length)
+        return made
+
+    return {key: moved(key, value) for key, value in document.items()}
 
 
 def changes_K(program: Document, times: np.ndarray, period_s: float) -> np.ndarray:

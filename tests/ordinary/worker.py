@@ -62,6 +62,13 @@ def numbers(found: Any) -> dict[str, Any]:
     }
 
 
+def apart(document: Document, found: dict[str, Any]) -> float:
+    """Return how far a run's displacements are from those of small displacements, over the largest one."""
+    expected = evolution.ends(document)
+    got = found["ends"][:, :, : document["truss"]["dimension"]].reshape(len(expected), -1)
+    return float(np.abs(got - expected).max()) / max(found["largest_m"], found["free_m"])
+
+
 def checked(structure: structures.Structure, verdict: Verdict, found: dict[str, Any]) -> str:
     """Return what is wrong with a finished run, "" for nothing."""
     if found["start_share"] > FAR and "start" not in found["sentence"]:
@@ -74,9 +81,10 @@ def checked(structure: structures.Structure, verdict: Verdict, found: dict[str, 
     if structure.walk_m is not None and abs(abs(found["mean_walk_m"]) - structure.walk_m) > 2 * found["free_m"]:
         return "walk"
     if structure.walk_m is None and verdict.class_a and evolution.applies(structure.document):
-        expected = evolution.ends(structure.document)
-        got = found["ends"][:, :, : structure.document["truss"]["dimension"]].reshape(len(expected), -1)
-        found["difference"] = float(np.abs(got - expected).max()) / largest
+        found["difference"] = apart(structure.document, found)
+        if found["difference"] > evolution.TOLERANCE:
+            small = evolution.scaled(structure.document, evolution.SMALL)
+            found["difference"] = apart(small, numbers(sj.load(small).reduced()))
         if found["difference"] > evolution.TOLERANCE:
             return "displacements"
     return ""
