@@ -396,6 +396,23 @@ def _has_slack(frame: Frame, held: np.ndarray, active: np.ndarray) -> bool:
     return bool((np.abs(found) < (1 - 1e-6) * bound).any())
 
 
+def _stands_heat(frame: Frame, held: np.ndarray, free: np.ndarray, active: np.ndarray, tension: np.ndarray) -> bool:
+    """Return whether a structure is stable at the extremes of its programs, without the cables that are slack there.
+
+    :param free: basis of the motions that are to be stable
+    """
+    for heat in frame.thermal_tensions():
+        # Joints that give way take force from bars: held, they carry the most.
+        carried = tension + basis_solution(frame, held, active, heat)
+        taut = active & (~frame.cables | (carried > 0))
+        # Tensions of those that are left do not balance where others have gone slack.
+        if (taut != active).any() and softest(frame.elastic(taut), held) < FREE:
+            return False
+        if softest(frame.elastic(taut) + frame.geometric(np.where(taut, carried, 0.0)), free) < FREE:
+            return False
+    return True
+
+
 def judge(document: Document) -> Verdict:
     """Return what theory says of a structure."""
     frame = Frame(document)
@@ -413,7 +430,8 @@ def judge(document: Document) -> Verdict:
         if followed is None:
             return Verdict("unstable")
         share = float(np.abs(followed).max()) / frame.size
-        return Verdict("path" if share < FAR else "undetermined", True, start_share=share)
+        stands = share < FAR and _stands_heat(frame, held, held, active, tension)
+        return Verdict("path" if stands else "undetermined", stands, start_share=share)
     factor = load_factor(frame, free) if frame.sliding else float("inf")
     class_a = softest(stiffness, free) > FREE
     if frame.sliding:  # what only the tension of bars holds is too soft beside friction
@@ -427,12 +445,8 @@ def judge(document: Document) -> Verdict:
         slack = _has_slack(frame, held, active)
     except np.linalg.LinAlgError:  # stable as loaded, not as drawn
         return Verdict("undetermined", class_a, factor)
-    for heat in frame.thermal_tensions():
-        # Joints that give way take force from bars: held, they carry the most.
-        strained = basis_solution(frame, held, active, heat)
-        worst = frame.elastic(active) + frame.geometric(np.where(active, tension + strained, 0.0))
-        if softest(worst, held) < FREE or (class_a and softest(worst, free) < FREE):
-            return Verdict("undetermined", False, factor, start, slack)
+    if not _stands_heat(frame, held, free if class_a else held, active, tension):
+        return Verdict("undetermined", False, factor, start, slack)
     return Verdict("path" if start < FAR else "undetermined", class_a, factor, start, slack)
 
 
