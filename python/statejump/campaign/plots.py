@@ -23,7 +23,7 @@ MOST_WHOLE = 60
 
 
 def figures(campaign: Plan, table: Table) -> dict[str, Figure]:
-    """Return the figures by the names of their files; none if every sample failed."""
+    """Return the figures by file name; empty if every sample failed."""
     if bool(np.all(table.failed)):
         return {}
     with style():
@@ -39,7 +39,7 @@ def _label(name: str, unit: str) -> str:
         return output + ("" if unit == "-" else f" [{unit}]")
     section, _, key = split_unit(name)[0].rpartition(".")
     words = key.replace("_", " ").replace("temperature change", "ΔT")
-    # Of every item: of a Monte Carlo campaign the mean of their values.
+    # For a parameter of every item, the column has the mean of the values.
     every = "every " if section.endswith(".*") else ""
     section = section.removesuffix(".*").replace("_", " ")
     return words + (f" of {every}{section}" if section else "") + ("" if unit == "-" else f" [{unit}]")
@@ -155,7 +155,7 @@ def _sweep(campaign: Plan, table: Table) -> Figure:
                 f"{parameter.keys[0]} = {value:g}" for parameter, value in zip(others, combination)
             )
             colour = LINES[number] if few else colormaps["viridis"](number / (len(combinations) - 1))
-            # Lines that cover each other stay visible: the later the thinner.
+            # Lines that cover each other remain visible, because later ones are thinner.
             width = 1.2 + (1.3 * (len(combinations) - 1 - number) if few else 0.0)
             panel.plot(along[here][order], values[here][order], "o-", color=colour, markersize=1.8 + width,
                        linewidth=width, label=text or None)

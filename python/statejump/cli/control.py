@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``statejump control``: what governs the state jump of a case, and what keeps it below a value."""
+"""``statejump control``: sensitivities of the state jump of a case, and changes that keep it below a value."""
 from __future__ import annotations
 
 from collections.abc import Iterator
