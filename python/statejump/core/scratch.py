@@ -20,7 +20,7 @@ YOUNG_S = 60.0  # a younger folder may not be locked yet
 def scratch() -> Iterator[Path]:
     """Yield a new folder below ``$TMPDIR``, removed at the end.
 
-    :raises OSError: there is no place for it
+    :raises OSError: it cannot be created
     """
     _sweep(Path(tempfile.gettempdir()))
     folder = Path(tempfile.mkdtemp(prefix=PREFIX))
