@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Loops that are thin beside their reversible part: what is left without it."""
+"""Thin loops: a loop with a large reversible part, drawn without this part."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -24,12 +24,13 @@ class StraightPart:
     offset: float
 
     def taken_off(self, x: Numbers, y: Numbers) -> Numbers:
-        """Return what is left of values at x."""
+        """Return the remainder of values at x."""
         return np.asarray(y - (self.offset + self.slope * x))
 
 
 def straight_part(x: Numbers, y: Numbers) -> StraightPart | None:
-    """Return the straight line (least squares) that a loop hides behind; None: it is wide, or there is no loop."""
+    """Return the reversible part of a loop, a straight line (least squares); None: the loop is wide, or there is no
+    loop."""
     size = float(np.ptp(y))
     if not 0 < size < np.inf or not 0 < np.ptp(x) < np.inf:
         return None

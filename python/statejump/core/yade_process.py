@@ -84,8 +84,8 @@ def python_path() -> str:
 
 
 def _dying_with_us() -> Callable[[], None]:
-    """Return a function for a new process, by which the kernel kills it with the thread that waits for it. Otherwise
-    YADE would continue after its caller was killed."""
+    """Return a function that a new process calls at its start. The kernel then kills the process together with the
+    thread that waits for it. Otherwise YADE would continue after its caller was killed."""
     import ctypes  # as which
 
     prctl = ctypes.PyDLL(None).prctl  # looked up before the fork, after which the process does as little as possible
@@ -202,11 +202,11 @@ def _message(line: str) -> dict[str, Any]:
 
 
 class RunFailed(FailedRun):
-    """A failure that the script in YADE tells: ``the DEM run failed: CAUSE (PLACE, time T s, temperature change
-    T K)[; REMEDY]``.
+    """A failure that the script in YADE reports: ``the DEM run failed: CAUSE (PLACE, time T s, temperature change T
+    K)[; REMEDY]``.
 
-    :param cause: what went wrong
-    :param place: words for the joint, as ``slider S1``
+    :param cause: the problem
+    :param place: name of the joint in the sentence, for example ``slider S1``
     """
 
     def __init__(self, cause: str, *, place: str = "", **more: Any) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figure of runs of a ``spring_slider`` case: models on top of each other, stages and events marked."""
+"""Figure of runs of a ``spring_slider`` case: models in one figure, with marked stages and events."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -60,7 +60,7 @@ def sheet(case: SpringSliderCase, runs: Sequence[Run]) -> Sheet:
 
 
 def _dense(path: _engine.SpringSliderPath, run: Run) -> dict[str, np.ndarray]:
-    """Return the exact path as a curve without corners cut off."""
+    """Return the exact path as a curve that includes its corners."""
     times = np.linspace(0, run.time_s[-1], DENSE)
     return path.sample(np.unique(np.concatenate((times, [event.time_s for event in path.events]))))
 

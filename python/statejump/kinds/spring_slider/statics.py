@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where friction holds the block of a ``spring_slider`` case: its rest set at the temperatures of the program.
+"""Rest set of the block of a ``spring_slider`` case, at the temperatures of the program.
 
-The bar pushes with k_T (x_T - x), a preload spring pulls back with P + k_p x, and friction takes up to f. So the block
-rests wherever |k_T x_T - P - (k_T + k_p) x| <= f, a segment of half-length f/(k_T + k_p) about the place of zero
-force, as far as the stops let it; beyond a stop the wall takes what is left, and the block rests at the stop. At
-the reference temperature the two ends of the segment are as far apart as a state jump can be.
+The bar pushes with k_T (x_T - x), a preload spring pulls back with P + k_p x, and friction carries up to f. The block
+therefore rests wherever |k_T x_T - P - (k_T + k_p) x| <= f. This is a segment of half-length f/(k_T + k_p) about the
+position of zero force, within the stops. Beyond a stop the wall carries the remainder, and the block rests at the stop.
+At the reference temperature the length of the segment is the largest possible state jump.
 """
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _DRAWN, _SAVED = Later("statejump.kinds.spring_slider.statics_figure:drawn"), La
 
 @dataclass(frozen=True)
 class Segment:
-    """Places at which the block rests at one temperature."""
+    """Positions at which the block rests at one temperature."""
 
     temperature_change_K: float
     from_m: float
@@ -39,7 +39,7 @@ class Segment:
 
     @property
     def length_m(self) -> float:
-        """How far apart two places of rest can be [m]."""
+        """Largest distance of two rest positions [m]."""
         return self.to_m - self.from_m
 
 
