@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A ``spring_slider`` case in CalculiX: one brick as the bar, a block pressed on a floor with frictional contact, two
-stops in frictionless contact.
+"""A ``spring_slider`` case in CalculiX: a bar of one brick that pushes a block, the block pressed on a floor with
+frictional contact, two stops in frictionless contact.
 
-Rigid parts of the reduced model are stiff here: the floor sticks with STICK times the stiffness of the bar, floor and
-stops push with PUSH times it. Events are intersections of straight pieces of displacement over temperature, so they do
-not depend on the increment. The remaining error of the contacts is 1/PUSH of a penetration.
+What is rigid in the reduced model is stiff here: the floor sticks with STICK times the stiffness of the bar, floor and
+stops push with PUSH times it. Events are where straight pieces of displacement over temperature meet, so they do not
+depend on the increment, and an error of 1/PUSH of a penetration is all that the contacts leave.
 """
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ TIP = 5
 
 
 def answer(case: SpringSliderCase) -> ccx.Answer:
-    """Run the case in CalculiX and compare it with the reduced model.
+    """Run the case in CalculiX and return it beside the reduced model.
 
-    :raises NotAllowed: the deck cannot represent the case
-    :raises StatejumpError: CalculiX is missing or failed
+    :raises NotAllowed: what the deck does not have
+    :raises StatejumpError: there is no CalculiX, or it failed
     """
     joint = case.joint
     if case.expansion is not None:
@@ -66,7 +66,7 @@ def _slope(case: SpringSliderCase) -> float:
 
 
 def _corners(case: SpringSliderCase) -> list[float]:
-    """Return the temperature changes at which the program reverses, from 0."""
+    """Return the temperature changes at which the program turns, from 0."""
     program, thermal = case.thermal_program(), case.thermal
     if thermal.shape == "table":
         cycle = rows(thermal, case.period_s)[1].tolist()
@@ -88,7 +88,7 @@ def _corners(case: SpringSliderCase) -> list[float]:
 
 
 def _events(case: SpringSliderCase, corners: Sequence[float]) -> list[tuple[str, float]]:
-    """Return the positions at which the block begins to slide and comes to rest between the corners, in order."""
+    """Return where the block begins to slide and comes to rest between the corners, in order."""
     found = []
     for event in reduced.solve(case).events:
         before, after = event.stage_before in HOLDS, event.stage_after in HOLDS
@@ -98,7 +98,7 @@ def _events(case: SpringSliderCase, corners: Sequence[float]) -> list[tuple[str,
 
 
 def kinks(change: np.ndarray, moved: np.ndarray, slope: float) -> list[tuple[str, float]]:
-    """Return the points at which a path of straight pieces begins and ceases to slide: intersections of the pieces.
+    """Return where a path of straight pieces begins and ceases to slide: where the pieces meet.
 
     :param change: temperatures, in order
     :param moved: displacement at each
@@ -108,7 +108,7 @@ def kinks(change: np.ndarray, moved: np.ndarray, slope: float) -> list[tuple[str
     found = []
     place = 0
     for at in np.flatnonzero(slides[1:] != slides[:-1]):
-        # The increment with the kink belongs to neither piece: the lines are those of its neighbours.
+        # The increment with the kink is of either sort: the lines are those of the increments around it.
         first, second = max(at - 1, place), min(at + 2, len(slides) - 1)
         lines = [np.polyfit(change[one:one + 2], moved[one:one + 2], 1) for one in (first, second)]
         found.append(("slide" if slides[at + 1] else "rest",
@@ -161,7 +161,7 @@ def deck(case: SpringSliderCase, corners: Sequence[float]) -> list[str]:
               "*NSET, NSET=PADN", ", ".join(str(node) for node in range(PAD, PAD + 8)),
               "*NSET, NSET=TOP", ", ".join(str(node) for node in range(PAD + 4, PAD + 8)),
               "*NSET, NSET=FIXED", *(f"{node}," for node in fixed)]
-    # The bar carries axial force only: no Poisson's ratio, and its sides are held.
+    # The bar carries axial force only: without Poisson's ratio, its sides held.
     lines += ["*MATERIAL, NAME=BAR", "*ELASTIC", f"{number(link.young_modulus_Pa)}, 0.", "*EXPANSION, ZERO=0.",
               number(case.thermal_expansion_per_K), "*MATERIAL, NAME=BLOCK", "*ELASTIC",
               f"{number(joint.young_modulus_Pa)}, {number(max(joint.poisson_ratio, 0.0))}"]
@@ -189,7 +189,7 @@ def deck(case: SpringSliderCase, corners: Sequence[float]) -> list[str]:
 
 
 def _nodes(first: int, low: Sequence[float], high: Sequence[float]) -> list[str]:
-    """Return the eight nodes of a brick: those of the bar by its ends, those of others from below."""
+    """Return the eight nodes of a brick: those of the bar by its ends, of others from below."""
     x, y, z = zip(low, high)
     corners = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
     if first == BAR:
