@@ -113,7 +113,7 @@ def segment(case: SpringSliderCase, friction_force_N: float, temperature_change_
 
 
 def rest_sets(case: SpringSliderCase, friction_force_N: float, temperatures: int | None = None) -> RestSets:
-    """Return the rest sets at the ends of the program and at ΔT = 0, or at so many evenly spaced temperatures."""
+    """Return the rest sets at the ends of the program and at ΔT = 0, or at a number of evenly spaced temperatures."""
     coldest, hottest = case.temperature_range_K
     changes: Sequence[float] = sorted({coldest, 0.0, hottest})
     if temperatures is not None:
@@ -122,9 +122,9 @@ def rest_sets(case: SpringSliderCase, friction_force_N: float, temperatures: int
 
 
 def statics(case: SpringSliderCase, friction_coefficient: float | None = None) -> RestSets:
-    """Return where the block can rest.
+    """Return the rest positions of the block.
 
-    :param friction_coefficient: instead of the case's own
+    :param friction_coefficient: replaces that of the case
     """
     mu = case.joint.friction_coefficient if friction_coefficient is None else friction_coefficient
     return rest_sets(case, mu * case.joint.normal_force_N)

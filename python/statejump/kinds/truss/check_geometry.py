@@ -41,9 +41,9 @@ def _expansions(truss: ResolvedTruss, ranges_K: np.ndarray) -> None:
 
 
 class NoSupport(StatejumpError):
-    """Parts of a truss without a path to a support.
+    """Some nodes of a truss have no connection to a support.
 
-    :param loose: a node of each of them
+    :param loose: one node of each such group
     """
 
     def __init__(self, *, loose: tuple[str, ...], **fields: Any) -> None:

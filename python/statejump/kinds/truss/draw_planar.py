@@ -135,7 +135,7 @@ def _frame(panel: Axes, middle: np.ndarray, extent: np.ndarray) -> None:
 
 def _draw(panel: Axes, truss: ResolvedTruss, lines: list[np.ndarray], colours: Any, size: float,
           scale: float, most_named: int) -> None:
-    """Draw a planar truss with symbols of that size [pt] on a panel of that scale [inch/m]."""
+    """Draw a planar truss on a panel of the given scale [inch/m], with symbols of the given size [pt]."""
     nodes = truss.nodes
     panel.add_collection(LineCollection(lines, colors=colours, linewidths=float(np.clip(size / 5, 0.8, 2.4)), zorder=2,
                                         rasterized=len(lines) > 5000))
@@ -161,7 +161,7 @@ def _draw(panel: Axes, truss: ResolvedTruss, lines: list[np.ndarray], colours: A
 
 
 def _draw_symbol(panel: Axes, symbol: Symbol, size: float) -> None:
-    """Symbols, all that point one way at once."""
+    """Draw symbols that all point in one direction at once."""
     style = dict(linestyle="none", color=symbol.colour, markerfacecolor=symbol.face, markersize=symbol.size * size,
                  markeredgewidth=0 if symbol.face == symbol.colour else max(0.4, size / 10), zorder=symbol.order)
     if symbol.up is None:

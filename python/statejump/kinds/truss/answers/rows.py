@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rows of the tables of a truss' answers, as CSV, JSON and result files have them."""
+"""Rows of the tables of a truss' answers, for CSV, JSON and result files."""
 from __future__ import annotations
 
 import math

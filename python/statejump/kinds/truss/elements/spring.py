@@ -91,7 +91,7 @@ class SpringType(BetweenNodes[Spring, Springs]):
                 for cable in np.flatnonzero(elements.cable)]
 
     def changed(self, truss: ResolvedTruss, elements: Springs) -> Springs:
-        # The stiffness changes at constant preload, the preload at constant stiffness.
+        # The stiffness changes at constant preload, and the preload at constant stiffness.
         drawn = distances(truss.nodes.position_m, elements.nodes)
         return replace(elements, free_length_m=drawn - elements.preload_N / elements.stiffness_N_per_m)
 

@@ -79,7 +79,7 @@ class TorsionSpringType(ElementType[TorsionSpring, TorsionSprings]):
         return Torsion(elements.names, elements.links, elements.axis, elements.stiffness_N_m_per_rad)
 
     def symbols(self, truss: ResolvedTruss, elements: TorsionSprings) -> list[Symbol]:
-        # A revolute has its own symbol in the middle: the spring stands around it.
+        # A revolute has its own symbol in the middle, so the spring is drawn around it.
         return [Symbol(truss.turning_places(elements.links), SPIRAL, 1.6, 1.3, colour=PINK, face="none", order=4.5)]
 
     def legend(self, elements: TorsionSprings) -> str:

@@ -187,7 +187,7 @@ def mast(
             break
         made["node"].append(node(f"M{k}", (BAY_M / 2, BAY_M * (k + 0.5))))
         for side, other, fraction in (("L", "R", 1.0), ("R", "L", shaded_fraction)):
-            # Lower half from this side, upper half to the other; an upper half is named after where it ends.
+            # The lower half starts on this side, the upper half on the other; an upper half has the name of its end.
             foot = f"{side}{k}j" if 0 < k and radial_clearance_m else f"{side}{k}"
             bar: dict[str, Any] = {**TUBE, "temperature_fraction": fraction}
             made["link"] += [
