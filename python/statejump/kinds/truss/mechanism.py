@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parts of a mechanism, for a truss in motion: bodies that are no rods, weights, driven links."""
+"""Items of a mechanism, for a truss in motion: bodies other than rods, weights, driven links."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -38,7 +38,7 @@ class Drives:
 
 @dataclass(frozen=True)
 class Bodies:
-    """Shapes of links, in shares of the way from the first to the second node and of its left normal."""
+    """Shapes of links, as fractions of the vector from the first to the second node, and of its left normal."""
 
     centre: np.ndarray  # (m, 2) of mass
     moment_kg_m2: np.ndarray  # (m,) of inertia about it

@@ -47,7 +47,7 @@ class TrussMotion:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences on reactions that the motion does not determine."""
+        """Sentences about reactions that the motion does not determine."""
         found = []
         if self.inexact_steps and self.regularised:
             found.append(f"in {self.inexact_steps} of {self.steps} steps a contact was stiffer than explicit steps of "
@@ -75,7 +75,7 @@ class TrussMotion:
 
 def dashpots_N_s_per_m(nodes: np.ndarray, stiffness_N_per_m: np.ndarray, ratio: float, mass_kg: np.ndarray
                        ) -> np.ndarray:
-    """Return c = 2 ζ sqrt(k m) of parts between two nodes, m the mass of both in series, as the DEM has them.
+    """Return c = 2 ζ sqrt(k m) of elements between two nodes, with the mass m of both in series, as in the DEM.
 
     :param mass_kg: of every node; 0 for one that does not move
     """
@@ -86,8 +86,8 @@ def dashpots_N_s_per_m(nodes: np.ndarray, stiffness_N_per_m: np.ndarray, ratio: 
 
 
 def joint_dashpots_sqrt_kg(truss: ResolvedTruss, ratio: float, mass_kg: np.ndarray) -> np.ndarray:
-    """Return 2 ζ sqrt(m) of the contacts of all joints, type by type; m the mass of both bodies in series, as the DEM
-    has them, 0 where neither moves.
+    """Return 2 ζ sqrt(m) of the contacts of all joints, type by type, with the mass m of both bodies in series, as in
+    the DEM; 0 if neither moves.
 
     :param mass_kg: of every node; 0 for one that does not move
     """
@@ -125,10 +125,10 @@ def inertia(case: TrussCase) -> dict[str, Any]:
 def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int = -1) -> TrussMotion:
     """Return the motion of a case through its program.
 
-    :param tell: takes the finished share, 0 to 1
-    :param watched_node: number of a node whose velocity is kept at every step
+    :param tell: called with the finished fraction, 0 to 1
+    :param watched_node: index of a node whose velocity is recorded at every step
     :raises FailedRun: no start, or a step without solution: with joint and temperature
-    :raises Interrupted: Ctrl-C; its ``run`` is the motion so far, None if there is no sample beside the start
+    :raises Interrupted: Ctrl-C; its ``run`` is the motion so far, None if there is only the start
     """
     def going_on(share: float) -> bool:
         tell(share)

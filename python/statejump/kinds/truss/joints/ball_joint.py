@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ball joints with clearance: a ball that plays in a socket, with a cone of Coulomb friction; spatial trusses."""
+"""Ball joints with clearance: a ball in a socket, with a cone of Coulomb friction; spatial trusses."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence

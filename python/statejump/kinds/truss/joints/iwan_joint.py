@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Iwan joints: bolted joints that slip little by little, after Segalman's four parameters, in Jenkins elements.
+"""Iwan joints: bolted joints that slip gradually, with Segalman's four parameters, discretised by Jenkins elements.
 
 The engine's ``iwan_joint.hpp`` has the law and its source.
 """

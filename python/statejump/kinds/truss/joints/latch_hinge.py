@@ -119,7 +119,7 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
     def add_friction(self, loads: Loads, joints: LatchHinges, state: Mapping[str, np.ndarray]) -> None:
         for index, (moment, (first, second)) in enumerate(zip(self._friction_N_m(joints, state), joints.links)):
             against = moment * joints.axis[index]
-            # Against the ground the first link's own turn counts.
+            # Against the ground, the rotation of the first link itself counts.
             loads.turn(index, first, -against if second == GROUND else against)
             loads.turn(index, second, -against)
 
@@ -132,7 +132,7 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
 
     @staticmethod
     def _friction_N_m(joints: LatchHinges, state: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Return what of the moment of a state is friction."""
+        """Return the moment of friction in a state."""
         rotation = state["hinge_rotation_rad"]
         beyond = rotation - np.clip(rotation, -joints.deadband_rad, joints.deadband_rad)
         elastic = joints.preload_moment_N_m + joints.stiffness_N_m_per_rad * beyond
