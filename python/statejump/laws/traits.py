@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the laws of the catalogue say of themselves: the traits on their types in C++, as data."""
+"""Descriptions of the laws of the catalogue: the traits of their types in C++, as data."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Law:
-    """What a law says of itself. Who has to know what a law can do asks this, never its name."""
+    """Description of a law. Code that depends on the capabilities of a law reads its traits, never its name."""
 
     name: str
     formula: str
@@ -61,7 +61,7 @@ def names(kind: str) -> list[str]:
 
 
 def law(kind: str, name: str) -> Law:
-    """Return the law of a kind with that name. :raises ValueError: there is none, with the names that there are"""
+    """Return the law of a kind with that name. :raises ValueError: it does not exist; the message lists the names"""
     for each in catalogue(kind):
         if each.name == name:
             return each

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Energy account of a run: supplied, stored, dissipated, and what is left over."""
+"""Energy account of a run: supplied, stored, dissipated energy, and the residue."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ import numpy as np
 from statejump.core.run import Run
 from statejump.report.words import Words
 
-# The end of a column's name tells its side of the account.
+# The ending of a column's name determines its side of the account.
 ROLES = {"_work_J": "supplied", "_energy_J": "stored", "_dissipation_J": "dissipated"}
 
 

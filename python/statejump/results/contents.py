@@ -48,7 +48,7 @@ class Answers:
 
 @dataclass(frozen=True)
 class Mesh:
-    """A surface that a part of type ``mesh`` refers to, in the part's own frame."""
+    """A surface for parts of type ``mesh``, in the part's own frame."""
 
     vertices_m: np.ndarray  # (vertices, 3)
     triangles: np.ndarray  # (triangles, 3), places in vertices_m

@@ -12,11 +12,11 @@ from statejump.schema.rules import suggestion
 
 
 def structure(model: type[SectionType], data: Mapping[str, Any]) -> SectionType:
-    """Return what a parsed TOML document holds.
+    """Return the sections of a parsed TOML document.
 
-    An unknown key is reported first: a misspelt key is missing as well.
+    An unknown key is reported first, because a misspelt key is missing as well.
 
-    :param model: the file: its fields are sections and lists of tables
+    :param model: class of the file: its fields are sections and lists of tables
     :raises StatejumpError: one failure, without the file's name
     """
     wanted = fields_of(model)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reading TOML files: what is wrong with one in a sentence, with its line."""
+"""Reader of TOML files; a fault is one sentence with its line."""
 from __future__ import annotations
 
 import sys
@@ -13,9 +13,9 @@ LARGEST_BYTES = 1 << 28  # a truss of 100 000 joints has a tenth of it
 
 
 def read_toml(path: str | Path, what: str) -> tuple[str, dict[str, Any]]:
-    """Return the text of a TOML file and what it holds.
+    """Return the text of a TOML file and its content.
 
-    :param what: what the file is, for the message when it is not there: ``case`` or ``campaign``
+    :param what: type of the file, for the message if it does not exist: ``case`` or ``campaign``
     :raises Unreadable: one sentence with the file and, if it is not TOML, the line
     """
     try:
@@ -42,8 +42,8 @@ def read_toml(path: str | Path, what: str) -> tuple[str, dict[str, Any]]:
 
 
 def _reason(failure: tomllib.TOMLDecodeError, text: str) -> tuple[str, int]:
-    """Return what the parser says and in which line. Python 3.14 gives both as attributes; before, they are the
-    two halves of its message."""
+    """Return the parser's reason and the line. Python 3.14 has both as attributes; before, they are the two halves of
+    its message."""
     if sys.version_info >= (3, 14):
         return str(failure.msg), int(failure.lineno)
     reason, _, place = str(failure).rpartition(" (at ")

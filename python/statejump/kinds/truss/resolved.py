@@ -18,12 +18,12 @@ from statejump.kinds.truss.arrays import GROUND
 from statejump.kinds.truss.constraints import Constraints
 from statejump.kinds.truss.mechanism import Bodies, Drives
 
-# Euler's load over that of pinned ends, by how the ends of a link are held: 4.493... is the first root of tan x = x.
+# Euler's load over that of pinned ends, by the supports of the link's ends: 4.493... is the first root of tan x = x.
 FIXITY = {
     "pinned_pinned": 1.0, "clamped_pinned": (4.493409457909064 / np.pi) ** 2, "clamped_clamped": 4.0, "guided": inf,
 }
 
-# How contacts stick: rigidly, as springs, or with partial slip that begins at the rim.
+# Models of sticking contacts: rigid, as springs, or with partial slip that begins at the rim.
 STICKING = ("rigid", "elastic", "partial_slip")
 
 
@@ -67,7 +67,7 @@ class Links:
 
     @property
     def euler_load_N(self) -> np.ndarray:
-        """Compression [N] at which each buckles by itself, inf of a guided one: fixity · π² E I/l0²."""
+        """Compression [N] at which each link buckles alone, fixity · π² E I/l0²; infinite for a guided one."""
         fixity = np.array([FIXITY[ends] for ends in self.ends])
         return fixity * np.pi**2 * self.young_modulus_Pa * self.second_moment_of_area_m4 / self.stress_free_length_m**2
 
@@ -102,7 +102,7 @@ class JoinsNodes(Protocol):
     section: ClassVar[str]
 
     def joined(self, joints: Any) -> np.ndarray:
-        """Return the pairs of nodes (k, 2) that the joints hold together."""
+        """Return the pairs of nodes (k, 2) that the joints constrain."""
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ class ResolvedTruss:
         return self.elements["spring"]
 
     def with_elements(self, **changed: Any) -> ResolvedTruss:
-        """Return the truss with other elements of the sections that are named."""
+        """Return the truss with other elements in the named sections."""
         return replace(self, elements={**self.elements, **changed})
 
     def ends(self) -> list[np.ndarray]:
@@ -164,15 +164,15 @@ class ResolvedTruss:
         return [-states["axial_force_N"], *(element.tension_N(states) for element in self.element_types)]
 
     def with_joints(self, **changed: Any) -> ResolvedTruss:
-        """Return the truss with other joints of the sections that are named."""
+        """Return the truss with other joints in the named sections."""
         return replace(self, joints={**self.joints, **changed})
 
     def joined(self) -> np.ndarray:
-        """Return the pairs of nodes (k, 2) that joints hold together."""
+        """Return the pairs of nodes (k, 2) that joints constrain."""
         return np.concatenate([joint.joined(self.joints[joint.section]) for joint in self.types])
 
     def number_of_joints(self) -> int:
-        """How many joints it has, of all types."""
+        """Number of its joints, of all types."""
         return sum(len(joints.names) for joints in self.joints.values())
 
     def turning_places(self, links: np.ndarray) -> np.ndarray:
