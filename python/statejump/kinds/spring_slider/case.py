@@ -60,7 +60,7 @@ class Joint(Section):
 
 @definition
 class Dem(Section):
-    """How the DEM runs the case; the reduced model takes only the samples from here."""
+    """Settings of the DEM; the reduced model uses only the number of samples."""
 
     time_step_s: float | None = parameter(None, "s", 0, 1.0, "from the fraction", above=True)
     time_step_fraction: float = parameter(0.1, "-", 0, 1.0, "of the stable step", above=True)
@@ -74,7 +74,7 @@ class Dem(Section):
 
 @definition
 class Tolerance(Section):
-    """How close the two models must be for ``compare`` to pass."""
+    """Allowed differences between the two models in ``compare``."""
 
     state_jump_relative: float = parameter(0.005, "-", 0, 1, CHOICE, above=True)
     event_temperature_K: float = parameter(0.5, "K", 0, 1e3, CHOICE, above=True)

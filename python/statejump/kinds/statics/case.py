@@ -106,7 +106,7 @@ def read_forces(name: str, value: Any) -> list[Force]:
 
 @definition
 class StaticsJoint(Section):
-    """The joint: what its clearance leaves free, and friction."""
+    """The joint: geometry of its clearance, and friction."""
 
     GOES_WITH = {"type": KEYS_OF_TYPES}
 
@@ -123,7 +123,7 @@ class StaticsJoint(Section):
 
 @definition
 class Picture(Section):
-    """What is drawn besides the case's own friction coefficient."""
+    """Friction coefficients for drawings, besides that of the case."""
 
     friction_coefficients: list[float] = numbers([], "-", 0, 100, "one panel each, two dimensions")
 
@@ -138,7 +138,7 @@ class LoadCase:
 
 @definition
 class StaticsCase(Case):
-    """Where a loaded joint can rest: its position under given forces, friction included."""
+    """Rest positions of a loaded joint under given forces, friction included."""
 
     KIND: ClassVar[str] = "statics"
     NOT_IN_FILE: ClassVar[Mapping[str, str]] = {

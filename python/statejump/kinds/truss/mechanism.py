@@ -16,8 +16,8 @@ from statejump.schema.items import Item
 
 @definition
 class Drive(Item):
-    """A link of a planar truss in motion whose turning is prescribed, anticlockwise: at a constant angular velocity
-    after a ramp, or by a table, straight between its rows. A couple on the link's two nodes turns it."""
+    """A link of a planar truss in motion with prescribed rotation, anticlockwise: at a constant angular velocity after
+    a ramp, or by a table, linear between its rows. A couple on the link's two nodes rotates it."""
 
     link: str = text(..., "name of the link")
     angular_velocity_rad_per_s: float | None = parameter(None, "rad/s", -1e6, 1e6, "this or a table")

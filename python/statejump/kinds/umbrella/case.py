@@ -26,14 +26,14 @@ NONE = "none in the paper's case"
 
 @definition
 class Frame(Section):
-    """What carries the pins; it does not expand."""
+    """The frame of the pins; it does not expand."""
 
     length_m: float = parameter(..., "m", 0, 1e3, PAPER + ": |AC|", above=True)
 
 
 @definition
 class UmbrellaLink(Section):
-    """A bar pinned to the frame at one end; it also gives its half of the joint its material."""
+    """A bar pinned to the frame at one end; its half of the joint is of its material."""
 
     mass_kg: float = parameter(..., "kg", 0, 1e6, PAPER, above=True)
     young_modulus_Pa: float = parameter(..., "Pa", 0, 1e13, PAPER, above=True)
@@ -141,7 +141,7 @@ class Ensemble(Section):
 
 @definition
 class UmbrellaTolerance(Section):
-    """How close the two models must be for ``compare`` to pass."""
+    """Allowed differences between the two models in ``compare``."""
 
     first_contact_reduced_K: float = parameter(1e-6, "K", 0, 1e3, CHOICE, above=True)
     first_contact_dem_K: float = parameter(1e-3, "K", 0, 1e3, CHOICE, above=True)

@@ -30,8 +30,8 @@ PINK = "#CC79A7"
 class TorsionSpring(Item):
     """A spring on the angle from the first link to the second, or on the angle of one link in space.
 
-    Links point from their first to their second node, angles are anticlockwise about the axis (z in the
-    plane). The moment K (angle - drawn angle - bias) turns the links back to the drawn angle + bias.
+    Links point from their first to their second node, angles are anticlockwise about the axis (z in the plane). The
+    moment K (angle - angle in the reference configuration - bias) rotates the links back to that angle + bias.
     """
 
     links: list[str] = texts(..., "two links that share a place, or one")

@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 
 @definition
 class BallJoint(Item):
-    """A ball joint with clearance and Coulomb friction in a spatial truss: the ball, at one node, plays in the socket,
-    at another. A link carries and turns each, without spinning about its own axis; without a link a part does not
-    turn."""
+    """A ball joint with clearance and Coulomb friction in a spatial truss: the ball, at one node, moves in the socket,
+    at another. A link carries and rotates each part, without spin about its own axis; without a link a part does not
+    rotate."""
 
     socket_node: str = text(..., "where the socket's centre is")
     ball_node: str = text(..., "where the ball's centre is")

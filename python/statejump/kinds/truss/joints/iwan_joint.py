@@ -35,8 +35,9 @@ BOLT: Strokes = (
 
 @definition
 class IwanJoint(Item):
-    """A bolted joint after Segalman's four-parameter Iwan model: the first node moves along an axis fixed in space, on
-    ground or on the second node, against springs of which more and more slip. It holds across the axis as a slider."""
+    """A bolted joint after Segalman's four-parameter Iwan model. The first node moves along an axis fixed in space, on
+    ground or on the second node, against springs of which more and more slip. Across the axis it is constrained as a
+    slider."""
 
     nodes: list[str] = texts(..., "one node, on ground, or two")
     axis: list[float] = numbers(..., "-", -1e9, 1e9, "of any length")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Latch hinges: free play in rotation, stiffness beyond it, friction and a moment that preloads them."""
+"""Latch hinges: free play in rotation, stiffness beyond it, friction and a preload moment."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
 @definition
 class LatchHinge(Item):
-    """A hinge with a latch: the rotation of the second link against the first, or of one link against the ground,
-    is free within a play and meets a stiffness beyond it, against dry friction.
+    """A hinge with a latch: the second link rotates against the first, or one link against the ground. The rotation is
+    free within a play and meets a stiffness beyond it, against dry friction.
 
-    Angles as of torsion springs. The moment against a rotation from the drawn shape is preload + stiffness (rotation
-    beyond the play) ± friction.
+    Angles are those of torsion springs. The moment against a rotation from the reference configuration is preload +
+    stiffness (rotation beyond the play) ± friction.
     """
 
     links: list[str] = texts(..., "two links that share a place, or one")

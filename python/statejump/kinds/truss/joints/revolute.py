@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
 @definition
 class Revolute(Item):
-    """A clearance revolute joint with Coulomb friction: the journal, at one node, plays in the bearing, at
-    another. A link carries and turns each; without a link a part does not turn."""
+    """A clearance revolute joint with Coulomb friction: the journal, at one node, moves in the bearing, at another. A
+    link carries and rotates each part; without a link a part does not rotate."""
 
     bearing_node: str = text(..., "where the bearing's centre is")
     journal_node: str = text(..., "where the journal's centre is")

@@ -35,9 +35,8 @@ STOPS: Strokes = (((-1.0, -0.55), (-1.0, 0.45)), ((1.0, -0.55), (1.0, 0.45)))
 
 @definition
 class Slider(Item):
-    """A frictional prismatic joint: the first node slides along an axis fixed in space, on ground or on
-    the second node. Between two nodes it also holds them together across the axis; on ground the
-    supports of the node do."""
+    """A prismatic joint with friction: the first node slides along an axis fixed in space, on ground or on the second
+    node. Between two nodes the joint also constrains both across the axis; on ground the supports of the node do."""
 
     nodes: list[str] = texts(..., "one node, on ground, or two")
     axis: list[float] = numbers(..., "-", -1e9, 1e9, "of any length")
