@@ -47,7 +47,7 @@ def of_case(name: str) -> Row:
 
 
 def of_scenes(build: Path, script: str, joint: str, part: str) -> list[Row]:
-    """The scenes of one part of a script of the tests."""
+    """Return the scenes of one part of a script of the tests."""
     paths = [build / "python", SCRIPTS, *(REPOSITORY / "yade_scripts" / name for name in ("examples", "runner"))]
     done = subprocess.run(
         ["yade", "-n", "-x", "-j1", str(SCRIPTS / script), part], stdin=subprocess.DEVNULL, capture_output=True,

@@ -4,9 +4,9 @@
 
     PYTHONPATH=build/python:. /usr/bin/python3 studies/bench/motion_ensembles.py [--case NAME]
 
-Without dashpots what rings after a joint has knocked never dies away, and two runs that differ by little part. What can
-be compared then are distributions: both models run many times, with periods of heating that are drawn at random from
-a narrow range, each model with draws of its own; the tests are those of `statejump figures`.
+Without dashpots the ringing after an impact never decays, and runs with small differences diverge. Distributions can
+still be compared. Both models run many times, with random heating periods from a narrow range, drawn separately for
+each model. The tests are those of `statejump figures`.
 """
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ UNDAMPED = {"dem.link_damping_ratio": 0.0, "dem.contact_damping_ratio": 0.0, "de
 
 @dataclass(frozen=True)
 class Ensemble:
-    """What is run: how it is loaded, its period [s], implicit steps of a cycle, and the unit of its heat: how many a
-    joule has, and its name."""
+    """One ensemble: load, period [s], implicit steps per cycle, and the unit of heat: its number per joule, and its
+    name."""
 
     load: Callable[[], Any]
     period_s: float
@@ -58,13 +58,13 @@ COLUMNS = ("case", "model", "period_s", *QUANTITIES)
 
 
 def drawn_periods(period_s: float, model: int, count: int) -> np.ndarray:
-    """Return periods of heating [s], evenly spread; the same for the same seed, of each model its own."""
+    """Return heating periods [s], evenly spread; the same for the same seed, different for each model."""
     generator = np.random.default_rng([SEED, model])
     return period_s * (1 + SPREAD * (2 * generator.random(count) - 1))
 
 
 def measure(name: str, count: int) -> list[dict[str, Any]]:
-    """Run one case as often as asked in all models."""
+    """Run one case in all models, the requested number of times."""
     ensemble = CASES[name]
     case = ensemble.load().changed({**UNDAMPED, "motion.steps_per_cycle": ensemble.steps,
                                     "thermal.period_s": ensemble.period_s})
@@ -80,7 +80,7 @@ def measure(name: str, count: int) -> list[dict[str, Any]]:
 
 
 def drawn(case: Any, model: str, count: int) -> Iterator[Any]:
-    """Yield the case as a model takes it, with all its periods."""
+    """Yield the case for a model, with all its periods."""
     if model == REGULARISED:
         case = explicit(case)
     elif model != SETS:
@@ -90,7 +90,7 @@ def drawn(case: Any, model: str, count: int) -> Iterator[Any]:
 
 
 def row(name: str, model: str, case: Any, node: int, along: np.ndarray) -> dict[str, Any]:
-    """Run a case and return what is compared of it, the jump of a node along a direction."""
+    """Run a case and return its compared quantities, with the jump of a node along a direction."""
     run = case.dem() if model in FRACTIONS else case.reduced(dynamic=True)
     return {"case": name, "model": model, "period_s": case.thermal.period_s,
             "jump_m": float(compare.jumps_m(run)[node] @ along),
@@ -98,7 +98,7 @@ def row(name: str, model: str, case: Any, node: int, along: np.ndarray) -> dict[
 
 
 def unit(name: str, key: str) -> tuple[float, str]:
-    """Return how many of its unit a quantity of a case has in SI, and the unit."""
+    """Return the number of units per SI unit for a quantity of a case, and the unit."""
     return {"jump_m": (1e6, "µm"), "friction_J": CASES[name].heat, "peak_m_per_s2": (1.0, "m/s²")}[key]
 
 
@@ -108,13 +108,13 @@ def values(rows: list[dict[str, Any]], case: str, model: str, key: str) -> np.nd
 
 
 def tests(rows: list[dict[str, Any]], case: str, model: str) -> list[TwoSampleTest]:
-    """Return the tests of all quantities of a case between a model and the DEM in its shortest steps."""
+    """Return the tests of all quantities of a case between a model and the DEM with its shortest steps."""
     return [two_sample_test(words, *(values(rows, case, one, key) for one in (model, FINE)))
             for key, words in QUANTITIES.items()]
 
 
 def picture(rows: list[dict[str, Any]], names: list[str], path: Any) -> None:
-    """Draw the distributions of all quantities, a row a case."""
+    """Draw the distributions of all quantities, one row per case."""
     with figures.style():
         figure, places = figures.panels(len(names), len(QUANTITIES), (10.0, 2.6 * len(names)))
         for name, axes_of in zip(names, np.asarray(places, dtype=object).reshape(len(names), -1)):

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cost of trusses in motion beside the DEM at equal error; writes results/motion/speed.md and speed.csv.
+"""Cost of trusses in motion against the DEM at equal error; writes results/motion/speed.md and speed.csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_speed.py [--case NAME]
 
-Both models run with several steps and are measured by the DEM with its default step, to which both converge. CPU time
-of the stepping, one thread. Chains of 100 to 10 000 blocks tell how the cost of a step grows.
+Both models run with several steps. The reference is the DEM with its default step, to which both converge. CPU time of
+the steps, one thread. Chains of 100 to 10 000 blocks show how the cost of a step grows.
 """
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def moved(case: Any) -> tuple[Any, float]:
 
 
 def row(name: str, model: str, run: Any, reference: Any, steps: int, theta: Any, seconds: float) -> dict[str, Any]:
-    """Return what one run costs, and how far from the reference it is."""
+    """Return the cost of one run, and its error against the reference."""
     apart = np.linalg.norm(run["displacement_m"] - reference["displacement_m"], axis=2)
     jumps, exact = compare.jumps_m(run), compare.jumps_m(reference)
     return {
@@ -82,7 +82,7 @@ def measure(names: list[str]) -> list[dict[str, Any]]:
 
 
 def scaling() -> list[dict[str, Any]]:
-    """Run chains of blocks that stick, as studies/bench/truss_dem.py does in the DEM."""
+    """Run chains of sticking blocks, as studies/bench/truss_dem.py does in the DEM."""
     rows = []
     for blocks in SIZES:
         case = sj.truss.chain(blocks, temperature_change_K=1.0, friction_force_N=1e3).changed({

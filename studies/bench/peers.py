@@ -47,7 +47,7 @@ NAME = {
 }
 PAIRS = (("joint_stepper", "bare_loop"), ("joint_stepper", "joint"), ("joint_stepper", "lammps_bore"),
          ("joint", "lammps_bore"), ("sphere", "lammps_sphere"))
-# Of the JointStepper's cost over that of another scene in the same run: at most, and what it is.
+# Largest allowed cost of the JointStepper over that of another scene in the same run, and the meaning of this number.
 GOALS = (
     ("joint", 1, 120 / 1666, "120 ns where YADE's loop takes 1666"),
     ("joint", 100, 60 / 180, "60 ns where YADE's loop takes 180"),
@@ -63,7 +63,7 @@ DENSITY = MASS / (4 / 3 * pi * RADIUS**3)
 
 @dataclass
 class Deck:
-    """What LAMMPS or LIGGGHTS reads: lines of commands, and the bodies (type, x, y, z)."""
+    """Input of LAMMPS or LIGGGHTS: lines of commands, and the bodies (type, x, y, z)."""
 
     program: str
     lines: list[str]
@@ -198,7 +198,7 @@ def ratios(rows: list[dict[str, Any]], first: str, second: str, size: int) -> li
 
 
 def goals(rows: list[dict[str, Any]], scenes: list[str]) -> str:
-    """What the JointStepper has to reach, and whether it does."""
+    """Return the goals of the JointStepper, and whether it reaches them."""
     lines = ["| `JointStepper` / | contacts | to reach | | measured: median (lowest to highest) | met |",
              "|---|--:|--:|---|--:|---|"]
     for second, size, most, meaning in GOALS:

@@ -154,7 +154,7 @@ def table1_table(rows: list[dict[str, Any]]) -> str:
 
 
 def engine_table(build: Path, repetitions: int) -> str:
-    """Return the share of each engine by O.timingEnabled; runs of their own, it slows YADE down."""
+    """Return the fraction of each engine by O.timingEnabled, from separate runs, because it slows YADE down."""
     engines = [
         "ForceResetter", "ThermalExpansionEngine", "InsertionSortCollider", "InteractionLoop",
         "NewtonIntegrator",
@@ -181,7 +181,7 @@ def engine_table(build: Path, repetitions: int) -> str:
 
 
 def write(path: Path, text: str) -> None:
-    """Write aside, then rename, so that nothing half-written stays behind."""
+    """Write a temporary file, then rename it, so that no incomplete file remains."""
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_name("." + path.name + ".partial")
     partial.write_text(text)
@@ -216,11 +216,11 @@ def as_csv(rows: list[dict[str, Any]], columns: Sequence[str] = COLUMNS) -> str:
     return stream.getvalue()
 
 
-# The frame of the benchmarks beside this one: umbrella.py, campaign.py, truss_dem.py, peers.py, yade_import.py.
+# The main function of the other benchmarks: umbrella.py, campaign.py, truss_dem.py, peers.py, yade_import.py.
 
 
 def start(main: Callable[[], None], *failures: type[Exception]) -> None:
-    """Run a benchmark; a BenchError, an OSError or one of these ends it with status 2 and one sentence."""
+    """Run a benchmark. A BenchError, an OSError or one of the given errors ends it with status 2 and one sentence."""
     told: tuple[type[Exception], ...] = (BenchError, OSError, *failures)
     try:
         main()

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Moreau and Jean's scheme here and in Siconos; writes results/motion/siconos.md and siconos.csv.
+"""The Moreau–Jean scheme of this project and of Siconos; writes results/motion/siconos.md and siconos.csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/siconos_moreau_jean.py
 
-A journal bounces in a bearing that stands on an elastic link, and a second one bounces in a bore of the first: two
-clearance revolutes, rigid contact, Coulomb friction, Newton's restitution, five displacements. The same theta and the
-same steps in both. Siconos (Debian: python3-siconos) is needed for nothing else.
+A journal bounces in a bearing on an elastic link, and a second one bounces in a bore of the first: two clearance
+revolutes, rigid contact, Coulomb friction, Newton's restitution, five displacements. Both programs have the same theta
+and steps. Only this program needs Siconos (Debian: python3-siconos).
 """
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def case(friction: float) -> Any:
 
 
 def here(steps: int, friction: float) -> tuple[np.ndarray, float, list[float]]:
-    """Return places (steps + 1, 5) [m], the CPU time of the stepping [s] and the times of impacts [s]."""
+    """Return positions (steps + 1, 5) [m], the CPU time of the steps [s] and the times of impacts [s]."""
     definition = case(friction).changed({"motion.steps_per_cycle": steps, "output.samples_per_cycle": steps}).definition
     definition.resolve()
     begun = process_time()
@@ -68,7 +68,7 @@ def here(steps: int, friction: float) -> tuple[np.ndarray, float, list[float]]:
 
 
 def there(steps: int, friction: float) -> tuple[np.ndarray, float]:
-    """Return the same places by Siconos, and the CPU time of its stepping [s]."""
+    """Return the same positions by Siconos, and the CPU time of its steps [s]."""
     import siconos.kernel as kernel
     import siconos.numerics as numerics
 
@@ -102,7 +102,7 @@ def there(steps: int, friction: float) -> tuple[np.ndarray, float]:
     stepping.setNewtonMaxIteration(20)
     places, seconds = np.zeros((steps + 1, 5)), 0.0
     for k in range(1, steps + 1):
-        # Gaps and directions of the middle of the step, as here.
+        # Gaps and directions at the middle of the step, as in this project.
         middle = body.q() + 0.5 * step * body.velocity()
         borrowed = []
         for relation, interaction, apart in bores:

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Time and memory of the quasi-static truss solver against the number of joints.
+"""Time and memory of the quasi-static truss solver over the number of joints.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/truss.py [--largest 1000000] [--trusses ring umbrella]
 
-Two trusses, one temperature cycle, ten points a branch: the ring with preload as
-`statejump truss ring` makes it, and the umbrella with cables between its ribs, whose friction scatters so
-that every joint slips at its own temperature. Items come from HDF5 tables beside the case file; of 100 000
-joints also as Python objects. OMP_NUM_THREADS says how many threads. Every row is measured in a process of its
-own, so that the memory is its own; the tables are made in another one. Writes results/bench/truss.md after every
-row.
+Two trusses run through one temperature cycle with ten points per branch: the ring of `statejump truss ring` with
+preload, and the umbrella with cables between its ribs. Its friction is scattered, so that every joint slips at its own
+temperature. Items come from HDF5 tables beside the case file; for 100 000 joints also as Python objects.
+OMP_NUM_THREADS sets the number of threads. Every row is measured in its own process, so that the memory is its own;
+another process makes the tables. Writes results/bench/truss.md after every row.
 """
 from __future__ import annotations
 
@@ -65,7 +64,7 @@ def document(truss: str, joints: int) -> dict[str, Any]:
 
 
 def column(items: Sequence[Mapping[str, Any]], key: str) -> Any:
-    """Return a key of every item as a data set has it: NaN and empty texts where there is none."""
+    """Return a key of every item for a data set: NaN or empty texts if missing."""
     given: Any = next(item[key] for item in items if key in item)
     if not isinstance(given, list):
         none: Any = "" if isinstance(given, str) else np.nan
@@ -90,7 +89,7 @@ def write(truss: str, joints: int, folder: Path) -> None:
 
 
 def measure(truss: str, joints: int, folder: Path | None) -> tuple[float, str]:
-    """Return how long a path takes [s], and a row of the table.
+    """Return the time of a path [s], and a row of the table.
 
     :param folder: of the case file with tables; None: the items are Python objects
     """

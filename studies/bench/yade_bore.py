@@ -22,7 +22,8 @@ from statejump_yade import *
 
 R1, R2, load, dt, joints = 5e-3, 5.1e-3, 10.0, 1e-6, 100
 steps, warm_up, repetitions = 2000, 500, 5
-# Turns of the force per second, and a friction coefficient that holds at rest and lets slide.
+# Rotations of the force per second, and the friction coefficient: one that holds at rest, and one that lets the journal
+# slide.
 loads = {"at rest": (0.0, 0.3), "sliding slowly": (30 / 360, 1e-3), "sliding fast": (50.0, 0.1)}
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Conclusion c of the paper, measure by measure: what each does to the state jump."""
+"""Conclusion c of the paper: the effect of each measure on the state jump."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -45,13 +45,13 @@ MEASURE_RULE = (
 
 @dataclass(frozen=True)
 class Measure:
-    """One measure against the jump.
+    """One measure and its effect on the jump.
 
     :param without: value of the parameter without it
     :param larger: it makes the parameter larger, not smaller
     :param label: of the parameter
-    :param reduces: why it reduces the jump, where it does
-    :param fails: why it does not, where it does not; of the means with it and without it [rad]
+    :param reduces: reason if it reduces the jump
+    :param fails: reason if it does not; a text for the means with it and without it [rad]
     """
 
     name: str
@@ -69,7 +69,7 @@ def _change(means: list[float], before: float) -> str:
 
 
 def measures(f: Findings) -> tuple[Measure, ...]:
-    """Return the measures that the runs speak to."""
+    """Return the measures that the runs can test."""
     turn = f"both links together can still turn by c/|AC| = {f.free_turn_rad * MRAD:.2f} mrad within the play"
 
     def friction_fails(means: list[float], before: float) -> str:
@@ -106,7 +106,7 @@ def _why(m: Measure, verdict: str, size: Groups) -> str:
 
 
 def control(f: Findings) -> list[Claim]:
-    """Return what each measure does to the jump."""
+    """Return the effect of each measure on the jump."""
     claims = []
     for m in measures(f):
         size = m.jump.absolute()
@@ -131,7 +131,7 @@ def control(f: Findings) -> list[Claim]:
 
 
 def all_claims(f: Findings) -> list[Claim]:
-    """Return every statement of the paper's section 4.3, and of its conclusions as far as runs speak to it."""
+    """Return every statement of the paper's section 4.3, and those of its conclusions that the runs can test."""
     return [
         state_jump_occurs(f),
         smaller_clearance_earlier(f),

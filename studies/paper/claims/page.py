@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page of the claims: verdicts first, then the numbers behind."""
+"""The page of the claims: verdicts first, then the numbers."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -26,7 +26,7 @@ def _table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
 
 
 def _rules_changed(f: Findings, claims: Sequence[Claim], rules: Sequence[str]) -> str:
-    """Return that rules were not all laid down beforehand, and what the former ones would say here."""
+    """Return a note that rules were changed after the first runs, and the verdicts of the former rules."""
     spring = next(one for one in measures(f) if one.jump is f.jump_by_spring)
     now = measure(spring.jump.absolute(), spring.without, spring.larger)
     before = trend(spring.jump.absolute(), rising=False).verdict
