@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the paper says of its Figures 13 to 16, statement by statement."""
+"""Verdicts on the paper's statements about its Figures 13 to 16."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ NEAR_STATIC = 0.05  # of the static value
 
 @dataclass(frozen=True)
 class Claim:
-    """A statement, what was found, what follows, why as far as the numbers tell, and by which rule."""
+    """A statement, the observation, the verdict, its reason as far as the numbers show it, and the rule."""
 
     statement: str
     found: str
@@ -29,7 +29,7 @@ class Claim:
 
 
 def jump_verdict(f: Findings, least_m: float) -> str:
-    """Return the verdict on "a state jump occurs", if an end that far from the start is one."""
+    """Return the verdict on "a state jump occurs", for the given distance of the end from the start."""
     share = float(np.mean(np.concatenate([f.end_shift_reduced_m, f.end_shift_dem_m]) > least_m))
     return HOLDS if share == 1 else IN_THE_MEAN if share > 0.5 else FAILS
 
@@ -85,7 +85,7 @@ def _rises(values: Sequence[float | None]) -> bool:
 
 
 def smaller_clearance_earlier(f: Findings) -> Claim:
-    """The smaller the clearance, the earlier the deflection."""
+    """Judge "the smaller the clearance, the earlier the deflection"."""
     met = all(_meets(contact, f) for contact in f.first_contacts)
     each = all(
         _rises([getattr(contact, name) for contact in f.first_contacts]) for name in ("reduced_K", "dem_K")
@@ -123,7 +123,7 @@ def smaller_clearance_earlier(f: Findings) -> Claim:
 
 
 def large_clearance_never_touches(f: Findings) -> Claim:
-    """Above the limit there is no contact at all, below it there always is."""
+    """Judge "above the limit there is no contact"; below it there must always be one."""
     above = [value > f.clearance_limit_m for value in f.onset_K.values]
     right = [
         bool(np.all(np.isinf(onset) if beyond else np.isfinite(onset)))
@@ -165,7 +165,7 @@ def _trend_text(t: Trend) -> str:
 
 
 def _trend_why(t: Trend, holds: str) -> str:
-    """Return the reason of a trend's verdict; ``holds`` is that of the claimed direction."""
+    """Return the reason of a trend's verdict; ``holds`` is the reason if the claimed direction is confirmed."""
     if t.verdict == HOLDS:
         return holds
     scatter = ("two runs at neighbouring values come out in the claimed order with a chance as low as "
@@ -178,7 +178,7 @@ def _trend_why(t: Trend, holds: str) -> str:
 
 
 def more_friction_larger_range(f: Findings) -> Claim:
-    """The larger μ, the larger the range of θ2."""
+    """Judge "the larger μ, the larger the range of θ2"."""
     t = trend(f.range_by_friction, rising=True)
     first, *_, last = f.range_by_friction.runs
     return Claim(
