@@ -75,9 +75,10 @@ def report(rows: list[dict[str, Any]]) -> str:
              "fastest [m/s]", "at [K]")
     return f"""# Creak and snap by the rate of heating
 
-Trusses in motion, {CASES['chain_10'][2]:,.0f} steps a second, elastic sticking, dashpots as the cases have them. What
-the node feels; heat of all slips and of the largest one; the largest speed and the temperature change where it comes.
-A slide so slow that it stops and begins again between two steps counts as many slips.
+Trusses in motion with {CASES['chain_10'][2]:,.0f} steps per second, elastic sticking, and the dashpots of the cases.
+The columns have the peak acceleration of the node, the heat of all slips and of the largest one, and the largest
+speed with its temperature change. A slide that is slow enough to stop and begin again between two steps counts as
+several slips.
 
 | {' | '.join(heads)} |
 |---{'|--:' * (len(heads) - 1)}|

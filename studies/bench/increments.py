@@ -55,20 +55,22 @@ def report(rows: list[dict[str, Any]]) -> str:
         return "\n".join(lines)
 
     head = f"| case | {' | '.join(map(str, INCREMENTS))} |\n|---{'|--:' * len(INCREMENTS)}|"
-    return f"""# What increments leave of a quasi-static path
+    return f"""# Errors of a quasi-static path over its increments
 
-Increments a branch of the temperature; 50 is the default. Events are located to 1e-9 of a branch.
+The columns are numbers of increments per branch of the temperature; 50 is the default. Events are located to 1e-9 of a
+branch.
 
 ## Balance of energies
 
-Temperature's work less what is stored and friction's heat, the largest of all states over the largest work.
+Largest energy residue of all states over the largest work. The residue is the work of the temperature less stored
+energy and heat of friction.
 
 {head}
 {table("balance")}
 
 ## Displacements at the end
 
-Of the node that is farthest from where {FINEST} increments put it, over the largest displacement.
+Largest difference of a node from the path with {FINEST} increments, over the largest displacement.
 
 {head}
 {table("displacement")}

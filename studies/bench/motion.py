@@ -132,12 +132,16 @@ def report(rows: list[dict[str, Any]]) -> str:
     table = "\n".join(lines)
     return f"""# Trusses in motion beside the DEM and the quasi-static solver
 
-Cases as they are but for the changes that their names tell, {SAMPLES:,} samples a cycle. In motion: {STEPS:,} steps a
-cycle, masses as the DEM has them (`motion.masses = "lumped"`), sticking elastic as in the DEM, or partial slip. Jump:
-of the node that jumps most in the DEM; difference: the largest of all nodes; rms: the largest of all nodes over the
-run, over the largest displacement. Regularised: the DEM's contacts in {EXPLICIT_STEPS} times as many explicit steps
-as are just stable. Peak acceleration: largest second difference of the samples, m/s². Heat in J. Steps of a
-quasi-static path are its systems. The CPU time is of one shared core; the DEM's includes its samples.
+The names of the cases state their changes. Each run has {SAMPLES:,} samples per cycle. Motion has {STEPS:,} steps per
+cycle, the masses of the DEM (`motion.masses = "lumped"`), and elastic sticking as in the DEM, or partial slip.
+
+- jump: of the node with the largest jump in the DEM
+- difference: largest difference of the jump from the DEM, of all nodes
+- rms: largest rms difference from the DEM over the run, of all nodes, over the largest displacement
+- peak acceleration: largest second difference of the samples [m/s²]; heat in J
+- steps: for a quasi-static path the number of linear systems
+- regularised: penalty contact with the DEM's laws, in {EXPLICIT_STEPS} times as many steps as are just stable
+- CPU: of one shared core; that of the DEM includes its samples
 
 | case | model | jump | difference | rms | peak acceleration | friction | dashpots | steps | CPU |
 |---|---|--:|--:|--:|--:|--:|--:|--:|--:|

@@ -149,17 +149,20 @@ def report(rows: list[dict[str, Any]], names: list[str], count: int) -> str:
     steps = ", ".join(f"{name} {CASES[name].steps:,}" for name in names)
     return f"""# Undamped trusses: ensembles in motion and in the DEM
 
-Cases without any dashpot, {count} runs of each model with periods of heating drawn evenly from ±{SPREAD:.0%} of the
-one in the table, each model with draws of its own. DEM: at {FRACTIONS[DEM]:g} of its stable step, its default; quarter
-step: at {FRACTIONS[FINE]:g}, which all others are held against. In motion with masses as the DEM has them: regularised,
-the DEM's contacts in {EXPLICIT_STEPS} times as many explicit steps as are just stable; by sets, elastic sticking in
-implicit steps, of a cycle: {steps}.
+The cases have no dashpots. Each model makes {count} runs, with heating periods drawn evenly from ±{SPREAD:.0%} of the
+one in the table, independently for each model.
 
-Jump: of the node that jumps most on the quasi-static path, along that jump, at the end of the cycle, where it still
-rings. Peak acceleration: largest second difference of {SAMPLES:,} samples. Tests as in `statejump figures`: Kolmogorov
-and Smirnov of the distributions, Welch of the means, Brown and Forsythe of the spreads; the models agree if none tells
-them apart at {SIGNIFICANCE:g}. Of {3 * len(lines)} tests of equal models {3 * len(lines) * SIGNIFICANCE:.2g} are
-expected to.
+- DEM: {FRACTIONS[DEM]:g} of its stable step, the default; quarter step: {FRACTIONS[FINE]:g} of it, the reference
+- regularised: penalty contact with the DEM's masses and laws, in {EXPLICIT_STEPS} times as many steps as are just
+  stable
+- by sets: Moreau–Jean with the DEM's masses and elastic sticking; steps per cycle: {steps}
+- jump: of the node with the largest jump on the quasi-static path, along that jump, at the end of the cycle. The node
+  still rings there
+- peak acceleration: largest second difference of {SAMPLES:,} samples
+
+The tests are those of `statejump figures`: Kolmogorov-Smirnov for the distributions, Welch for the means,
+Brown-Forsythe for the spreads. Two models agree if no test is significant at {SIGNIFICANCE:g}. Of {3 * len(lines)}
+tests of equal models {3 * len(lines) * SIGNIFICANCE:.2g} are expected to be significant.
 
 | case, period | model | quantity | mean | s.d. | mean, quarter | s.d. | p, distribution | p, mean | p, spread | agree |
 |---|---|---|--:|--:|--:|--:|--:|--:|--:|---|

@@ -66,7 +66,7 @@ def report(rows: list[dict[str, Any]]) -> str:
     table = "\n".join(
         f"| {row['case']} | {row['model']} | {row['steps']:,} | {row['rms_over_largest']:.1e} | "
         f"{row['friction_J']:.7g} |" for row in rows)
-    return f"""# Trusses in motion: how steps of all kinds converge
+    return f"""# Trusses in motion: convergence of all integrators
 
 Masses as the DEM has them, elastic sticking, dashpots as the cases have them. rms: of displacement at {SAMPLES}
 samples, the largest of all nodes, over the largest displacement, from the first row of the case: explicit steps

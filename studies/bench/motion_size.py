@@ -84,14 +84,19 @@ def report(rows: list[dict[str, Any]]) -> str:
                 f"{one['us_per_joint_and_step']:.3g} µs | {last} |")
     table = "\n".join(lines)
     problems = sum(one["contact_problems"] for one in rows)
-    return f"""# Trusses in motion by the number of joints that slip
+    return f"""# Trusses in motion: cost over the number of slipping joints
 
-One cycle of `sj.truss.chain(n)`, whose blocks go out one after the other, and of umbrellas of n ribs with cables of
-1 N, whose clearance joints rub with coefficients scattered between 0.1 and
-0.2; with equal steps, or with `motion.displacement_tolerance_m`. Slipped: joints with heat of friction.
-Events: changes of a joint between open, stick and slip. Factorizations: of the whole truss. Frictional contact
-problems of all contacts, where branches are not found: {problems}. CPU time of the stepping on one shared core;
-power: of the number of joints with which the cost of a step goes, from 100 to the largest.
+One cycle of two trusses, with equal steps or with `motion.displacement_tolerance_m`: `sj.truss.chain(n)`, whose
+blocks slip one after the other, and umbrellas of n ribs with cables of 1 N and friction coefficients between 0.1 and
+0.2.
+
+- slipped: joints with heat of friction
+- events: changes of a joint between open, stick and slip
+- factorizations: of the whole truss
+- CPU: time of the steps on one shared core
+- power: exponent of the number of joints in the cost of a step, from 100 joints to the largest number
+
+Steps whose statuses were not found, and which were solved as frictional contact problems: {problems}.
 
 | | joints | unknowns | slipped | steps | events | factorizations | CPU | per joint and step | power |
 |---|--:|--:|--:|--:|--:|--:|--:|--:|--:|

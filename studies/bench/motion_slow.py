@@ -105,14 +105,20 @@ def report(rows: list[dict[str, Any]]) -> str:
             lines.append(f"| {first} | {one['model']} | {one['steps']:,} | {rms} | {largest} | "
                          f"{one['cpu_time_s']:.3g} s | {one['us_per_step']:.3g} µs | {ratio} |")
     table = "\n".join(lines)
-    return f"""# Slow heating: trusses in motion with a tolerance beside the DEM
+    return f"""# Slow heating: trusses in motion with a tolerance against the DEM
 
-A chain of {BLOCKS} blocks with dashpots of 0.1 of the critical ones in its links, or critical ones
-(`dem.link_damping_ratio`), heated and cooled once in the period, masses as the DEM has them, elastic sticking,
-{SAMPLES} samples. In motion: `motion.displacement_tolerance_m`. rms: the largest of all nodes over the run, over the
-largest displacement; largest: the largest at any time. Both against the motion with the smallest tolerance; how far
-the DEM with its shorter step is from that tells how far the reference may be off. CPU time of the stepping on one
-shared core. Times cheaper: than the DEM at 0.9 of its stable step.
+A chain of {BLOCKS} blocks is heated and cooled once in the period. Its links have dashpots of 0.1 of the critical
+ones, or critical ones (`dem.link_damping_ratio`). It has the masses of the DEM, elastic sticking and {SAMPLES}
+samples. Motion uses
+`motion.displacement_tolerance_m`.
+
+- rms: largest rms error of all nodes over the run, over the largest displacement
+- largest: largest error at any time, over the largest displacement
+- CPU: time of the steps on one shared core
+- times cheaper: than the DEM at 0.9 of its stable step
+
+The reference is the motion with the smallest tolerance. The DEM with its shorter step bounds the error of this
+reference.
 
 | period | model | steps | rms | largest | CPU | per step | times cheaper |
 |---|---|--:|--:|--:|--:|--:|--:|

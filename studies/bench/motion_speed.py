@@ -111,12 +111,15 @@ def report(rows: list[dict[str, Any]], grown: list[dict[str, Any]]) -> str:
     sizes = "\n".join(f"| {one['case']} | {one['us_per_step']:.4g} µs | "
                       f"{1e3 * one['us_per_step'] / size:.0f} ns |" for size, one in zip(SIZES, grown))
     fractions = " and at ".join(str(fraction) for fraction in FRACTIONS)
-    return f"""# Cost of trusses in motion beside the DEM
+    return f"""# Cost of trusses in motion against the DEM
 
-100 joints with dashpots, masses as the DEM has them, elastic sticking, {SAMPLES} samples a cycle. rms: the largest of
-all nodes over the run, over the largest displacement; jump: the largest error of all nodes, over the largest jump. Both
-against the DEM at {REFERENCE} of its stable step. CPU time of the stepping on one shared core. Times cheaper: than the
-DEM at {fractions} of the stable step.
+100 joints with dashpots, the masses of the DEM, elastic sticking, and {SAMPLES} samples per cycle. The reference is
+the DEM at {REFERENCE} of its stable step.
+
+- rms: largest rms error of all nodes over the run, over the largest displacement
+- jump: largest error of the jump of all nodes, over the largest jump
+- CPU: time of the steps on one shared core
+- times cheaper: than the DEM at {fractions} of the stable step
 
 | case | model | steps | θ | rms | jump | CPU | per step | times cheaper |
 |---|---|--:|--:|--:|--:|--:|--:|--:|

@@ -153,15 +153,16 @@ def report(rows: list[dict[str, Any]]) -> str:
         f"| {one['friction_coefficient']:g} | {one['steps']:,} | {one['after_first_impact_m']:.1e} m | "
         f"{one['impacts_together']} of {one['impacts']} | {1e3 * one['together_s']:.2f} ms | "
         f"{one['us_per_step']:.3g} µs | {one['siconos_us_per_step']:.3g} µs |" for one in rows)
-    return f"""# Moreau and Jean's scheme here and in Siconos
+    return f"""# The Moreau–Jean scheme of this project and of Siconos
 
 A bearing on an elastic link, a journal in it, and a second journal in a bore of the first, under constant forces from
 the middle of their clearances: {1e3 * CLEARANCE_M:g} mm each, rigid contacts, restitution {RESTITUTION:g}, θ = 1/2,
-{1e3 * PERIOD_S:g} ms. Siconos {version()} is given gaps and directions of the middle of each step as a linear
-relation, as the scheme here takes them, and solves its contact problems to 1e-12.
+{1e3 * PERIOD_S:g} ms. Siconos {version()} receives gaps and directions at the middle of each step as a linear relation,
+as this project uses them. It solves its contact problems to 1e-12.
 
-Difference: the largest of the five displacements before the second impact. Together: until they are more than
-{1e9 * APART_M:g} nm apart. Per step: CPU time; that of Siconos is of its steps alone, through its Python interface.
+- difference: largest difference of the five displacements before the second impact
+- together: time and impacts until the displacements differ by more than {1e9 * APART_M:g} nm
+- per step: CPU time; that of Siconos is for its steps alone, through its Python interface
 
 | friction | steps | difference | impacts together | together | here, per step | Siconos, per step |
 |--:|--:|--:|--:|--:|--:|--:|
