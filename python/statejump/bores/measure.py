@@ -25,7 +25,7 @@ _TOLD, _HTML, _WRITTEN = (Later(f"statejump.bores.words:{name}") for name in ("t
 ANGLES = 1024  # samples around a section
 SECTIONS = 5  # along the bore
 HARMONICS = range(2, 13)
-MARGIN = 0.05  # of the length that the end sections stay away from the ends
+MARGIN = 0.05  # margin between the end sections and the ends, as a fraction of the length
 
 
 @dataclass(frozen=True)
@@ -35,9 +35,9 @@ class Section:
     z_m: float  # from the wall's middle
     mean_radius_m: float
     offset_m: tuple[float, float]  # centre of the circle from the axis
-    deviation_m: np.ndarray  # of the radius from the circle, at ANGLES equal angles
+    deviation_m: np.ndarray  # radius minus that of the circle, at ANGLES equal angles
     amplitude_m: np.ndarray  # of HARMONICS
-    phase_rad: np.ndarray  # of HARMONICS: the angle of largest radius, in [0, 2 pi/harmonic)
+    phase_rad: np.ndarray  # angle of the largest radius of each of HARMONICS, in [0, 2 pi/harmonic)
 
     @property
     def roundness_error_m(self) -> float:
@@ -209,7 +209,7 @@ def load(file: Path, unit_m: float = 1.0, flip: bool = False) -> _engine.BoreMes
     except _engine.EngineFailure as failure:
         what = str(failure)
         if failure.file:
-            assert failure.cause is not None  # of a file the engine says both
+            assert failure.cause is not None  # the engine gives both for a failure of a file
             what = failure.cause
         raise NoBore(what, code=f"bore_{failure.kind}", fault=failure.kind, file=failure.file or None) from None
 

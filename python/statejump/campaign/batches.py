@@ -2,7 +2,7 @@
 """Size of the batches of samples."""
 from __future__ import annotations
 
-BATCH_S = 0.5  # wanted length of a task: long against the millisecond that a task costs
+BATCH_S = 0.5  # duration of a task [s]: long against the millisecond that Dask needs for it
 MOST_IN_BATCH = 20_000
 
 

@@ -39,7 +39,7 @@ from statejump.core.scratch import scratch  # noqa: E402
 OPTION = "--scheduler"
 ADDRESS = "must be the address of a running dask scheduler, as 'tcp://host:8786'"
 CONNECT_S = 5
-WORKERS_S = 10  # how long a scheduler without workers is waited for
+WORKERS_S = 10  # longest wait for workers of a scheduler [s]
 
 
 class SchedulerUnusable(StatejumpError):
@@ -167,7 +167,7 @@ def _existing(address: str) -> Iterator[Client]:
             raise SchedulerUnusable(address, code="scheduler_without_workers", workers_s=WORKERS_S) from None
         try:
             versions = client.run(_version)
-        except Exception as problem:  # the package is missing there, or is another one
+        except Exception as problem:  # the package is missing there, or is another version
             raise SchedulerUnusable(address, code="scheduler_without_statejump",
                                     cause=f"{type(problem).__name__}: {problem}", here=__version__) from None
         for worker, version in versions.items():
@@ -182,7 +182,7 @@ def _existing(address: str) -> Iterator[Client]:
 def _check_security(address: str) -> None:
     """Raise SchedulerUnusable if Dask's configuration requires encryption that the address lacks, or has no readable
     certificates for TLS."""
-    from distributed.security import Security  # of addresses tls:// only
+    from distributed.security import Security  # loaded only for addresses tls://
 
     security = Security()
     if not address.startswith("tls://"):

@@ -17,10 +17,10 @@ from statejump.core.errors import StatejumpError
 
 from distributed import Client, Future, KilledWorker, wait  # noqa: E402, after cluster set it up
 
-QUEUED = 2  # tasks per worker, so that none waits for the next
-LOOK_S = 5.0  # how often workers are counted while none of them has finished a task
-NO_WORKERS_S = 60.0  # how long a cluster whose workers are all gone is waited for
-RESTART_S = 900.0  # the same where they are being started again here: on a busy machine that takes more than a minute
+QUEUED = 2  # tasks per worker, so that no worker waits for the next one
+LOOK_S = 5.0  # interval [s] at which workers are counted while no task finishes
+NO_WORKERS_S = 60.0  # longest wait [s] for a cluster without workers
+RESTART_S = 900.0  # the same for a local cluster that restarts them, which takes over a minute on a busy machine
 KEPT = "finished samples are kept, the same command goes on with the others"
 
 

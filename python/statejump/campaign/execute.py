@@ -26,11 +26,11 @@ class Statistics:
     already_there: int
     run_now: int = 0
     workers: int = 0
-    wall_time_s: float = 0.0  # of the samples and of starting the cluster
-    start_time_s: float = 0.0  # of it, until the cluster was ready
+    wall_time_s: float = 0.0  # samples and start of the cluster
+    start_time_s: float = 0.0  # part of it before the cluster was ready
     worker_time_s: float = 0.0  # sum over all tasks
     batch_sizes: list[int] = field(default_factory=list)
-    note: str = ""  # of the journal
+    note: str = ""  # note of the journal
 
     @property
     def samples_per_second(self) -> float:

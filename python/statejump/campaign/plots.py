@@ -98,7 +98,7 @@ def _bins(there: np.ndarray) -> np.ndarray:
     if high - low <= 1e-12 * max(abs(low), abs(high)):  # one value
         half = 0.5 * abs(low) or 0.5
         low, high = low - half, high + half
-    elif high - low <= MOST_WHOLE and bool(np.all(there == np.round(there))):  # counts: a bar each
+    elif high - low <= MOST_WHOLE and bool(np.all(there == np.round(there))):  # integers: one bar each
         return np.arange(low - 0.5, high + 1.0)
     return np.linspace(low, high, count + 1)
 
@@ -112,8 +112,8 @@ def _scatter(campaign: Plan, table: Table) -> Figure:
         there = np.isfinite(values)
         for column, (parameter, varied) in enumerate(table.parameters.items()):
             panel = panels[row, column]
-            shown = np.flatnonzero(there)[:MOST_POINTS]  # samples are independent: the first are as good
-            thin = float(np.clip(100 / max(1, len(shown)), 0.0, 1.0))  # few points: large and opaque
+            shown = np.flatnonzero(there)[:MOST_POINTS]  # samples are independent, so the first ones are representative
+            thin = float(np.clip(100 / max(1, len(shown)), 0.0, 1.0))  # few points are large and opaque
             panel.plot(varied[shown], values[shown], ".", color=BLUE, markersize=2.5 + 4.5 * thin,
                        alpha=0.35 + 0.5 * thin, markeredgewidth=0, rasterized=True)
             rank = spearman(varied, values)

@@ -17,7 +17,7 @@ class Distribution:
     """A parameter as a random variable. ``mean`` and ``standard_deviation`` are those of the parameter itself; for a
     truncated normal variable, those before truncation."""
 
-    keys: tuple[str, ...]  # as section.key; all of them get the same value
+    keys: tuple[str, ...]  # paths section.key; all get the same value
     distribution: str
     mean: float = 0.0
     standard_deviation: float = 0.0

@@ -62,7 +62,7 @@ def run_sample(recipe: Recipe, index: int) -> Sample:
         return Sample(index, tuple(float(found[name]) for name in recipe.outcomes))
     except StatejumpError as problem:
         return Sample(index, None, _one_line(str(problem)), _one_line(problem.general()))
-    except Exception as problem:  # one sample never ends the campaign
+    except Exception as problem:  # a failed sample does not end the campaign
         said = _one_line(f"the run failed: {type(problem).__name__}: {problem}")
         return Sample(index, None, said, said)
 

@@ -14,7 +14,7 @@ from statejump.core.output import check_suffix
 from statejump.results.layout import SUFFIX
 
 PAGE = "report.html"
-BUDGET_BYTES = 7e6  # of the histories of all runs; a page stays below 10 MB
+BUDGET_BYTES = 7e6  # size of the histories of all runs; a page stays below 10 MB
 
 
 def result_files(run: Path) -> list[Path]:
@@ -71,7 +71,7 @@ def report_command(runs: tuple[Path, ...], output: Path | None, quiet: bool) -> 
     if output is not None and not os.path.isdir(output):
         check_suffix("--output", output, ".html", ".htm")
     files = list(dict.fromkeys(path for run in runs for path in result_files(run)))
-    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused where it is drawn
+    with np.errstate(over="ignore", invalid="ignore"):  # numbers that are not finite are refused where they are drawn
         documents: list[Document | CampaignDocument | UnsolvedDocument] = [
             UnsolvedDocument(loaded(path), _source(path, files), f"run{place}") if is_case(path)
             else CampaignDocument(path, f"run{place}", _source(path, files)) if is_campaign(path)

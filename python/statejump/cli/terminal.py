@@ -65,7 +65,7 @@ QUIET = click.option("--quiet", is_flag=True, help="Print errors only.")
 def make_console(quiet: bool) -> Console:
     """Return the console of a command."""
     made = console(quiet=quiet)
-    if not made.is_terminal:  # a pipe or a log has no width: do not cut numbers short
+    if not made.is_terminal:  # a pipe or a log has no width: do not truncate numbers
         made.width = 160
     return made
 

@@ -17,7 +17,7 @@ RECOMMENDED: dict[str, Any] = dict(color="#009E73", linewidth=1.6, label="recomm
 FLOOR: dict[str, Any] = dict(color="0.3", linewidth=1.0, linestyle=(0, (1, 1)))
 DEM: dict[str, Any] = dict(color="#000000", marker="D", markersize=6, markerfacecolor="white", linestyle="", zorder=6,
                            label="|jump| by DEM (YADE)")
-NOTHING = 1e-4  # of the jump: a joint that never touches leaves 1e-12, off any scale
+NOTHING = 1e-4  # fraction of the jump that counts as zero: a joint that never touches leaves 1e-12, below any scale
 
 
 def figure(title: str, study: Study, folder: Path) -> list[Path]:

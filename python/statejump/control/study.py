@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 # Style of a result in figures: its name in the legend, and its line.
 Line = tuple[str, Mapping[str, Any]]
-RUNS = 40  # of an ensemble, where nothing else is asked for
+RUNS = 40  # default size of an ensemble
 
 
 @dataclass
@@ -39,14 +39,14 @@ class Row:
 class Sweep:
     """Sweep of one parameter; all others have the values of the case."""
 
-    parameter: str  # section.key, with the unit in the key
-    label: str  # for the axis, without unit
+    parameter: str  # path section.key, with the unit in the key
+    label: str  # label of the axis, without unit
     display_unit: str
     display_scale: float
     own: float
     rows: list[Row]
-    scale: str = "log"  # of the axis: log, linear; zero is shown on either
-    meets: list[tuple[float, float]] = field(default_factory=list)  # ranges that meet the wanted value
+    scale: str = "log"  # scale of the axis: log, linear; both show zero
+    meets: list[tuple[float, float]] = field(default_factory=list)  # ranges with the wanted value
     recommended: float | None = None
 
     def row(self, value: float) -> Row:
@@ -111,7 +111,7 @@ class Study:
     logarithmic: bool = True
     sweeps: list[Sweep] = field(default_factory=list)
     recommendation: dict[str, Any] = field(default_factory=dict)
-    sentences: list[str] = field(default_factory=list)  # the recommendation in words
+    sentences: list[str] = field(default_factory=list)  # the recommendation as sentences
     remarks: list[str] = field(default_factory=list)
     dem: list[dict[str, Any]] = field(default_factory=list)
     # Lower limit of the jump if only one parameter changes: key of the parameter, name in the legend, value [unit].

@@ -14,7 +14,7 @@ from statejump.core.tables import write_columns
 from statejump.core.temperature_files import Histories
 from statejump.schema.toml_text import to_toml
 
-OF_MEMBERS = ("members", "table_time_s", "table_temperature_change_K")  # keys for which members_file stands
+OF_MEMBERS = ("members", "table_time_s", "table_temperature_change_K")  # keys that members_file replaces
 
 
 def document_of(case: Case) -> dict[str, Any]:

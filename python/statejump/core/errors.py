@@ -198,7 +198,7 @@ class StatejumpError(Exception):
 
     def __str__(self) -> str:
         phrase, item = self.phrase(), self.item
-        if item and item.endswith("]"):  # an item without a name is called by its place: vary[1].key
+        if item and item.endswith("]"):  # an item without a name has its index: vary[1].key
             phrase, item = f"{item}.{phrase}", None
         sentence = ": ".join(part for part in (self._where(), item, phrase, self.cause) if part)
         if not self.remedy:
@@ -240,7 +240,7 @@ def _remade(kind: type[StatejumpError], state: dict[str, Any]) -> StatejumpError
 
 def _plain(value: Any) -> Any:
     """Return a value if JSON supports it, else its text."""
-    import json  # not to start the command
+    import json  # loaded here, because the start of the command does not need it
 
     value = _without_type(value)
     if isinstance(value, PathLike):
@@ -274,7 +274,7 @@ class NotAllowed(StatejumpError):
 
     def fields(self) -> dict[str, Any]:
         found = super().fields()
-        if self.beside and "cause" not in found:  # what it does not go with is why
+        if self.beside and "cause" not in found:  # the contradicting key is the cause
             found["cause"] = self.beside
         return {name: found[name] for name in FIELDS if name in found}
 
@@ -379,7 +379,7 @@ def fields(kind: str, message: str, exit_status: int, **details: Any) -> dict[st
 
 def to_json(failure: dict[str, Any]) -> str:
     """Return the fields of a failure as one line."""
-    import json  # not to start the command
+    import json  # loaded here, because the start of the command does not need it
 
     line = json.dumps(failure, ensure_ascii=False, allow_nan=False)
     return _CONTROL.sub(lambda found: f"\\u{ord(found[0]):04x}", line)

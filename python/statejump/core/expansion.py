@@ -119,7 +119,7 @@ def _divided(expansion: Expansion, times: Numbers, changes: Numbers) -> tuple[Nu
         marks = np.concatenate(([first], between if last > first else between[::-1], [last]))
         for one, other in zip(marks, marks[1:]):
             alpha = np.interp([one, other], rows, expansion.thermal_expansion_per_K)
-            left_out = abs((alpha[1] - alpha[0]) * (other - one)) / 8  # of a parabola by its chord
+            left_out = abs((alpha[1] - alpha[0]) * (other - one)) / 8  # error of a chord of a parabola
             pieces = max(1, int(np.ceil(np.sqrt(left_out / allowed))))
             passed = np.linspace(one, other, pieces + 1)[1:]
             found.append(passed)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 HEAD_BYTES = 512
 FORMAT = "statejump HDF5"
 VERSION = 1
-MOST_PACKED = 1100  # bytes that come of one: deflate makes 258 of two bits (RFC 1951), 1032 of a byte
+MOST_PACKED = 1100  # largest ratio of compression: deflate makes 258 bytes of two bits (RFC 1951), 1032 of a byte
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 AGAIN = "run what made it again"
 
@@ -116,7 +116,7 @@ def objects(file: h5py.File, path: Path) -> dict[str, h5py.Group | h5py.Dataset]
     seen = {h5py.h5o.get_info(file.id).addr}
     size = path.stat().st_size
     groups = [("", file)]
-    unwritten = 0  # bytes of data sets that no byte of the file stands for
+    unwritten = 0  # bytes of data sets that are not in the file
     while groups:
         parent, group = groups.pop()
         for name in group:

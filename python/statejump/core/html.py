@@ -26,7 +26,7 @@ def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 def _title(run: Run) -> str:
     try:
         return run.definition.title
-    except (StatejumpError, ValueError):  # of a file that this version does not understand any more
+    except (StatejumpError, ValueError):  # the case of a file that this version does not support any more
         return ""
 
 

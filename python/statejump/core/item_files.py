@@ -31,8 +31,8 @@ from statejump.schema.texts import Numbering, Texts
 from statejump.schema.toml import LARGEST_BYTES
 
 SUFFIXES = (*TEXT_SUFFIXES, ".h5", ".hdf5")
-MOST_IN_LIST = 16  # entries of a cell or row: what items list are ends, directions and components
-TEXTS_AT_ONCE = 1 << 14  # of a data set: as objects they take ten times the memory of the file
+MOST_IN_LIST = 16  # largest number of entries of a cell or row: items list ends, directions and components
+TEXTS_AT_ONCE = 1 << 14  # block of a data set: as objects they take ten times the memory of the file
 SWITCHES = {"true": True, "false": False}
 
 
@@ -100,7 +100,7 @@ def _text(path: Path, model: type[Section], words: Numbering) -> dict[str, np.nd
                 blocks.setdefault(column.key, []).append(_column(table, column, rule, cells, lines, words))
     if not blocks:
         raise Unreadable(code="no_row", file=path)
-    joined = {name: _joined(blocks.pop(name)) for name in list(blocks)}  # no longer in memory than as blocks
+    joined = {name: _joined(blocks.pop(name)) for name in list(blocks)}  # frees each block when it has been joined
     return {column.key: _texts(joined[column.key], words) if rule.form in (TEXT, TEXTS) else joined[column.key]
             for column, rule in keys}
 

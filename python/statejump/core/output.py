@@ -80,7 +80,7 @@ def _opened(path: Path) -> tuple[int, Path]:
         descriptor = os.open(aside, os.O_CREAT | os.O_EXCL | os.O_WRONLY | os.O_CLOEXEC, 0o666)
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX)
-            if os.fstat(descriptor).st_nlink:  # not swept by another run before it was locked
+            if os.fstat(descriptor).st_nlink:  # another run did not remove it before it was locked
                 return descriptor, aside
         except BaseException:
             with suppress(OSError):

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-LEAST_MODULUS_PA = 1e6  # of soft rubber; foams are no links
-LARGEST_STRAIN = 0.1  # the models are of linear elastic links
+LEAST_MODULUS_PA = 1e6  # modulus of soft rubber; foams are no links
+LARGEST_STRAIN = 0.1  # limit of the linear elastic models
 # No structure in space is assembled at a lower temperature. 20 °C, written as kelvin, is lower.
 LEAST_REFERENCE_K = 100.0
 

@@ -71,7 +71,7 @@ def on_console(console: Console, label: str) -> Iterator[Tell]:
 
     def line(share: float) -> None:
         if share >= 1 and told[0] < 0:
-            return  # what is over at once needs no progress
+            return  # a run that ends at once needs no progress
         if int(10 * share) > told[0]:
             told[0] = int(10 * share)
             console.print(f"{label}: {100 * share:.0f} %")

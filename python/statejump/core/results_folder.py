@@ -85,7 +85,7 @@ class Results:
             finally:
                 _remove(found.staged, ignore_errors=True)
         finally:
-            if made:  # while the lock is held: another run may be about to write into it
+            if made:  # while the lock is held, because another run may be about to write into it
                 with suppress(OSError):
                     os.rmdir(path)
             os.close(descriptor)
@@ -109,7 +109,7 @@ class Results:
             except BaseException:
                 os.close(descriptor)
                 raise
-            os.close(descriptor)  # the folder was deleted while we waited
+            os.close(descriptor)  # the folder was deleted while this run waited
 
 
 @dataclass
@@ -190,7 +190,7 @@ def _move(ready: Path, path: Path) -> None:
 def _remove(folder: Path, ignore_errors: bool = False) -> None:
     """Remove a folder with its contents."""
     with suppress(OSError):
-        return os.rmdir(folder)  # as a rule there is nothing left in it
+        return os.rmdir(folder)  # the folder is usually empty
     from shutil import rmtree  # loads what packs archives
 
     rmtree(folder, ignore_errors=ignore_errors)

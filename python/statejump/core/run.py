@@ -280,7 +280,7 @@ class Run:
                 return replace(column, values=column.values[before])
             shape = (-1,) + (1,) * (column.values.ndim - 1)
             here, there, way = column.values[before], column.values[after], np.clip(weight, 0, 1).reshape(shape)
-            with np.errstate(invalid="ignore"):  # of two that are infinite
+            with np.errstate(invalid="ignore"):  # of two infinite values
                 between = here + way * (there - here)
             # At the time of a sample, the sample keeps its value, even beside a NaN.
             return replace(column, values=np.where(way > 0, between, here))

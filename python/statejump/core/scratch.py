@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-PREFIX = "statejump-run-"  # used for nothing else: unlocked folders with this prefix are removed
+PREFIX = "statejump-run-"  # reserved prefix: unlocked folders with it are removed
 YOUNG_S = 60.0  # a younger folder may not be locked yet
 
 

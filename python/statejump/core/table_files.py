@@ -28,8 +28,8 @@ from statejump.core.reading import check_size, finite_number, is_file, open_csv
 from statejump.core.units import split_unit
 
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".lvm")
-BLOCK = 4096  # rows that are converted at once
-SEPARATORS = ("\t", ";", ",")  # where a header has several, the first one
+BLOCK = 4096  # rows that are converted at a time
+SEPARATORS = ("\t", ";", ",")  # in order of preference, if a header has several
 BLANKS = " "
 _WORD = re.compile(r'"((?:[^"]|"")*)"(?=\s|$)|(\S+)')
 _QUOTED = re.compile(r'"(?:[^"]|"")*"')
@@ -85,7 +85,8 @@ class Table:
                 raise Unreadable(code="column_without_name", file=path, line=self.line, column=place + self._counts)
         self._first = list(self._taken())
         self.header = tuple(self._with_units(cells))
-        self._decided = self.separator == ";"  # that a comma is a decimal mark: German Excel separates so
+        # Whether a comma is known to be a decimal mark: German Excel uses semicolons for this reason.
+        self._decided = self.separator == ";"
         self._comma: tuple[int, str, str] | None = None
         self._point: tuple[int, str, str] | None = None
 
@@ -107,7 +108,7 @@ class Table:
         if not all(unit in NO_UNIT or is_unit(unit) for unit in units):
             return names
         if any(unit not in NO_UNIT and split_unit(name)[1] not in ("-", unit) for name, unit in zip(names, units)):
-            return names  # a key that ends in another unit
+            return names  # a key with another unit
         self._first.clear()
         return [name if unit in NO_UNIT or split_unit(name)[1] == unit else f"{name} [{unit}]"
                 for name, unit in zip(names, units)]
@@ -221,7 +222,7 @@ class Table:
         if "." in joined and self._point is None:
             self._point = next((*place(i), cell) for i, cell in enumerate(cells) if "." in cell)
         self._check_marks()
-        if "_" not in joined:  # Python takes 1_000 for a number
+        if "_" not in joined:  # Python accepts 1_000 as a number
             try:
                 found = np.fromiter(map(float, cells), float, len(cells))
                 if np.isfinite(found).all():

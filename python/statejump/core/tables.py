@@ -17,7 +17,7 @@ from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.core.output import write_atomically
 
 
-BLOCK = 4096  # rows that are written at once
+BLOCK = 4096  # rows that are written at a time
 _SPECIAL = re.compile('[,"\r\n]')  # within a cell
 
 
@@ -58,7 +58,7 @@ def write_columns(columns: Mapping[str, np.ndarray], path: Path) -> None:
     length = max((len(values) for values in columns.values()), default=0)
     with write_atomically(path) as stream:
         csv.writer(stream).writerow(columns)
-        for start in range(0, length, BLOCK):  # as numbers of Python a column takes four times the memory
+        for start in range(0, length, BLOCK):  # as Python numbers, a column takes four times the memory
             cells = [_cells(values[start:start + BLOCK]) for values in columns.values()]
             stream.writelines((",".join(row) or '""') + "\r\n" for row in zip(*cells))
 

@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 ZERO_CELSIUS_K = 273.15
 ENDINGS = {"_K": 0.0, "_degC": ZERO_CELSIUS_K}
 SUFFIXES = (*TEXT_SUFFIXES, ".h5", ".hdf5")
-TIMES = ("t", "timestamp", "datetime", "date", "date/time", "Zeit", "Datum/Zeit")  # what a first column may be called
+TIMES = ("t", "timestamp", "datetime", "date", "date/time", "Zeit", "Datum/Zeit")  # accepted names of a first column
 ACCEPTED = "NAME_K, NAME_degC, NAME [K] or NAME [°C]"
 HDF5_TEMPERATURES = {"temperature_K": 0.0, "temperature_degC": ZERO_CELSIUS_K}
-ENDS = ("@a", "@b")  # of the names of columns: first and second node of a link
+ENDS = ("@a", "@b")  # endings of names of columns: first and second node of a link
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ def of_means(read: Read) -> Read:
     :raises Unreadable: the other end is missing or has another unit, or the link has its own column too
     """
     place = {name: index for index, name in enumerate(read.names)}
-    pairs: dict[str, tuple[int, int]] = {}  # a column alone is both
+    pairs: dict[str, tuple[int, int]] = {}  # a single column is used for both
     for name, index in place.items():
         link, end = name[:-len(ENDS[0])], name[-len(ENDS[0]):]
         if end not in ENDS or not link:

@@ -114,7 +114,7 @@ def _program(item: Any, folder: Path, common: Mapping[str, Any]) -> Any:
     try:
         found = _table({**common, **item}, folder, "", item.get("name"))
     except StatejumpError as refused:
-        if refused.file is None:  # a key of the case
+        if refused.file is None:  # a key of the case itself
             refused.item = f"program {item.get('name')!r}"
         raise
     return found

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
 
 SHAPES = ("triangle", "half_sine", "sine", "table")
-PERIOD_s = 1.0  # where nothing says how long a cycle lasts
-SAME_TIME = 1e-9  # two durations that differ by less, relatively, are the same but for rounding
-SAME_TEMPERATURE_K = 1e-9  # below this a difference of two temperatures is the rounding of °C into kelvin
+PERIOD_s = 1.0  # default duration of a cycle
+SAME_TIME = 1e-9  # relative difference below which two durations are equal up to rounding
+SAME_TEMPERATURE_K = 1e-9  # difference below which two temperatures are equal up to the conversion from °C to kelvin
 LONGEST_TABLE_S, LARGEST_CHANGE_K = 1e12, 1e4
 LONGEST_PERIOD_S = 1e6
 MOST_SHOWN = 20  # values of a list in a sentence
@@ -148,7 +148,7 @@ def ending(
     :raises NotAllowed: ``period_s`` is before the last row
     """
     tables = [one for one in programs if one.shape == "table"]
-    if not tables or not all(map(_is_sound, tables)):  # :func:`check` refuses what is not
+    if not tables or not all(map(_is_sound, tables)):  # :func:`check` refuses the others
         return None
     furthest = max(tables, key=lambda one: abs(float(_changes(one)[-1])))
     changes, lasts, cycles = _changes(furthest), float(_times(furthest)[-1]), programs[0].cycles
@@ -250,7 +250,7 @@ def period_of(
     if not lasts > 0:  # no table, or one that :func:`check` refuses
         return default_s if given_s is None else given_s
     if return_s and given_s is not None and abs(given_s - lasts) <= SAME_TIME * lasts:
-        given_s = None  # of a further program: what its table lasts
+        given_s = None  # a further program has the duration of its table
     lasts += return_s
     if given_s is not None and abs(given_s - lasts) > SAME_TIME * lasts:
         raise NotAllowed(key, given_s, code="period_beside_table", lasts=lasts, key_to_leave_out=key)

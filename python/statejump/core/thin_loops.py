@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
     Numbers = NDArray[np.float64]
 
-THIN = 0.05  # of its range: what a loop may be off a straight line and look like one
-ROUNDING = 1e-9  # of its range: below is no loop
+THIN = 0.05  # largest distance from a straight line, over the range, of a loop that looks like a line
+ROUNDING = 1e-9  # fraction of its range below which a loop counts as zero
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ def straight_part(x: Numbers, y: Numbers) -> StraightPart | None:
         return None
     try:
         slope, offset = np.polyfit(x, y, 1)
-    except np.linalg.LinAlgError:  # numbers whose squares are beyond any
+    except np.linalg.LinAlgError:  # squares of the numbers overflow
         return None
     line = StraightPart(float(slope), float(offset))
     largest = float(np.abs(line.taken_off(x, y)).max())

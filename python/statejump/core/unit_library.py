@@ -19,8 +19,8 @@ _WORDS = {"celsius": "degC", "°c": "degC", "degc": "degC", "degreec": "degC", "
           "fahrenheit": "degF", "°f": "degF", "degf": "degF", "degreefahrenheit": "degF", "degreesfahrenheit": "degF",
           "kelvin": "K", "kelvins": "K", "degk": "K", "°k": "K", "%": "percent", "percent": "percent",
           "secs": "s", "mins": "min", "hr": "h", "hrs": "h", "degs": "deg"}
-LONGEST = 60  # characters of a unit
-_POWER = re.compile(r"\*\*(?!\s*-?[1-4](?![\d*.]))")  # of no unit; 9**9**9 would be computed for ever
+LONGEST = 60  # largest number of characters of a unit
+_POWER = re.compile(r"\*\*(?!\s*-?[1-4](?![\d*.]))")  # exponents that no unit has; pint would compute 9**9**9 forever
 _NEWTON_METRE = re.compile(r"(?<![A-Za-z])([kMmµud]?N)(mm|cm|m)(?![A-Za-z])")
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from statejump import _engine
     from statejump.core.run import Run
 
-LOOKED_AT = 4000  # places of a cycle at which the rate of the temperature is asked for
+LOOKED_AT = 4000  # positions of a cycle at which the rate of the temperature is evaluated
 # Fraction of a tolerance above which an oscillation is reported. The other causes have the remainder.
 SHARE_TOLD = 0.1
 

@@ -22,13 +22,13 @@ from statejump.identification.models import (
     MODELS, PARAMETERS, POSITIVE, START, Model, containing, with_part)
 from statejump.identification.noise import Noise, noise_of
 
-STARTS = 4  # best of the grid of starts that are followed
-STARTS_FROM_PART = 2  # likewise, the parameters of a part being those of its optimum
-CLOSE = 1e-3  # of an interval's half width: to this its ends are found
-NEAREST = 1e-12  # of what is sought: no end is nearer
-AT_END = 0.01  # of what is sought: nearer to its end a parameter is at it
-DEPENDS = 0.25  # of an interval's half width: a parameter that moves further as another one nears its end depends on it
-ROUNDING = 1e-9  # of half of the loop's force: noise below is that of the arithmetic
+STARTS = 4  # number of grid points from which searches start
+STARTS_FROM_PART = 2  # the same for a search that starts from the optimum of a part
+CLOSE = 1e-3  # accuracy of an interval's ends, as a fraction of its half width
+NEAREST = 1e-12  # smallest distance of an end, as a fraction of the search range
+AT_END = 0.01  # distance from an end of the search range, below which a parameter counts as at the end
+DEPENDS = 0.25  # motion of a parameter, over its half width, from which it depends on another one near its end
+ROUNDING = 1e-9  # fraction of half of the loop's force: smaller noise is rounding
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class Problem:
         self.low, self.high = (self._sought([getattr(PARAMETERS[name], end) for name in self.names])
                                for end in ("low", "high"))
         for place, name in enumerate(self.names):
-            if name in STOPS:  # no clearance is negative
+            if name in STOPS:  # clearances are not negative
                 self.low[place] = max(self.low[place], -self.offsets[place] / half)
         slides = model.answer is MODELS["coulomb"].answer
         self.limits = [(place, end, limit) for place, name in enumerate(self.names)
@@ -84,7 +84,7 @@ class Problem:
 
     def _sought(self, relative: Sequence[float]) -> np.ndarray:
         found = np.array(relative, dtype=float)
-        with np.errstate(divide="ignore"):  # nothing, of a part that lacks it
+        with np.errstate(divide="ignore"):  # the value without effect, for a part that lacks the parameter
             found[self.logarithmic] = np.log(found[self.logarithmic])
         return found
 

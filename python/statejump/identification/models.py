@@ -100,7 +100,7 @@ def _coulomb(values: Values, displacement: np.ndarray, memory: Memory) -> np.nda
     pulled: np.ndarray = stiffness * displacement
     if friction > 0 or gap > 0:
         width = friction / stiffness + (1 - ratio) * gap
-        if friction < ratio * stiffness * gap:  # it slides before the play is used up
+        if friction < ratio * stiffness * gap:  # it slides before the play closes
             width = friction / (ratio * stiffness)
         stretch = memory.stretch(width, values.get(START, 0.0))
         if gap > 0:
@@ -214,7 +214,7 @@ def with_part(model: Model, part: Model, values: Values, memory: Memory, displac
     limits = {"friction": 0.0, "preload": 0.0, "preload_stiffness": 0.0, "play": 0.0, "stop_stiffness": inf,
               "clearance_minus": inf, "clearance_plus": inf, "iwan_exponent": -0.5, "iwan_ratio": inf, START: 0.0}
     found = {**{name: limits.get(name, 0.0) for name in (*model.parameters, START)}, **values}
-    if part.name == "linear":  # a slide that never slides: its spring is stretched from where it is without force
+    if part.name == "linear":  # a slide that never slides: its spring is measured from its position without force
         rest = float(np.mean(displacement - memory.stretch(inf)))
         found.update(friction=inf, preload=values["preload"] + values["stiffness"] * rest)
     if model.answer is _iwan and part.answer is _coulomb and values.get("preload_stiffness"):

@@ -18,12 +18,12 @@ from math import log
 import numpy as np
 from scipy.signal import fftconvolve, lfilter
 
-MOST_LAGS = 12  # of the autoregression
+MOST_LAGS = 12  # largest order of the autoregression
 ROWS_A_LAG = 10
-SAME_PLACE = 0.5  # correlation of the displacement some rows apart from which those are whole cycles
-CHANCE = 5.0  # standard deviations of a correlation that pass for chance: the largest of hundreds is looked for
-FORGOTTEN = 1e-4  # correlation below which the rest is left out
-REFINEMENTS = 5  # of the correction for fitted parameters; it settles within a percent
+SAME_PLACE = 0.5  # correlation of the displacement at a lag above which the lag is a whole number of cycles
+CHANCE = 5.0  # standard deviations of a correlation that count as chance: the largest of hundreds is tested
+FORGOTTEN = 1e-4  # correlations below this are omitted
+REFINEMENTS = 5  # iterations of the correction for fitted parameters; it converges within a percent
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,7 @@ def _from_environment() -> None:
                 register(place.strip())
             except StatejumpError as failure:
                 _read_from.clear()
-                failure.place = VARIABLE  # it is no fault of the file that is being read
+                failure.place = VARIABLE  # the environment causes the failure, not the file
                 raise
 
 

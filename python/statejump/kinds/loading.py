@@ -68,7 +68,7 @@ def found_case(path: str | Path) -> Path:
     try:
         if path.exists() or path.is_absolute():
             return path
-    except OSError:  # a name too long, a folder that may not be searched: whoever reads it says so
+    except OSError:  # a name too long, a folder without search permission: reading it reports the reason
         return path
     named = path if path.suffix else path.with_suffix(".toml")
     for place in (_paths.SHARE / named, _paths.SHARE / SHIPPED / named, _paths.SHARE / SHIPPED / "trusses" / named):

@@ -114,7 +114,7 @@ def impact(dissipation: str, joint: Joint, restitution: float = RESTITUTION,
         k3 = rates(*(y + step / 2 * k2))
         k4 = rates(*(y + step * k3))
         states.append(y + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4))
-    states[-1][0] = 0.0  # a step beyond; the force there is zero and the speed final
+    states[-1][0] = 0.0  # one step later the force is zero and the speed is final
     depth, rate = np.array(states).T
     return Impact(depth, np.array([force(*state) for state in states]), float(-rate[-1] / speed_m_per_s))
 

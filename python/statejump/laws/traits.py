@@ -36,14 +36,14 @@ class Law:
     name: str
     formula: str
     source: str
-    range: str  # where it is valid; what is an error outside
+    range: str  # range of validity, and the errors outside
     holds_static_load: bool
     frictionless: bool
     has_memory: bool  # keeps a history; else a smooth function of the velocity
     needs_axis: bool  # neither in a socket nor on a flat face
     accepts_bulging_wall: bool
     point_contact: bool  # Hertz's
-    needs_point_contact: bool  # has a meaning only under a normal law that is one
+    needs_point_contact: bool  # valid only under a normal law that is a point contact
     parameters: tuple[Parameter, ...]
 
 

@@ -19,7 +19,7 @@ from statejump.report import words
 
 BARS = 60  # of a histogram, as in the figures of the commands
 QUANTILES = ("quantile_5", "median", "quantile_95")
-FEWEST_MANY_POINTS = 2000  # points of a sweep beyond which a page shows every n-th
+FEWEST_MANY_POINTS = 2000  # number of points of a sweep above which a page shows every n-th
 
 
 def _one(place: str, value: Any) -> Any:
@@ -68,7 +68,7 @@ class CampaignDocument:
     template = "campaign.html"
 
     def __init__(self, path: Path, identifier: str, source: str) -> None:
-        from statejump.campaign import outputs, plan, summary  # Dask and SciPy, 0.3 s; a page of runs does without
+        from statejump.campaign import outputs, plan, summary  # Dask and SciPy, 0.3 s; not needed for a page of runs
 
         self.source, self.identifier = source, identifier
         try:
@@ -152,7 +152,7 @@ class CampaignDocument:
         """Numbers at the top: median and spread of the first outcomes."""
         shown = {"median": "median", "quantile_5": "5 % are below", "quantile_95": "5 % are above",
                  "quantile_99": "1 % are above", "minimum": "smallest", "maximum": "largest"}
-        if self.command == "sweep":  # a grid has no frequencies
+        if self.command == "sweep":  # a grid has no frequency distribution
             shown = {"minimum": "smallest", "maximum": "largest"}
         return [
             {"label": outcome.title, "values": [(label, self._text(outcome, key)) for key, label in shown.items()]}

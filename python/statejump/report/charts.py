@@ -20,7 +20,7 @@ from statejump.report.words import Words
 # Columns about the model itself, not about the structure.
 NOT_SHOWN = {"time_s", "temperature_change_K", "slipping", "stop_contact", "stage"}
 MOST_OTHER_LOOPS = 4
-STATE_UNITS = {"m", "rad"}  # of places: forces have no state jump
+STATE_UNITS = {"m", "rad"}  # units of displacements: forces have no state jump
 
 
 def charts_of(case: Case | None, run: Run, words: Words) -> list[Chart]:
@@ -45,7 +45,7 @@ def _plain_columns(run: Run) -> list[str]:
 
 
 Columns = Mapping[str, Mapping[str, np.ndarray]]
-LEFT = " less its straight part"  # ends the name of a column
+LEFT = " less its straight part"  # suffix of the name of a column
 
 
 def with_thin_loops(

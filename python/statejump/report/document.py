@@ -31,13 +31,13 @@ from statejump.report.inputs import sections_of
 from statejump.results.contents import Result
 from statejump.results.read import read
 
-TOLERANCE = 2e-4  # of a column's range, what decimation may cost
-MOST_SAMPLES = 4000  # of a model on a page
+TOLERANCE = 2e-4  # allowed error of decimation, as a fraction of a column's range
+MOST_SAMPLES = 4000  # samples of a model on a page
 FEWEST_SAMPLES = 200
 BYTES_PER_VALUE = 16 / 3  # float32 as base64
-MOST_GUIDES = 200  # columns that decide which samples are kept; the error is of all
+MOST_GUIDES = 200  # columns that determine the kept samples; the error is that of all columns
 MOST_EVENTS = 60  # rows of the table
-SAME_EVENT = 0.05  # of a cycle: how far apart the models may have what is one event
+SAME_EVENT = 0.05  # fraction of a cycle within which two events of the models are one
 MARKED_EVENTS = ("first_contact", "first_slip", "stop_reached", "stop_left")
 
 
@@ -308,7 +308,7 @@ class Document:
         turns = np.flatnonzero(turned)
         always = np.unique(np.concatenate((turns, turns + 1)))
         chosen, guides = always if len(always) <= most else always[:0], moving[:: math.ceil(len(moving) / MOST_GUIDES)]
-        for _ in range(2):  # the second time by the columns that the first ones do not stand for
+        for _ in range(2):  # the second pass uses the columns that the first ones do not represent
             chosen = kept_samples(time_s, np.stack(guides, axis=1).astype(float), most, TOLERANCE, map(int, chosen))
             missed = errors(time_s, moving, chosen)
             if missed.max(initial=0.0) <= TOLERANCE or len(chosen) >= most:

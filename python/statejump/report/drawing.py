@@ -73,7 +73,7 @@ class Drawing:
                 for state, colour in result.scene["states"].items()
             ],
         }
-        with np.errstate(over="ignore", invalid="ignore"):  # it refuses what is too large
+        with np.errstate(over="ignore", invalid="ignore"):  # numbers that are too large are refused
             self._measure()
 
     def _column(self, name: str, values: Callable[[Run], np.ndarray]) -> str:
@@ -102,7 +102,7 @@ class Drawing:
                 continue
             place, base = self._place(on), self._place(other)
             step = base
-            while step in pairs and step != place:  # a ring of parts has no end to begin at
+            while step in pairs and step != place:  # a ring of parts has no beginning
                 step = pairs[step]
             if step != place:
                 pairs.setdefault(place, base)

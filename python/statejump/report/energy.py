@@ -29,7 +29,7 @@ class Account:
     entries: list[Entry]
     residue_J: float  # supplied less stored less dissipated, at the end
     largest_residue_J: float  # at any sample
-    turnover_J: float  # largest of the three sums at any sample; what the residue is small against
+    turnover_J: float  # largest of the three sums at any sample, the scale of the residue
     columns: dict[str, np.ndarray]  # sums over time, [J]
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-SIDES = 96  # of a circle; its sagitta is 5e-4 of the radius
+SIDES = 96  # sides of a circle; the sagitta is 5e-4 of the radius
 
 
 def _circle(radius: float) -> np.ndarray:

@@ -23,7 +23,7 @@ from statejump.schema.rules import ATTACHED, NUMBER, NUMBERS, SWITCH, TEXT, TEXT
 
 CHOICE = "choice, the paper is silent"
 RULE, SECTION, TABLES, READ = "rule", "section", "tables", "read"
-TABLES_BESIDE = "tables"  # name of the section that names files of lists, where a kind has it
+TABLES_BESIDE = "tables"  # section that lists files of items, if a kind has it
 
 SectionType = TypeVar("SectionType", bound="Section")
 Names = Sequence[str] | Callable[[], Sequence[str]]
@@ -43,7 +43,7 @@ def _as_float(value: Any) -> Any:
     """Convert an integer to a float; return any other value unchanged for the check."""
     try:
         return float(value) if type(value) is int else value
-    except OverflowError:  # beyond all ranges
+    except OverflowError:  # larger than any range
         return value
 
 
@@ -209,7 +209,7 @@ _KNOWN: dict[type[Section], Mapping[str, attrs.Attribute[Any]]] = {}
 
 def evolved(made: SectionType, **values: Any) -> SectionType:
     """Return a section with other values, checked again."""
-    changed: SectionType = attrs.evolve(cast(Any, made), **values)  # every class of sections is one of attrs
+    changed: SectionType = attrs.evolve(cast(Any, made), **values)  # every section class is an attrs class
     return changed
 
 

@@ -40,7 +40,8 @@ def once(values: np.ndarray) -> np.ndarray:
     """Return numbers by rows. If all rows are equal to the last bit, the memory has one row only."""
     if len(values) < 2 or values.dtype.kind not in "fiub" or values.dtype.itemsize > 8:
         return values
-    bits = values.view(f"i{values.dtype.itemsize}")  # as numbers no NaN is another, and no zero of the other sign else
+    # As integers, bits decide: NaN equals itself and differs from other NaN, +0 differs from -0.
+    bits = values.view(f"i{values.dtype.itemsize}")
     if any((bits[places] != bits[0]).any() for places in (slice(1, BLOCK), slice(BLOCK, None))):
         return values
     return np.broadcast_to(values[0].copy(), values.shape)
@@ -224,7 +225,7 @@ class Named(Mapping[str, Any]):
         return len(self._items)
 
 
-NONE, UNKNOWN = -1, -2  # places of what is not given, and of what no item is called
+NONE, UNKNOWN = -1, -2  # indices of a missing value, and of an unknown name
 
 
 class Places:

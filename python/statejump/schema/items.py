@@ -109,7 +109,7 @@ class _Quick(Generic[ItemType]):
         field = self.fields.get(key)
         if field is None:
             raise UnknownKey(key, **suggestion(key, list(self.fields)))
-        convert: Any = field.converter  # attrs gives it a type of its own, by its version
+        convert: Any = field.converter  # attrs returns it with a type of its own, depending on its version
         converted = given if convert is None else convert(given)
         try:
             self.rules[key].check(key, converted)

@@ -87,7 +87,7 @@ def with_keys_moved(model: type[Section], data: Mapping[str, Any], file: str = "
         there, _, name = split_path(now)
         target = data.get(there, {})
         if not isinstance(target, Mapping):
-            continue  # whoever reads the section refuses it
+            continue  # reading the section reports the fault
         if name in target:
             raise NotAllowed(old, part[key], code="deprecated_key_duplicated", new_key=now, old_key=old)
         data = {**data, section: {name: value for name, value in part.items() if name != key}}

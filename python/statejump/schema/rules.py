@@ -17,7 +17,7 @@ FOLDER_NAME = "[A-Za-z0-9][A-Za-z0-9_-]*"
 _NOT_IN_FOLDER_NAME = re.compile("[^A-Za-z0-9_-]+")
 # Types of values.
 NUMBER, WHOLE, SWITCH, TEXT, NUMBERS, TEXTS = "number", "whole", "switch", "text", "numbers", "texts"
-ATTACHED = "attached"  # what no file can say
+ATTACHED = "attached"  # value that no file can contain
 
 
 @attrs.frozen

@@ -70,6 +70,6 @@ def _section(keys: type[SectionType], name: str, given: Mapping[str, Any]) -> Se
         return keys(**given)
     except NotAllowed as refused:
         assert refused.key is not None
-        refused.value = given.get(refused.key, refused.value)  # 1, not 1.0, if the file says so
+        refused.value = given.get(refused.key, refused.value)  # 1, not 1.0, if the file has it so
         refused.key = f"{name}.{refused.key}"
         raise

@@ -13,8 +13,8 @@ from typing import Any, overload
 
 import numpy as np
 
-BLOCK = 4096  # texts or items that are turned into objects at once
-SHORT = (1 << 32) - 1  # bytes of texts whose places are numbers of 4 bytes
+BLOCK = 4096  # texts or items that are converted to objects at a time
+SHORT = (1 << 32) - 1  # size of texts below which 4 bytes are enough for an index
 # UTF-8, and unchanged bytes for Python texts that UTF-8 does not allow.
 _AS_IT_IS = "surrogatepass"
 
@@ -27,8 +27,8 @@ class Words:
 
     def __init__(self, texts: Iterable[str] = ()) -> None:
         self._bytes = bytearray()
-        self._begins = array("I", (0, 0))  # of every word and of the next one
-        self.unprintable: list[int] = []  # numbers of those that have characters which are not printed
+        self._begins = array("I", (0, 0))  # begin of every word, and of the next one
+        self.unprintable: list[int] = []  # numbers of words with unprintable characters
         self.add([text.encode(errors=_AS_IT_IS) for text in texts], _AS_IT_IS)
 
     def add(self, texts: Sequence[bytes], errors: str = "strict") -> None:
@@ -118,7 +118,7 @@ class Texts:
     def plain(self) -> list[Any]:
         """Return the texts or lists as in a document."""
         used, which = np.unique(self.numbers, return_inverse=True)
-        word = self.words.listed(used)  # one object of a text, however often it stands here
+        word = self.words.listed(used)  # one object per text, for any number of uses
         listed = [word[place] for place in which.reshape(-1).tolist()]
         if self.ndim == 2:
             ends = self.numbers.shape[1] * np.arange(1 + len(self))

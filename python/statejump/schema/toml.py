@@ -9,7 +9,7 @@ from typing import Any
 
 from statejump.core.errors import Unreadable, size
 
-LARGEST_BYTES = 1 << 28  # a truss of 100 000 joints has a tenth of it
+LARGEST_BYTES = 1 << 28  # ten times the size of a truss of 100 000 joints
 
 
 def read_toml(path: str | Path, what: str) -> tuple[str, dict[str, Any]]:
@@ -37,7 +37,7 @@ def read_toml(path: str | Path, what: str) -> tuple[str, dict[str, Any]]:
         raise Unreadable(code="not_toml_at_line", cause=reason, file=path, line=line) from None
     except RecursionError:
         raise Unreadable(code="toml_too_deep", file=path) from None
-    except ValueError as failure:  # what Python refuses to make a number of
+    except ValueError as failure:  # Python refuses to convert the digits to a number
         raise Unreadable(code="not_toml", cause=" ".join(str(failure).split(";")[0].split()), file=path) from None
 
 

@@ -32,9 +32,9 @@ def dem_event_temperatures(dem: Run, samples_per_cycle: int) -> dict[str, float 
 
     slips = starts("slipping")
     reached = starts("stop_contact")
-    reached = reached[reached > 0]  # a block that starts at a stop has not reached it
+    reached = reached[reached > 0]  # a block that starts at a stop does not reach it
     left = None
-    if len(reached):  # a cycle may reach both stops: the one left is the one reached first
+    if len(reached):  # a cycle may reach both stops; the first one counts
         push = dem["stop_force_N"][first]
         others = reached[0] + np.flatnonzero(push[reached[0]:] * push[reached[0]] < 0)
         end = others[0] if len(others) else len(push)

@@ -81,7 +81,7 @@ class Spring:
 
     stiffness_N_per_m: float
     jump_m: float  # solved with the spring
-    by: str  # none, closed form, bisection
+    by: str  # "none", "closed form" or "bisection"
 
 
 def smallest_preload(case: SpringSliderCase, wanted_m: float) -> Spring | None:

@@ -17,10 +17,10 @@ from statejump.kinds.spring_slider.case import SpringSliderCase
 STAGE_NAMES = {"at_stop_plus": "stop", "at_stop_minus": "stop", "in_play": "play"}
 STAGE_SHADES = {"S1": "0.94", "S2": "1.0", "S3": "0.94", "S4": "0.90", "S5": "1.0", "play": "0.97"}
 STOP_SHADE = "0.82"
-MOST_NAMED_CYCLES = 3  # beyond it names of stages would cover each other
+MOST_NAMED_CYCLES = 3  # with more cycles the names of stages would overlap
 
 
-DENSE = 4001  # points of the exact path, its events besides
+DENSE = 4001  # points of the exact path, in addition to its events
 QUANTITIES = (("displacement_m", 1e3, "Displacement of the slider [mm]"),
               ("axial_force_N", 1.0, "Axial force, compression positive [N]"))
 ABSCISSAE = (("temperature_change_K", "Temperature change [K]"), ("time_s", "Time [s]"))

@@ -35,7 +35,7 @@ class Segment:
     temperature_change_K: float
     from_m: float
     to_m: float
-    zero_force_m: float  # where neither friction nor a stop is needed
+    zero_force_m: float  # position without friction and stop force
 
     @property
     def length_m(self) -> float:
@@ -95,7 +95,7 @@ class RestSets:
         return str(self.frame().to_html(index=False))
 
 
-DENSE = 401  # temperatures of the picture
+DENSE = 401  # number of temperatures of the picture
 
 
 def segment(case: SpringSliderCase, friction_force_N: float, temperature_change_K: float) -> Segment:

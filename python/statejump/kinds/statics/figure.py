@@ -19,7 +19,7 @@ from statejump.kinds.statics.solve import Statics
 
 COLOURS = ("#E69F00", "#0072B2", "#009E73", "#CC79A7", "#D55E00", "#56B4E9")
 EVERY = "#000000"
-MOST_DRAWN = len(COLOURS)  # of more forces only union and intersection are drawn
+MOST_DRAWN = len(COLOURS)  # with more forces only union and intersection are drawn
 SURFACE, HELD, HELD_BY_ALL = "#C9CED3", "#E69F00", "#0072B2"
 MICRO = 1e6
 
@@ -221,7 +221,7 @@ def _slot(panel: Axes, case: StaticsCase, statics: Statics) -> None:
 def spatial(statics: Statics) -> Figure:
     """Draw the surface of positions, shaded, the rest sets on it."""
     with style():
-        drawing = Drawing(figsize=(7.0, 6.4), dpi=160)  # of the picture inside the SVG
+        drawing = Drawing(figsize=(7.0, 6.4), dpi=160)  # resolution of the picture inside the SVG
         panel = drawing.add_axes((0.0, 0.08, 1.0, 0.84), projection="3d", computed_zorder=False)
         handles = _space(panel, statics)
         drawing.legend(handles=handles, loc="lower center", ncol=2, fontsize=8, framealpha=1)

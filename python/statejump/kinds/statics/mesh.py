@@ -11,7 +11,7 @@ from statejump import _engine
 from statejump.core.errors import NotAllowed, StatejumpError, shown
 from statejump.kinds.statics.case import StaticsCase
 
-SIDES = 96  # of the can that stands for a cylinder's positions
+SIDES = 96  # sides of the cylinder of positions
 
 
 def can_mesh(clearance_m: float, axial_play_m: float) -> _engine.RestMesh:

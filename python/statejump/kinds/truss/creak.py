@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-SEGMENTS = 16  # of the record, averaged after Welch: the density is known to about 1/sqrt(2 · 16) of itself
-LEAST_PERIODS = 16  # of a band's lowest frequency in the record
-ORDER = 4  # of the Butterworth filters that take a band out of the record
+SEGMENTS = 16  # segments for Welch's average: the relative error of the density is about 1/sqrt(2 · 16)
+LEAST_PERIODS = 16  # periods of a band's lowest frequency in the record
+ORDER = 4  # order of the Butterworth filters of the bands
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Creak:
     slips: Sequence[Mapping[str, Any]]
     bands: Sequence[Mapping[str, Any]]
     frequency_Hz: np.ndarray
-    density_m2_per_s4_per_Hz: np.ndarray  # of all directions together
+    density_m2_per_s4_per_Hz: np.ndarray  # sum over all directions
 
     @property
     def peak_m_per_s2(self) -> float:

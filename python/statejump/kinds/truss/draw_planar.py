@@ -19,8 +19,8 @@ from statejump.kinds.truss.resolved import ResolvedTruss
 
 MOST_ZIGZAGS = 60
 LEAST_LEGIBLE = 4.5  # size of symbols [pt] below which a detail is drawn as well
-DETAIL_GAPS = 8  # places along the detail's shorter side, or along half of the longer
-WIDTH_IN, HEIGHT_IN = 8.0, 7.0  # of the panel, at most
+DETAIL_GAPS = 8  # positions along the detail's shorter side, or along half of the longer one
+WIDTH_IN, HEIGHT_IN = 8.0, 7.0  # largest size of the panel
 
 
 def _bowed(truss: ResolvedTruss) -> list[np.ndarray]:
@@ -204,7 +204,7 @@ def _draw_loads(panel: Axes, truss: ResolvedTruss, size: float) -> None:
     largest = sizes.max() if len(sizes) else 0.0
     for index in np.flatnonzero(sizes > 0):
         offset = forces[index] / largest * (2.6 * size)
-        shortest = 1.3 * size  # an arrow that is still one
+        shortest = 1.3 * size  # shortest visible arrow
         if np.linalg.norm(offset) < shortest:
             offset *= shortest / np.linalg.norm(offset)
         # The arrow ends at the node, where the load acts.

@@ -27,7 +27,7 @@ class LinkTemperatures:
     temperature_fraction: np.ndarray
     expanding: np.ndarray  # bool: it has an [[expansion]]
     largest_per_K: np.ndarray  # of the [[expansion]], else 0
-    shown_program: np.ndarray  # of the temperature itself
+    shown_program: np.ndarray  # program of the temperature itself
     shown_fraction: np.ndarray
 
 

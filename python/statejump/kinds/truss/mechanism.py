@@ -40,9 +40,9 @@ class Drives:
 class Bodies:
     """Shapes of links, as fractions of the vector from the first to the second node, and of its left normal."""
 
-    centre: np.ndarray  # (m, 2) of mass
-    moment_kg_m2: np.ndarray  # (m,) of inertia about it
-    own: np.ndarray  # (m,) bool: not that of a rod
+    centre: np.ndarray  # (m, 2) centre of mass
+    moment_kg_m2: np.ndarray  # (m,) moment of inertia about it
+    own: np.ndarray  # (m,) bool: whether it differs from a rod
 
 
 def resolve_drives(items: list[Drive], known: References) -> Drives:
@@ -65,7 +65,7 @@ def resolve_bodies(links: Sequence[Any], length_m: np.ndarray, mass_kg: np.ndarr
     own_centre = said(links, "centre_of_mass_m")
     middle = np.stack((length_m / 2, np.zeros(len(links))), axis=1)
     given = vectors(links, "centre_of_mass_m", 2)[:, :2]
-    length = np.where(length_m > 0, length_m, np.nan)  # a link without one is refused where geometry is checked
+    length = np.where(length_m > 0, length_m, np.nan)  # the check of the geometry refuses a link without length
     return Bodies(
         once(np.where(own_centre[:, None], given, middle) / length[:, None]),
         given_or(moment, mass_kg * length_m**2 / 12), own_centre | ~np.isnan(moment),

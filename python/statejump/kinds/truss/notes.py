@@ -9,7 +9,7 @@ import numpy as np
 
 from statejump.kinds.truss.resolved import ResolvedTruss
 
-MOST_NAMED = 8  # joints or nodes that a sentence names; it gives the number of further ones
+MOST_NAMED = 8  # names in a sentence; it also gives the number of further ones
 
 
 def sentences(truss: ResolvedTruss, notes: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:

@@ -28,13 +28,13 @@ from statejump.report import words
 from statejump.report.drawing import round_down
 from statejump.results.contents import Result
 
-SHOWN_JUMP = 0.12  # of the truss' size: how large the largest jump is drawn at first
-MOST_CYCLES = 12  # cycles that the drawing offers; if there are more, the first and the last ones
+SHOWN_JUMP = 0.12  # initial drawn size of the largest jump, as a fraction of the truss' size
+MOST_CYCLES = 12  # cycles in the drawing; of more cycles, the first and the last ones
 MOST_BARS = 15
 MOST_SENSITIVITIES = 20
 LEAST_PERCENT = 5e-3
-ROUNDED = 1e-9  # of the largest joint's: below is rounding, not a number to read
-ROUNDED_SURFACE = 1e-12  # of the truss' size, in metres and in radians
+ROUNDED = 1e-9  # fraction of the largest joint's value below which a value is rounding
+ROUNDED_SURFACE = 1e-12  # rounding, over the truss' size, in metres and in radians
 ROUNDING = "≈ 0"
 # Quantities that rank joints whose first column is a rotation, and other joints.
 TURN, JUMP = "turn", "jump"

@@ -67,7 +67,7 @@ class Around:
     nodes: Places
     links: Places
     held: np.ndarray  # (nodes,) bool: it has a support
-    link_nodes: np.ndarray  # (links, k) places of the nodes that links name
+    link_nodes: np.ndarray  # (links, k) indices of the nodes of each link
 
 
 def wrong_ends(places: np.ndarray, least: int) -> np.ndarray:

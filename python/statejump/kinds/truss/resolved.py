@@ -35,8 +35,8 @@ class Nodes:
     position_m: np.ndarray  # (n, 3), assembled shape at ΔT = 0
     fixed: np.ndarray  # (n, 3) bool: no motion along x, y, z; planar trusses: z everywhere
     guide_normal: np.ndarray  # (n, 3) unit, no motion along it; zero: none
-    force_N: np.ndarray  # (n, 3) dead load, weights included
-    mass_kg: np.ndarray  # (n,) of bodies at nodes, beside those of links
+    force_N: np.ndarray  # (n, 3) dead load, including weights
+    mass_kg: np.ndarray  # (n,) masses at nodes, in addition to those of links
 
 
 @dataclass(frozen=True)
@@ -47,17 +47,17 @@ class Links:
     nodes: np.ndarray  # (m, 2) int
     young_modulus_Pa: np.ndarray
     cross_section_area_m2: np.ndarray
-    thermal_expansion_per_K: np.ndarray  # with an [[expansion]] its largest |α|, the program then has ε/α
+    thermal_expansion_per_K: np.ndarray  # with an [[expansion]] its largest |α|; the program is then that of ε/α
     stress_free_length_m: np.ndarray  # at ΔT = 0
-    mass_kg: np.ndarray  # from the density: density · area · stress-free length; NaN: neither is given
+    mass_kg: np.ndarray  # from the density: density · area · stress-free length; NaN: missing
     poisson_ratio: np.ndarray
-    temperature_fraction: np.ndarray  # of the program's ΔT
+    temperature_fraction: np.ndarray  # fraction of the program's ΔT
     program: np.ndarray  # int, index into ResolvedTruss.programs
-    shown_program: np.ndarray  # of the temperature itself, where that of an [[expansion]] has the strain
+    shown_program: np.ndarray  # program of the temperature itself; for an [[expansion]] `program` has the strain
     shown_fraction: np.ndarray
     second_moment_of_area_m4: np.ndarray  # smallest one of the section
     ends: Sequence[str]  # keys of FIXITY
-    yield_strength_Pa: np.ndarray  # inf: none is given
+    yield_strength_Pa: np.ndarray  # inf: missing
 
     @property
     def axial_stiffness_N(self) -> np.ndarray:
@@ -116,15 +116,15 @@ class ResolvedTruss:
     links: Links
     bodies: Bodies  # shapes of the links
     joints: Mapping[str, Any]  # by section: the arrays of every type of joint
-    elements: Mapping[str, Any]  # by section: the arrays of every type of element beside links
+    elements: Mapping[str, Any]  # by section: the arrays of every type of element except links
     constraints: Constraints
     drives: Drives
     programs: tuple[Thermal | MemberProgram, ...]
     program_names: tuple[str, ...]  # "thermal", those of the file, those of members, "EXPANSION of PROGRAM"
     reflector: ReflectorSurface | None
-    sticking: str  # one of STICKING: contacts of the reduced model
+    sticking: str  # one of STICKING: model of sticking contacts
     start_friction: str  # stuck or frictionless
-    types: Sequence[JoinsNodes]  # of joints, in the order in which results list them
+    types: Sequence[JoinsNodes]  # types of joints, in the order of results
     element_types: Sequence[PullsNodes]  # likewise
 
     @property

@@ -51,7 +51,7 @@ def scales(truss: ResolvedTruss, displacement_m: np.ndarray) -> Scales:
     :param displacement_m: of the nodes over the program (states, nodes, 3)
     """
     kept = vars(truss)
-    if "_scales" not in kept:  # a truss never changes, and may have a program for every link
+    if "_scales" not in kept:  # cached, because a truss is immutable and may have a program for every link
         kept["_scales"] = _at_rest(truss)
     still: Scales = kept["_scales"]
     motion = max(still.motion_m, float(np.linalg.norm(displacement_m, axis=-1).max(initial=0.0)))

@@ -49,8 +49,8 @@ class TrussEvents(Sequence[TrussEvent]):
     time_s: np.ndarray
     interval_s: np.ndarray
     temperature_change_K: np.ndarray
-    kind: np.ndarray  # places in kinds
-    joint: np.ndarray  # numbers among the joints of the kind
+    kind: np.ndarray  # indices in kinds
+    joint: np.ndarray  # indices among the joints of the kind
     before: np.ndarray  # keys of statuses
     after: np.ndarray
     kinds: Sequence[str]

@@ -274,7 +274,7 @@ class UmbrellaCase(Case):
                           ("tangential_velocity", "tangential_velocity")):
             name = getattr(self.joint, key)
             problem = _engine.law_problem(kind, name)
-            if problem:  # a law of one's own that is known and cannot be used
+            if problem:  # a user law that is known and unusable
                 raise NotAllowed(f"joint.{key}", name, problem, code="bad_law")
         dissipation = laws.law("dissipation", self.joint.dissipation_law)
         may_be_zero = any(p.name == "restitution" and p.allows(0) for p in dissipation.parameters)

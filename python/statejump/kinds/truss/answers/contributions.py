@@ -25,7 +25,7 @@ class Contributions:
     kinds: tuple[str, ...]
     contribution: np.ndarray
     jump: float
-    reproduced: float  # jump that all friction forces together give back
+    reproduced: float  # jump that all friction forces together reproduce
     notes: tuple[str, ...]
 
     @property

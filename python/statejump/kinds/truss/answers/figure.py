@@ -23,9 +23,9 @@ from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath
 
-JUMPS = colormaps["cividis_r"]  # small light, large dark: reads in grey and for colour-blind eyes
+JUMPS = colormaps["cividis_r"]  # small is light, large is dark: readable in grey and for colour-blind eyes
 BLUE, ORANGE, DRAWN = "#0072B2", "#D55E00", "0.72"
-SHOWN = 0.12  # of the truss' size: how large the largest jump is drawn
+SHOWN = 0.12  # drawn size of the largest jump, as a fraction of the truss' size
 MARKED = 5  # joints
 MOST_BARS = 15
 _UNITS = ((1e-3, "mm", 1e3), (1e-6, "µm", 1e6), (0.0, "nm", 1e9))
@@ -126,7 +126,7 @@ def _mark(panel: Axes, truss: ResolvedTruss, shares: Contributions, places: np.n
         away = place - middle
         away = away / max(float(np.linalg.norm(away)), 1e-12)
         if np.ptp(places[:, -1]) < 0.05 * extent and len(place) == 2:
-            away = np.array([0.0, 1.0])  # all on one line
+            away = np.array([0.0, 1.0])  # all nodes on one line
         style = dict(fontsize=9, color=ORANGE, fontweight="bold", ha="center", va="center", zorder=6)
         if len(place) == 2:
             panel.annotate(str(rank), tuple(place), xytext=tuple(14 * away), textcoords="offset points", **style)

@@ -172,7 +172,7 @@ def _parameters(
         (("depth", *tilts, *curvature, *shifts), ""),
         (("depth", *tilts, *curvature),
          "the nodes do not determine the lateral shift of the vertex beside the tilt: it is held"),
-        (("depth", *tilts), flat if curvature else ""),  # a focal length that is given is none to be determined
+        (("depth", *tilts), flat if curvature else ""),  # a given focal length is not fitted
     ):
         if note:
             notes.append(note)

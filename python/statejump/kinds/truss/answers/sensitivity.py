@@ -16,9 +16,9 @@ from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath
 
-STEP = 1e-2  # of the value; the second difference takes half of it
-AGREE = 0.02  # differences of both steps, relative to the larger of them
-NOISE = 1e-6  # of the jump: what a share of a branch of 1e-9 may leave at a hundred events, with room
+STEP = 1e-2  # relative step of a parameter; the second difference uses half of it
+AGREE = 0.02  # allowed relative difference of the results of both steps
+NOISE = 1e-6  # fraction of the jump: error by locating a hundred events to 1e-9 of a branch, with a margin
 
 
 @dataclass(frozen=True)
@@ -124,7 +124,7 @@ def differences(
         values = [output.jump(one) for one in pair]
         jumps += values
         slopes.append((values[0] - values[1]) / (2 * size))
-        gaps.append(abs(values[0] + values[1] - 2 * own_jump) / size)  # of a smooth function as small as the step
+        gaps.append(abs(values[0] + values[1] - 2 * own_jump) / size)  # of the order of the step for a smooth function
         histories += [histories_of(one) for one in pair]
     whole, half = slopes
     largest = max(abs(whole), abs(half))

@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 _JUMPS = Later("statejump.kinds.truss.answers.figure:jumps_figure")
 _RANKING = Later("statejump.kinds.truss.answers.figure:ranking_figure")
 _WRITTEN = Later("statejump.kinds.truss.answers.write:write")
-NO_JUMP = 1e-9  # of the largest jump of a node: what is smaller is rounding
-MOST_SAMPLES = 1000  # of the path in the result file; every cycle has at least its ends
+NO_JUMP = 1e-9  # fraction of the largest jump of a node below which a jump is rounding
+MOST_SAMPLES = 1000  # samples of the path in the result file; every cycle has at least its ends
 CYCLES = Rule(WHOLE, allowed=Range(1, 100_000), optional=True)
 STEPS = Rule(NUMBER, allowed=Range(1e-6, 0.2))
 

@@ -21,9 +21,9 @@ from statejump.kinds.truss.solve import TrussPath, heat_of_joints_J
 
 # A jump of a cycle below this fraction of the largest has settled, because events are located to 1e-9 of a branch.
 SETTLED = 1e-6
-STEADY = 0.01  # two jumps that differ by less are the same growth
-RESOLVED = 0.01  # of the largest jump: what the increments may leave of a growth that is called none
-DOUBLINGS = 3  # of the increments, where two paths do not tell
+STEADY = 0.01  # relative difference below which two jumps are equal growth
+RESOLVED = 0.01  # largest error by the increments of a growth that counts as zero, over the largest jump
+DOUBLINGS = 3  # doublings of the increments if two paths do not agree
 
 # Path of so many increments a branch.
 Solve = Callable[[int], TrussPath]
@@ -35,8 +35,8 @@ class Verdict:
 
     word: str  # "no jump", "one cycle", "shakedown", "ratcheting", "not settled", "not resolved"
     text: str
-    cycle_jump: np.ndarray  # (cycles,) how far the output moved over each cycle, in its unit
-    uncertainty: np.ndarray  # (cycles,) by how much that differs between the two paths
+    cycle_jump: np.ndarray  # (cycles,) motion of the output over each cycle, in its unit
+    uncertainty: np.ndarray  # (cycles,) difference of this motion between the two paths
     increments: int  # per branch, of the finer path
     dissipation_J: np.ndarray  # (cycles,)
 

@@ -14,7 +14,7 @@ from statejump.kinds.truss.answers.study import Phase, TrussAnswers
 from statejump.results import record
 
 _SERIES = Later("statejump.kinds.truss.answers.vtk:series")
-MOST_ROWS = 15  # of a table in answers.md
+MOST_ROWS = 15  # rows of a table in answers.md
 MOST_NODES = 8
 # Large tables, which are not in the JSON file but beside it as CSV.
 NOT_IN_JSON = ("cycles", "node_jumps", "joint_jumps")

@@ -21,8 +21,8 @@ from statejump.schema.paths import EVERY, attribute_of, meant, split_path
 from statejump.schema.rules import suggestion
 
 PER_DECADE = 3
-FACTORS = (1e-3, 1e3)  # of a parameter that is scaled
-STIFFER = 1e3  # than the stiffest link or softer than the softest part: springs that are tried
+FACTORS = (1e-3, 1e3)  # factors of a scaled parameter
+STIFFER = 1e3  # stiffness of tried springs, over that of the stiffest link or below that of the softest element
 STIFFNESS = "spring.*.stiffness_N_per_m"
 
 

@@ -23,9 +23,9 @@ from statejump.kinds.truss.control.candidates import Candidate
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath
 
-NARROW = 1e-9  # of the value; events are located within 1e-9 of a branch
-LEAP = 1e-6  # of the wanted jump: what is further below it at the value found did not cross it continuously
-ROUNDING = 1e-9  # of the largest jump: what is called a turn of a curve is more
+NARROW = 1e-9  # relative accuracy of a value; events are located within 1e-9 of a branch
+LEAP = 1e-6  # fraction of the wanted jump: if the jump at the value found is lower by more, it is discontinuous there
+ROUNDING = 1e-9  # fraction of the largest jump below which a reversal of the curve is rounding
 
 
 @dataclass(frozen=True)
@@ -59,10 +59,10 @@ class Search:
     node: int
     increments: int
     value: float | None = None
-    found: dict[str, Any] = field(default_factory=dict)  # of the value, as in the results
+    found: dict[str, Any] = field(default_factory=dict)  # fields about the value, as in the results
     sentence: str = ""
-    turns: list[float] = field(default_factory=list)  # where the jump turns along the scan
-    ways: set[str] = field(default_factory=set)  # by which the ends of ranges were found
+    turns: list[float] = field(default_factory=list)  # values at which the jump reverses its slope along the scan
+    ways: set[str] = field(default_factory=set)  # methods that found the ends of ranges
 
     def jump(self, value: float) -> Jump:
         """Return the jump with a value."""
@@ -125,7 +125,7 @@ class Search:
             except Interrupted:
                 raise
             except (StatejumpError, ValueError):
-                pass  # some truss between has no path, or the scanned one was not solved: signs alone decide
+                pass  # a truss between has no path, or the scanned one was not solved: only signs decide
         self.ways.add("bisection")
         return bisect(passes, bad, good, NARROW)[1]
 

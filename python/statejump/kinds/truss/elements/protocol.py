@@ -35,7 +35,7 @@ class Lines:
     which: np.ndarray  # (elements,) bool
     colour: str
     legend: str
-    dashed: bool = False  # else a zigzag, where a drawing has room for it
+    dashed: bool = False  # else a zigzag, if a drawing has room for it
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,8 @@ class ElementType(Generic[ItemType, ArraysType]):
     Arrays: ClassVar[type[Any]]  # dataclass: names, and a field of the name of each key that models use
     columns: ClassVar[tuple[ItemColumn, ...]] = ()
     listed_if_none: ClassVar[bool] = False  # results list its items even if a truss has none
-    varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that a jump may follow
-    not_in_dem: ClassVar[str] = ""  # what follows its name where the DEM refuses it; empty: the DEM has it
+    varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that may affect a jump
+    not_in_dem: ClassVar[str] = ""  # text after its name if the DEM refuses it; empty: the DEM supports it
 
     @property
     def items(self) -> str:

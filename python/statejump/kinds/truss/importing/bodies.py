@@ -51,7 +51,7 @@ class _Bodies:
         self.deck, self.turning = deck, turning
         self.places = dict(deck.nodes)
         self.size = float(np.ptp(np.array(list(deck.nodes.values())), axis=0).max()) if deck.nodes else 0.0
-        self.one: dict[str, str] = {}  # nodes that become another one
+        self.one: dict[str, str] = {}  # nodes that were merged into another one
 
     def near(self, first: str, second: str) -> bool:
         """Whether two nodes are at one place."""

@@ -8,8 +8,8 @@ from pathlib import Path
 from statejump.core.errors import Unreadable, printable, size
 from statejump.core.reading import is_file
 
-LARGEST_BYTES = 1 << 26  # of a deck with all that it includes
-DEEPEST = 10  # files that include each other
+LARGEST_BYTES = 1 << 26  # of a deck with all its included files
+DEEPEST = 10  # depth of included files
 
 
 class Line(int):

@@ -27,8 +27,8 @@ from statejump.kinds.truss.importing.model import LARGEST_BYTES, Bar, Deck, quot
 
 FORMATS = {".vtk": "vtk", ".vtu": "vtu", ".vtp": "vtp", ".msh": "gmsh", ".med": "med", ".mesh": "medit"}
 BY_VTK = (".vtk", ".vtu", ".vtp")
-ADDRESS = re.compile(r"\(0x[0-9a-f]+\)")  # of an object, in sentences of VTK
-LINES = ("line", "polyline", "line3")  # of two nodes, in straight parts, or with a node between that is left out
+ADDRESS = re.compile(r"\(0x[0-9a-f]+\)")  # address of an object in messages of VTK
+LINES = ("line", "polyline", "line3")  # cells of two nodes, of straight segments, or with an omitted middle node
 # Data of cells that are read, and the number of a bar that they set.
 DATA = {"young_modulus_Pa": "young_modulus", "cross_section_area_m2": "area", "thermal_expansion_per_K": "expansion",
         "density_kg_per_m3": "density", "poisson_ratio": "poisson_ratio", "temperature_change_K": "temperature_change"}
@@ -134,7 +134,7 @@ def _by_meshio(path: Path) -> Any:
             return meshio.read(path, form)
     except StatejumpError:
         raise
-    except (Exception, SystemExit) as failure:  # what a parser of other people raises for a damaged file is anything
+    except (Exception, SystemExit) as failure:  # third-party parsers raise any exception for a damaged file
         cause = " ".join(str(failure).split()) or type(failure).__name__
         raise Unreadable(code="not_meshio", cause=cause[:200], file=path, form=form) from None
 

@@ -18,8 +18,8 @@ from statejump.kinds.truss.importing.reasons import REASONS, TABLE_REASON
 __all__ = ["LARGEST_BYTES", "Bar", "Deck", "Options", "Spring", "quoted", "text_of"]
 
 BENDING = "--beams-as-bars"
-MOST_SHOWN = 5  # further items of a refusal
-MOST_ITEMS = 1_000_000  # of a deck: nodes, bars, members of sets
+MOST_SHOWN = 5  # further items in a refusal
+MOST_ITEMS = 1_000_000  # largest number of nodes, bars, and members of sets of a deck
 SUFFIXES = {".inp": "abaqus", ".bdf": "nastran", ".dat": "nastran", ".nas": "nastran", ".csv": "tables",
             ".vtk": "mesh", ".vtu": "mesh", ".vtp": "mesh", ".msh": "mesh", ".med": "mesh", ".mesh": "mesh"}
 
@@ -160,7 +160,7 @@ class Deck:
     fixed: dict[str, set[str]] = field(default_factory=dict)
     held: dict[str, list[tuple[float, float, float]]] = field(default_factory=dict)
     force: dict[str, list[float]] = field(default_factory=dict)
-    force_line: dict[str, tuple[int, str]] = field(default_factory=dict)  # where the first force of a node stands
+    force_line: dict[str, tuple[int, str]] = field(default_factory=dict)  # line and card of the first force of a node
     springs: list[Spring] = field(default_factory=list)
     moments: list[Moment] = field(default_factory=list)
     rigid: list[RigidBody] = field(default_factory=list)
@@ -174,7 +174,7 @@ class Deck:
     initial: dict[str, float] = field(default_factory=dict)
     taken: dict[tuple[str, str], int] = field(default_factory=dict)
     left: dict[tuple[str, str], tuple[int, int]] = field(default_factory=dict)
-    step: int = 0  # which static one is taken; 0: none
+    step: int = 0  # number of the static step; 0: none
     refused: dict[tuple[str, str], tuple[int, str, str, int]] = field(default_factory=dict)
     waived: set[str] = field(default_factory=set)
     named_units: bool = False

@@ -14,7 +14,7 @@ LEAST_MODULUS_PA, MOST_MODULUS_PA = 1e9, 1.3e12
 # No bar of a deployable structure is longer than 1 km, shorter than 0.1 mm, or thicker than 1 m2 or than a tenth of its
 # squared length.
 LONGEST_M, SHORTEST_M, THICKEST_M2, THICKEST = 1e3, 1e-4, 1.0, 0.1
-DENSEST_KG_PER_M3, LIGHTEST_KG_PER_M3 = 2.3e4, 1.0  # of osmium; of what is lighter than any foam
+DENSEST_KG_PER_M3, LIGHTEST_KG_PER_M3 = 2.3e4, 1.0  # density of osmium; less than the density of any foam
 UNITS = "--units mm-N, mm-kN-t, mm-kg-s, in-lbf or --length-unit and --force-unit name the units of the deck"
 
 

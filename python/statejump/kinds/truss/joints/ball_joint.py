@@ -51,8 +51,8 @@ class BallJoints:
     names: Sequence[str]
     socket_node: np.ndarray  # int
     ball_node: np.ndarray  # int
-    socket_link: np.ndarray  # int, GROUND: the socket does not turn
-    ball_link: np.ndarray  # int, GROUND: the ball does not turn
+    socket_link: np.ndarray  # int, GROUND: the socket does not rotate
+    ball_link: np.ndarray  # int, GROUND: the ball does not rotate
     ball_radius_m: np.ndarray
     radial_clearance_m: np.ndarray  # at ΔT = 0
     friction_coefficient: np.ndarray

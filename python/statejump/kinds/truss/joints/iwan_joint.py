@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from statejump.kinds.truss.resolved import ResolvedTruss
 
 NUMBERS = ("tangent_stiffness_N_per_m", "slip_force_N", "exponent", "stiffness_ratio")
-LONGEST = 1e12  # interval over the first one: less than that of rounding
+LONGEST = 1e12  # longest interval over the first one, so that the first is above rounding
 # A bolt through two plates.
 BOLT: Strokes = (
     ((-0.9, -0.35), (0.9, -0.35), (0.9, 0.35), (-0.9, 0.35), (-0.9, -0.35)), ((-0.9, 0.0), (0.9, 0.0)),
@@ -55,7 +55,7 @@ class IwanJoints:
     """Iwan joints: axis · (motion of the first node - motion of the second) slides."""
 
     names: Sequence[str]
-    nodes: np.ndarray  # (j, 2) int, the second GROUND or a node that is held to the first across the axis
+    nodes: np.ndarray  # (j, 2) int; the second is GROUND, or a node that the joint constrains across the axis
     axis: np.ndarray  # (j, 3) unit
     tangent_stiffness_N_per_m: np.ndarray
     slip_force_N: np.ndarray
@@ -109,7 +109,8 @@ class IwanJointType(AlongAxis[IwanJoint, IwanJoints]):
         )
 
     def friction_N(self, joints: IwanJoints, state: Mapping[str, np.ndarray]) -> np.ndarray:
-        return state["iwan_force_N"]  # all of its springs end in friction: without it the joint carries nothing
+        # All of its springs end in friction, so without friction the joint carries nothing.
+        return state["iwan_force_N"]
 
     def carried_friction(self, joints: IwanJoints, at: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         return np.abs(at["iwan_force_N"]), joints.slip_force_N

@@ -52,9 +52,9 @@ class Symbol:
     marker_in_space: str | Strokes | None = None  # None: the same
     colour: str = BLACK
     face: str = "white"
-    order: float = 4.0  # what is higher covers what is lower
-    up: np.ndarray | None = None  # (k, 3) to where the marker's top points in the plane; None: up
-    line_in_space: np.ndarray | None = None  # (k, 3) unit: a line along it through the place
+    order: float = 4.0  # higher symbols cover lower ones
+    up: np.ndarray | None = None  # (k, 3) direction of the marker's top in the plane; None: up
+    line_in_space: np.ndarray | None = None  # (k, 3) unit: direction of a line through the position
 
 
 @dataclass(frozen=True)
@@ -91,8 +91,8 @@ class ContactPart:
     """Nodes that get a contact part in the DEM. A node has one; equal parts are one."""
 
     nodes: np.ndarray  # (k,) GROUND: this joint gives no node a part
-    roles: list[tuple[Any, ...]]  # (k,) what the part is made of
-    shared: bool = True  # whether several joints may have one part
+    roles: list[tuple[Any, ...]]  # (k,) shape and material of the part
+    shared: bool = True  # whether several joints may share one part
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ class Torsion:
     names: Sequence[str]
     links: np.ndarray  # (k, 2) int; (link, GROUND)
     axis: np.ndarray  # (k, 3) unit
-    stiffness_N_m_per_rad: np.ndarray  # (k,) the greatest
+    stiffness_N_m_per_rad: np.ndarray  # (k,) the largest one
 
 
 class JointType(Generic[ItemType, ArraysType]):
@@ -111,12 +111,12 @@ class JointType(Generic[ItemType, ArraysType]):
     section: ClassVar[str]
     Item: ClassVar[type[Item]]
     Arrays: ClassVar[type[Any]]  # dataclass: names, and a field of the name of each key that models use
-    columns: ClassVar[tuple[ItemColumn, ...]] = ()  # the first says where it is: a slide, an offset, a rotation
-    varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that a jump may follow
+    columns: ClassVar[tuple[ItemColumn, ...]] = ()  # the first is its position: a slide, an offset, a rotation
+    varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that may affect a jump
     has_temperature: ClassVar[bool] = False  # its items have a program and a temperature_fraction
     has_contacts: ClassVar[bool] = False  # two surfaces touch: it has rows among the contacts of a result
     turns: ClassVar[bool] = False  # its friction is a moment
-    not_in_dem: ClassVar[str] = ""  # what follows its name where the DEM refuses it; empty: the DEM has it
+    not_in_dem: ClassVar[str] = ""  # text after its name if the DEM refuses it; empty: the DEM supports it
 
     @property
     def items(self) -> str:

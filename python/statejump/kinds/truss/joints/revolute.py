@@ -52,8 +52,8 @@ class Revolutes:
     names: Sequence[str]
     bearing_node: np.ndarray  # int
     journal_node: np.ndarray  # int
-    bearing_link: np.ndarray  # int, GROUND: the bearing does not turn
-    journal_link: np.ndarray  # int, GROUND: the journal does not turn
+    bearing_link: np.ndarray  # int, GROUND: the bearing does not rotate
+    journal_link: np.ndarray  # int, GROUND: the journal does not rotate
     axis: np.ndarray  # (r, 3) unit; z in planar trusses
     journal_radius_m: np.ndarray
     radial_clearance_m: np.ndarray  # at ΔT = 0

@@ -28,12 +28,12 @@ ArraysType = TypeVar("ArraysType")
 class RoundParts(JointType[ItemType, ArraysType]):
     """Keys and arrays of both parts begin with their names: ``journal_node``, ``journal_radius_m``, ..."""
 
-    inner: ClassVar[str]  # the part that plays
-    outer: ClassVar[str]  # what it plays in
+    inner: ClassVar[str]  # name of the inner part
+    outer: ClassVar[str]  # name of the outer part
     eccentricity: ClassVar[str]  # columns: inner less outer centre
     normal_force: ClassVar[str]
     friction_force: ClassVar[str]
-    has_axis: ClassVar[bool] = True  # its arrays have the axis about which parts turn
+    has_axis: ClassVar[bool] = True  # whether its arrays have the axis of rotation of the parts
     has_temperature = True
     has_contacts = True
 

@@ -59,7 +59,7 @@ class Sliders:
     friction_coefficient · normal_force_N, from -clearance_minus_m to clearance_plus_m."""
 
     names: Sequence[str]
-    nodes: np.ndarray  # (s, 2) int, the second GROUND or a node that is held to the first across the axis
+    nodes: np.ndarray  # (s, 2) int; the second is GROUND, or a node that the joint constrains across the axis
     axis: np.ndarray  # (s, 3) unit
     friction_coefficient: np.ndarray
     normal_force_N: np.ndarray
@@ -101,7 +101,7 @@ class Sliders:
 class Pad:
     """Contacts of sliders with their floors: pads of a sphere on a plane."""
 
-    depth_m: np.ndarray  # at which the floor carries the normal force
+    depth_m: np.ndarray  # depth at which the floor carries the normal force
     normal_N_per_m: np.ndarray  # tangent stiffnesses at that depth
     tangential_N_per_m: np.ndarray
 
@@ -134,7 +134,7 @@ def pressing_directions(truss: ResolvedTruss, sliders: Sliders) -> np.ndarray:
     return np.array(found).reshape(-1, 3)
 
 
-AT_STOP = (3, 4)  # statuses at a stop, as the engine numbers them
+AT_STOP = (3, 4)  # numbers of the engine's statuses at a stop
 
 
 def with_sliders(truss: ResolvedTruss, joints: Axes) -> ResolvedTruss:
@@ -358,7 +358,7 @@ class SliderType(AlongAxis[Slider, Sliders]):
         start = {key: path.states[key][0] for key in ("slide_m", "slider_force_N")}
         friction = np.clip(joints.beside_soft_stops_N(start), -limit, limit)
         if path.truss.start_friction == FRICTIONLESS:
-            friction = 0 * limit  # what presses on a stop is the stop's
+            friction = 0 * limit  # the stop carries the whole force
         return {
             "friction_limit_N": limit, "friction_stiffness_N_per_m": pad.tangential_N_per_m,
             "stiffness_across_N_per_m": pad.normal_N_per_m, "stop_stiffness_N_per_m15": pad_hertz_stiffness(joints),

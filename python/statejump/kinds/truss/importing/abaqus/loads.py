@@ -161,7 +161,7 @@ def _factor(model: Model, block: Block, amplitudes: dict[str, Block], period: fl
     times, values = pairs[::2], pairs[1::2]
     relative = given.get("VALUE", "RELATIVE").upper() == "RELATIVE" and \
         given.get("DEFINITION", "TABULAR").upper() == "TABULAR" and block.name != "TEMPERATURE"
-    constant = len(set(values)) == 1 and len(values) == len(times)  # known at any time, whatever the step is
+    constant = len(set(values)) == 1 and len(values) == len(times)  # constant in time, for any type of step
     if not relative or not constant and (period is None or given.get("TIME")):
         model.deck.refuse(f"*{block.name}, AMPLITUDE", "amplitude_at_end_unknown", block.line,
                           f"{block.name}.AMPLITUDE")

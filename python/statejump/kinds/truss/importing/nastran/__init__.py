@@ -63,7 +63,7 @@ def read(path: Path, options: Options | None = None) -> Deck:
     settle_bodies(deck)
     if chosen.autospc:
         singularities.hold_singular(reader)
-    if chosen.solution.startswith("106"):  # there TREF is that of the coefficient of expansion only
+    if chosen.solution.startswith("106"):  # in this solution TREF belongs to the coefficient of expansion only
         for bar in deck.bars:
             bar.reference_temperature = None
     deck.settle()

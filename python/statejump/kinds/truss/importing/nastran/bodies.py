@@ -40,7 +40,7 @@ def rbe2(reader: Reader, card: Card) -> None:
     """Read a rigid body. For components of nodes at one position it becomes equations."""
     first, components = reader.node(card, 1), set(card[2])
     texts = [text for text in card.fields[3:] if text]
-    if texts and not texts[-1].isdecimal():  # its thermal expansion
+    if texts and not texts[-1].isdecimal():  # its coefficient of thermal expansion
         if reader.number(Card(card.line, card.name, [texts.pop()]), 0) != 0:
             reader.deck.refuse("RBE2.ALPHA", "rigid_body_expansion", card.line)
     others = reader.several(card, texts)

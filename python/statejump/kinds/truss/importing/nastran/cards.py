@@ -11,8 +11,8 @@ from statejump.kinds.truss.importing.lines import Source
 from statejump.kinds.truss.importing.model import Deck, quoted
 
 SMALL, LARGE, DATA_END, LINE_END = 8, 16, 72, 80
-FREE_COMMA = 10  # a line whose first comma is within so many columns has free fields
-MOST_FIELDS = 100_000  # of a card with its continuations
+FREE_COMMA = 10  # a line has free fields if its first comma is within this many columns
+MOST_FIELDS = 100_000  # largest number of fields of a card with its continuations
 NAME = re.compile(r"[A-Z][A-Z0-9]{0,7}$")
 # Old meshers and textbooks write BEGIN_BULK and BEGING BULK.
 BEGIN_BULK = re.compile(r"\s*BEGIN(G?[\s_]+BULK\b|\s*$)", re.IGNORECASE)
@@ -29,7 +29,7 @@ class Card:
     line: int
     name: str
     fields: list[str] = field(default_factory=list)
-    rule: list[str] = field(default_factory=list)  # by which it repeats the card before it
+    rule: list[str] = field(default_factory=list)  # rule by which it repeats the card before it
 
     def __getitem__(self, place: int) -> str:
         return self.fields[place] if place < len(self.fields) else ""
@@ -113,7 +113,7 @@ def _cards(deck: Deck, lines: Iterable[tuple[int, str]]) -> list[Card]:
         if mark:
             marks.add(mark, card)
         last_mark = mark
-    for number, own, fields in orphans:  # whose card stands below them
+    for number, own, fields in orphans:  # continuations that precede their card
         marked = marks.take(own)
         if marked is None:
             raise deck.fail(number, "deck_bad_syntax", problem=f"no card has the continuation mark {quoted(own)}")
@@ -200,7 +200,7 @@ def _fields(deck: Deck, number: int, line: str) -> tuple[str, list[str], str]:
         count = 4 if words[0].endswith("*") or words[0].startswith("*") else 8
         beyond = words[count + 1:]
         if beyond and beyond[0] and beyond[0][0] not in "+*" and (any(beyond[1:]) or _is_number(beyond[0])):
-            return words[0], words[1:], ""  # continued without a line of its own: no mark is a number
+            return words[0], words[1:], ""  # continued without a mark, because no mark is a number
         if any(beyond[1:]):
             raise deck.fail(number, "deck_bad_syntax", problem=f"a line of more than {count + 2} free fields")
         mark = words[count + 1] if len(words) > count + 1 else ""

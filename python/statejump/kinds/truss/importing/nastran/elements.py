@@ -9,7 +9,7 @@ from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.reader import Property, Reader
 from statejump.kinds.truss.importing.springs import add_spring
 
-SAME = 1e-6  # of offsets, over their size: cards have seven digits
+SAME = 1e-6  # relative difference of equal offsets: cards have seven digits
 
 
 def element(reader: Reader, card: Card, kind: str = "") -> str:

@@ -41,7 +41,7 @@ def equations(reader: Reader, card: Card) -> list[Equation]:
         axis = reader.frames[reader.displacement_frame[node]].directions(reader.deck.nodes[node])[int(component) - 1]
         moment = np.cross(lever, axis)
         if np.linalg.norm(moment - inertia @ turns @ moment) > SAME * size:
-            return []  # nodes on one line do not say how the node turns about it
+            return []  # collinear nodes do not determine the rotation about their line
         shares = weights[:, None] * (axis / weights.sum() + np.cross(turns @ moment, arms))
         terms = [(node, axis, 1.0)]
         for name, share in zip(weighted, shares):

@@ -62,7 +62,7 @@ def pbarl(reader: Reader, card: Card) -> None:
 
 def _shape(reader: Reader, card: Card) -> tuple[str, str]:
     """Return the shape, and the reason if its area is unknown."""
-    if card[2] and card[2].upper() not in ("MSCBML0", "MSCBMLO"):  # the second is a usual slip
+    if card[2] and card[2].upper() not in ("MSCBML0", "MSCBMLO"):  # the second spelling is a common mistake
         return "", f"group {quoted(card[2])} has sections of its own"
     return card[3].upper(), f"section {quoted(card[3])[1:-1]}: no known shape with all its dimensions"
 
@@ -123,7 +123,7 @@ def _tapered(reader: Reader, card: Card, stations: list[tuple[float, float | Non
         return Property(material, None, why)
     if any(not 0 <= at <= 1 for at, _, _ in known) or known[0][0] != 0:
         raise reader.fail(card, "deck_bad_value", problem="stations are not between 0 and 1")
-    if known[-1][0] < 1:  # as end A
+    if known[-1][0] < 1:  # as at end A
         known.append((1.0, known[0][1], known[0][2]))
     more = sum((end[0] - start[0]) * (start[2] + end[2]) / 2 for start, end in zip(known, known[1:]))
     area, mean = profiles.taper([(at, area) for at, area, _ in known])
