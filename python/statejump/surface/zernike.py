@@ -19,7 +19,7 @@ LEAST_SINGULAR_VALUE = 1e-6
 
 
 def noll(term: int) -> tuple[int, int]:
-    """Return degree n and order m of a term, from 1; m is negative for sin.
+    """Return degree n and order m of a term. Terms count from 1. A negative order denotes a term with sin.
 
     :raises StatejumpError: the term does not exist
     """

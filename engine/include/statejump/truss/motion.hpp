@@ -53,7 +53,7 @@ struct Drive {
 
 /// Positions and velocities of all nodes at the start of a motion.
 struct MotionStart {
-  Eigen::Matrix3Xd displacement;  ///< From the drawn shape [m].
+  Eigen::Matrix3Xd displacement;  ///< From ΔT = 0 [m].
   Eigen::Matrix3Xd velocity;      ///< [m/s]
 };
 

@@ -10,8 +10,8 @@
 
 namespace statejump::truss::detail {
 
-/// Forces of links and their dashpots on the independent displacements, computed together. System
-/// and Bodies compute the same forces, in a multiple of the time.
+/// Computes the forces of links and of their dashpots on the independent displacements in one pass.
+/// System and Bodies compute the same forces more slowly.
 class Rods {
  public:
   /// The system and its model must outlive it.

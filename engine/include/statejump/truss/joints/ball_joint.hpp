@@ -51,8 +51,8 @@ struct BallJoint {
   std::string name;
   int ball_node = 0;
   int socket_node = 0;
-  int ball_link = -1;                   ///< Turns the ball; −1: it does not turn.
-  int socket_link = -1;                 ///< Turns the socket; −1: it does not turn.
+  int ball_link = -1;                   ///< Rotates the ball; −1: none.
+  int socket_link = -1;                 ///< Rotates the socket; −1: none.
   double ball_radius = 0.0;             ///< R1 at ΔT = 0 [m], > 0.
   double radial_clearance = 0.0;        ///< c = R2 − R1 at ΔT = 0 [m], > 0.
   double ball_thermal_expansion = 0;    ///< [1/K].

@@ -72,7 +72,7 @@ struct Trial {
   explicit Trial(const JointFrame& of) : frame(of) {}
 
   const JointFrame& frame;
-  std::array<Eigen::Vector3d, most_joint_nodes> drawn;  ///< Places of its nodes at ΔT = 0 [m].
+  std::array<Eigen::Vector3d, most_joint_nodes> drawn;  ///< Positions of its nodes, ΔT = 0 [m].
   std::array<Eigen::Vector3d, most_joint_nodes> moved;  ///< Their displacements [m].
   std::array<double, most_joint_forces> force{};        ///< Its unknowns [N].
   const double* history = nullptr;                      ///< Of the start of the step.

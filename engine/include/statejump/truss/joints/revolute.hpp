@@ -33,8 +33,8 @@ struct ClearanceRevolute {
   std::string name;
   int journal_node = 0;
   int bearing_node = 0;
-  int journal_link = -1;                 ///< Turns the journal; −1: it does not turn.
-  int bearing_link = -1;                 ///< Turns the bearing; −1: it does not turn.
+  int journal_link = -1;                 ///< Rotates the journal; −1: none.
+  int bearing_link = -1;                 ///< Rotates the bearing; −1: none.
   double journal_radius = 0.0;           ///< R1 at ΔT = 0 [m], > 0.
   double radial_clearance = 0.0;         ///< c = R2 − R1 at ΔT = 0 [m], > 0.
   double journal_thermal_expansion = 0;  ///< [1/K].
