@@ -103,9 +103,9 @@ def trend(groups: Groups, rising: bool) -> Trend:
 
 TREND_RULE = (
     f"*{HOLDS}*: at every step of the parameter a run of the next value lies on the claimed side with a "
-    f"chance of at least {NEARLY_EVERY_RUN:g}; *{IN_THE_MEAN}*: else, if Spearman's rank test of all runs "
+    f"probability of at least {NEARLY_EVERY_RUN:g}; *{IN_THE_MEAN}*: otherwise, if Spearman's rank test of all runs "
     f"gives the claimed direction at {SIGNIFICANCE:g} and no step of the means goes the other way at "
-    f"{SIGNIFICANCE:g} (Welch); *{FAILS}*: else"
+    f"{SIGNIFICANCE:g} (Welch); *{FAILS}*: otherwise"
 )
 
 
