@@ -78,10 +78,10 @@ def main() -> None:
     equal = sum(yade == joint for *_, yade, joint in rows)
     text = f"""# The JointStepper's bits beside YADE's loop
 
-The first {DIGITS} digits of SHA-256 of what a run leaves, one thread: of shipped cases every number of the results,
-of the scenes and laws of [test_stepper.py](../../tests/yade/test_stepper.py) and, of bores of triangles,
-[test_stepper_bores.py](../../tests/yade/test_stepper_bores.py) all that `O` has at the end. {equal} of {len(rows)}
-pairs are equal. Hashes may differ from one compiler and processor to another, both columns alike.
+The table has the first {DIGITS} digits of the SHA-256 of each run, on one thread. For shipped cases the hash covers
+every number of the results. For the scenes and laws of [test_stepper.py](../../tests/yade/test_stepper.py), and for the
+bores of triangles of [test_stepper_bores.py](../../tests/yade/test_stepper_bores.py), it covers everything in `O` at the
+end. {equal} of {len(rows)} pairs are equal. Another compiler or processor may change the hashes, both columns together.
 
 | scene | law | steps | YADE's loop | `JointStepper` | equal |
 |---|---|--:|---|---|---|

@@ -247,17 +247,17 @@ def main() -> None:
     load, processors = os.getloadavg()[2], os.cpu_count()
     publish(options.output, "peers", COLUMNS, rows, f"""# Cost of a contact and step beside other programs
 
-n contacts with Hertz's normal force and Mindlin's spring under Coulomb's limit, the same material, load, step and
-search for neighbours in each program; {options.repetitions} repetitions in turn, one thread, medians. LAMMPS and
-LIGGGHTS are Debian's. In a bore LAMMPS knows one wall for all spheres, and one contact of a sphere with it.
-Load average of the machine at the end of the measurement: {load:.0f} on {processors} processors. Where it is above
-their number, caches and cores are shared, and the ratios say more than the nanoseconds.
+n contacts have Hertz's normal force and Mindlin's spring under Coulomb's limit. Material, load, step and search for
+neighbours are the same in each program. Numbers are medians of {options.repetitions} repetitions in turn, on one thread.
+LAMMPS and LIGGGHTS are Debian's. In a bore, LAMMPS has one wall for all spheres, and one contact of a sphere with it.
+The load average of the machine was {load:.0f} on {processors} processors at the end of the measurement. Where it exceeds
+their number, programs share caches and cores. Compare ratios then, not nanoseconds.
 
 {table(rows, scenes)}
 
-The `JointStepper` leaves one step in {SUBSTEPS} to YADE's loop, its default: that step, and the arrays that are filled
-and given back each time, are in its cost. What it has to reach was set on another machine in nanoseconds; here it is
-their ratio to the cost of the same scene in the same run.
+YADE's loop makes one step in {SUBSTEPS}, the default of the `JointStepper`. The cost includes this step and the copies
+to and from the arrays of the `JointStepper`. Goals were set in nanoseconds on another machine. Here they are ratios to
+the cost of the same scene in the same run.
 
 {goals(rows, scenes)}
 {left_out}

@@ -77,10 +77,10 @@ def report(rows: list[dict[str, Any]], measured: Scenes, repetitions: int) -> st
     load, processors = os.getloadavg()[2], os.cpu_count()
     return f"""# Steps of cases: JointStepper and YADE's loop
 
-Medians of {repetitions} repetitions in turn, one thread, CPU time without the start of YADE, with the energy account;
-every run is in `steppers.csv`. Both make the same steps, bit for bit. The goals were set on another machine; here
-they are ratios to YADE's loop in the same run. Load average of the machine at the end of the measurement: {load:.0f}
-on {processors} processors; the ratios say more than the nanoseconds.
+Numbers are medians of the CPU time of {repetitions} repetitions in turn, on one thread, without the start of YADE and
+with the energy account. `steppers.csv` has every run. Both loops make the same steps, bit for bit. The goals were set
+on another machine; here they are ratios to YADE's loop in the same run. The load average of the machine was {load:.0f}
+on {processors} processors at the end of the measurement, so compare ratios, not nanoseconds.
 
 | scene | YADE's loop [ns a step] | `JointStepper` [ns a step] | steps per s | ratio (range) | to reach | it is | met |
 |---|--:|--:|--:|--:|--:|---|---|

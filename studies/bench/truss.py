@@ -38,12 +38,15 @@ BUSY_LOAD = 0.5  # above it others have their share of the cores
 HEAD = """# Quasi-static truss solver against the number of joints
 
 `PYTHONPATH=build/python /usr/bin/python3 studies/bench/truss.py`: one cycle, ten points a branch, with
-{threads} (results have the same bits with any number of threads). `read` is CPU time, `solve` the time that passes,
-`CPU` that of
-all threads together. Events: changes of stick, slip and contact. The ring of many bays is stiff around each
-joint, and none slips from 100 on; in the umbrella every joint slips out and back, each at its own temperature.
-Items are read and checked from HDF5 tables beside the case file, or as Python objects; memory is the peak of the
-process, 50 MiB of it Python itself. From tables the median of {repeated} runs, but of a million joints one run.
+{threads} (results have the same bits with any number of threads).
+
+- `read` is CPU time, `solve` is wall time, and `CPU` is the CPU time of all threads in `solve`.
+- Events are changes of stick, slip and contact. In rings of 100 joints and more the truss is stiff around each joint, and
+  no joint slips. In the umbrella every joint slips out and back, each at its own temperature.
+- Items come from HDF5 tables beside the case file, or from Python objects. `read` includes their checks.
+- Memory is the peak of the process. Python itself needs 50 MiB of it.
+- Rows with tables are medians of {repeated} runs, except the single run of a million joints.
+
 {machine}
 
 | truss | items as | joints | unknowns | events | solves | factorizations | read [s] | solve [s] | CPU [s] | \
