@@ -80,8 +80,9 @@ def main() -> None:
 
 The table has the first {DIGITS} digits of the SHA-256 of each run, on one thread. For shipped cases the hash covers
 every number of the results. For the scenes and laws of [test_stepper.py](../../tests/yade/test_stepper.py), and for the
-bores of triangles of [test_stepper_bores.py](../../tests/yade/test_stepper_bores.py), it covers everything in `O` at the
-end. {equal} of {len(rows)} pairs are equal. Another compiler or processor may change the hashes, both columns together.
+bores of triangles of [test_stepper_bores.py](../../tests/yade/test_stepper_bores.py), it covers everything in `O` at
+the end. {equal} of {len(rows)} pairs are equal. Another compiler or processor may change the hashes, both columns
+together.
 
 | scene | law | steps | YADE's loop | `JointStepper` | equal |
 |---|---|--:|---|---|---|

@@ -248,10 +248,11 @@ def main() -> None:
     publish(options.output, "peers", COLUMNS, rows, f"""# Cost of a contact and step beside other programs
 
 n contacts have Hertz's normal force and Mindlin's spring under Coulomb's limit. Material, load, step and search for
-neighbours are the same in each program. Numbers are medians of {options.repetitions} repetitions in turn, on one thread.
-LAMMPS and LIGGGHTS are Debian's. In a bore, LAMMPS has one wall for all spheres, and one contact of a sphere with it.
-The load average of the machine was {load:.0f} on {processors} processors at the end of the measurement. Where it exceeds
-their number, programs share caches and cores. Compare ratios then, not nanoseconds.
+neighbours are the same in each program. Numbers are medians of {options.repetitions} repetitions in turn, on one
+thread. LAMMPS and LIGGGHTS are Debian's. In a bore, LAMMPS has one wall for all spheres, and one contact of a
+sphere with it.
+The load average of the machine was {load:.0f} on {processors} processors at the end of the measurement. Where it
+exceeds their number, programs share caches and cores. Compare ratios then, not nanoseconds.
 
 {table(rows, scenes)}
 

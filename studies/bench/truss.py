@@ -41,8 +41,8 @@ HEAD = """# Quasi-static truss solver against the number of joints
 {threads} (results have the same bits with any number of threads).
 
 - `read` is CPU time, `solve` is wall time, and `CPU` is the CPU time of all threads in `solve`.
-- Events are changes of stick, slip and contact. In rings of 100 joints and more the truss is stiff around each joint, and
-  no joint slips. In the umbrella every joint slips out and back, each at its own temperature.
+- Events are changes of stick, slip and contact. In rings of 100 joints and more the truss is stiff around each joint,
+  and no joint slips. In the umbrella every joint slips out and back, each at its own temperature.
 - Items come from HDF5 tables beside the case file, or from Python objects. `read` includes their checks.
 - Memory is the peak of the process. Python itself needs 50 MiB of it.
 - Rows with tables are medians of {repeated} runs, except the single run of a million joints.
