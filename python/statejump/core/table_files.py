@@ -402,7 +402,7 @@ def read_known(
     path: Path, known: Sequence[str], words: Mapping[str, Sequence[str]] | None = None, texts: Collection[str] = (),
     ignored: Collection[str] = (),
 ) -> dict[str, np.ndarray]:
-    """Return the columns of a table by keys that end with their units, in these units.
+    """Return the columns of a table by key. The end of a key is the unit of its values.
 
     :param known: keys
     :param words: other names of the quantity, by key

@@ -155,8 +155,10 @@ def covered(truss: ResolvedTruss) -> np.ndarray:
 
 
 def names(truss: ResolvedTruss) -> list[tuple[np.ndarray, str, np.ndarray]]:
-    """Position, names of the nodes there, and for planar trusses the direction (2,) that is farthest from links,
-    elements and the ground of supports."""
+    """Return a position, the names of its nodes, and the direction in which to write them, for every position.
+
+    In a planar truss the direction (2,) is the one farthest from links, elements and the ground of supports.
+    """
     positions = truss.nodes.position_m
     places: dict[tuple[float, ...], list[int]] = {}
     for index, place in enumerate(positions):
