@@ -10,18 +10,19 @@
 
 namespace statejump::bindings {
 
-/// What the name of the second module has beside that of the first.
+/// Suffix that distinguishes the name of the second module from that of the first.
 inline constexpr std::string_view more_suffix = "_more";
 
-/// Name of the second module, beside the first.
+/// Name of the second module, for the name of the first.
 inline std::string more_name(const std::string& engine) {
   return engine + std::string(more_suffix);
 }
 
-/// Adds EngineFailure, the one exception that all failures of the engine become. Call first.
+/// Adds EngineFailure, the exception into which the bindings translate every failure of the engine.
+/// Call first.
 void bind_failure(pybind11::module_& module);
 
-/// The same exception for what the second module throws.
+/// Uses the same exception for failures in the second module.
 void use_failure(const pybind11::module_& engine);
 
 /// Adds ThermalProgram to the module.

@@ -18,8 +18,8 @@ namespace statejump::bindings {
 
 namespace {
 
-/// The exception's class. It lives as long as the interpreter: a static py::object would be
-/// released after it.
+/// The exception's class. A raw pointer that lives as long as the interpreter, because a static
+/// py::object would be released after it.
 PyObject* failure_class = nullptr;
 
 constexpr const char* doc =
@@ -34,7 +34,8 @@ constexpr const char* doc =
     "file: of a mesh\n"
     "numbers: further numbers, name with unit to value";
 
-/// Raises the failure with these attributes; the others keep those of the class, None or empty.
+/// Raises the failure with these attributes; other attributes keep the values of the class, None or
+/// empty.
 void raise(const char* kind, const std::string& message, const py::dict& attributes) {
   const py::object failure = py::reinterpret_borrow<py::object>(failure_class)(message);
   failure.attr("kind") = kind;
@@ -123,7 +124,7 @@ void bind_failure(py::module_& module) {
   attributes["joints"] = py::tuple();
   attributes["nodes"] = py::tuple();
   attributes["numbers"] = py::dict();
-  // What is out of range has always been a ValueError, what did not come about a RuntimeError.
+  // An argument out of range is a ValueError, a failed run a RuntimeError.
   const py::tuple bases = py::make_tuple(py::reinterpret_borrow<py::object>(PyExc_ValueError),
                                          py::reinterpret_borrow<py::object>(PyExc_RuntimeError));
   failure_class =

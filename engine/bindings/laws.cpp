@@ -26,7 +26,7 @@ namespace {
 using Kind = std::variant<laws::NormalLaw, laws::DissipationLaw, laws::FrictionLaw,
                           laws::TangentialVelocityLaw>;
 
-/// A default law of the kind of that name.
+/// A default law of the kind with that name.
 Kind law_kind(const std::string& name) {
   if (name == "normal") return laws::NormalLaw{};
   if (name == "dissipation") return laws::DissipationLaw{};
@@ -161,8 +161,8 @@ py::dict hertz_contact(double force, double effective_radius, double young_modul
   return result;
 }
 
-/// Each module has its own table of loaded laws; the other one loads what is there when it is
-/// imported.
+/// Each module has its own table of loaded laws. The second module loads the laws of the first when
+/// it is imported.
 void load_user_laws(const std::string& engine) {
   law_loader::load_user_laws();
   const py::dict modules = py::module_::import("sys").attr("modules");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The module that every import of the package loads: what a bar on a slider needs. The other models
-// are in _engine_more, which the first use of one of its names loads.
+// The module that every import of the package loads, with the bar on a slider. The other models are
+// in _engine_more, which is loaded when one of its names is first used.
 #include <string>
 
 #include "bindings.hpp"

@@ -43,7 +43,7 @@ if sys.version_info[:2] != _paths.PYTHON_VERSION:
         "statejump was built for {} ({}.{}); this is {} ({}.{})".format(
             _paths.PYTHON, *_paths.PYTHON_VERSION, sys.executable, *sys.version_info[:2]))
 
-# Where each name of the public interface is.
+# Module of each public name.
 _PLACES = {
     **dict.fromkeys(("bore", "compare", "identify", "load", "montecarlo", "read", "statics", "sweep"),
                     "statejump.api"),

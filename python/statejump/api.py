@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The functions of the public interface: ``import statejump as sj`` has them as ``sj.load`` and so on."""
+"""The functions of the public interface: ``import statejump as sj`` offers them as ``sj.load`` and so on."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -28,21 +28,20 @@ _READ = Later("statejump.results.read:read")
 
 
 def load(source: str | Path | Mapping[str, Any]) -> Case:
-    """Return a case, checked as a whole.
+    """Return a checked case.
 
-    :param source: path of a case file; name of a case that comes with the program, as ``table1``; or sections and
-        keys as a dict
-    :raises StatejumpError: there is no such file, or the case is not allowed: file, key, value, range
+    :param source: path of a case file; name of a shipped case, for example ``table1``; or sections and keys as a dict
+    :raises StatejumpError: the file does not exist, or the case is invalid: file, key, value, range
     """
     return load_case(source)
 
 
 def compare(first: Run, second: Run) -> Comparison:
-    """Return two runs of a case beside each other, against the tolerances of the case.
+    """Compare two runs of a case with the tolerances of the case.
 
     :param first: a run of the reduced model and
-    :param second: one of the DEM, in either order; or two runs of one model
-    :raises StatejumpError: they are not of the same case, or one of them is not complete
+    :param second: a run of the DEM, in either order; or two runs of one model
+    :raises StatejumpError: the runs belong to different cases, or one of them is incomplete
     """
     if first.definition != second.definition:
         names = f"{first.definition.name}, {second.definition.name}"
@@ -59,20 +58,20 @@ def compare(first: Run, second: Run) -> Comparison:
 
 
 def read(path: str | Path) -> Result:
-    """Return what a result file (HDF5) holds: its runs by model, its comparison, case, scene and provenance.
+    """Return the content of a result file (HDF5): runs by model, comparison, case, scene and provenance.
 
-    :raises StatejumpError: no such file, not ours, of a newer layout, cut off or damaged
+    :raises StatejumpError: the file does not exist, is no result file, has a newer layout, or is damaged
     """
     found: Result = _READ(path)
     return found
 
 
 def statics(case: Case, friction_coefficient: float | None = None) -> RestSets:
-    """Return where friction holds the joint of a case: under the forces of a ``statics`` case, against the bar of a
+    """Return the rest positions of a loaded joint: under the forces of a ``statics`` case, or against the bar of a
     ``spring_slider`` case.
 
-    :param friction_coefficient: instead of the case's own
-    :raises StatejumpError: the kind of case has no such answer, or its mesh cannot be used
+    :param friction_coefficient: replaces that of the case
+    :raises StatejumpError: the kind of case has no rest positions, or its mesh is unusable
     """
     return require(case, JointStatics).statics(case, friction_coefficient)
 
@@ -80,13 +79,13 @@ def statics(case: Case, friction_coefficient: float | None = None) -> RestSets:
 def bore(
     path: str | Path, *, unit_m: float = 1.0, journal_radius_m: float | None = None, flip: bool = False
 ) -> Bore:
-    """Return what a measured bore is: roundness, lobes, clearance to a journal.
+    """Measure a bore: roundness, lobes, clearance to a journal.
 
     :param path: OFF, STL, PLY or OBJ file of its wall
     :param unit_m: length of one unit of the file [m]: 0.001 for millimetres
-    :param journal_radius_m: radius of the journal that goes into it [m]
-    :param flip: turn every face over, of a file whose normals point into the material
-    :raises StatejumpError: the file is not a bore; the sentence says what is wrong and where
+    :param journal_radius_m: radius of the journal in the bore [m]
+    :param flip: reverse every face, for a file whose normals point into the material
+    :raises StatejumpError: the file is no bore; the sentence gives reason and position
     """
     found: Bore = _BORE(Path(path), unit_m=unit_m, journal_radius_m=journal_radius_m, flip=flip)
     return found
@@ -97,21 +96,23 @@ def identify(
     confidence: float = 0.95, target: str | None = None, normal_force_N: float | None = None,
     journal_radius_m: float | None = None, ignored: Sequence[str] = (),
 ) -> Identification:
-    """Return what a measured loop says of a joint: parameters by least squares, noise of the force may be correlated,
-    intervals by profile likelihood, the choice among joints by BIC, and what the loop does not say.
+    """Identify a joint from a measured loop.
+
+    Least squares find the parameters; noise of the force may be correlated. Profile likelihood gives the intervals, and
+    BIC selects the joint. Notes list the parameters that the loop does not determine.
 
     :param source: a table, or columns: ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``, or
-        the same in other units, row by row as measured; a force is positive where it resists a positive displacement
+        the same in other units, row by row as measured. A force is positive where it resists a positive displacement
     :param model: a joint, several, or ``auto``: all of :data:`statejump.identification.models.MODELS`
-    :param start: friction before the first row: ``fresh``, it carries nothing; ``cycled``, the path was gone before;
-        ``unknown``: it is a parameter too
+    :param start: friction before the first row: ``fresh``: zero; ``cycled``: the path was traversed before;
+        ``unknown``: it is a parameter
     :param confidence: of the intervals, 0.5 to 0.999
-    :param target: where the joint goes: ``spring_slider`` (default), ``slider``, ``revolute``, ``umbrella`` (default of
-        rotations), ``torsion_spring``, ``iwan_joint``
-    :param normal_force_N: in the test [N]: friction becomes a coefficient
-    :param journal_radius_m: of a moment of friction [m], likewise
-    :param ignored: names of columns of a table that are left out
-    :raises StatejumpError: the file is no loop, or there is no such joint
+    :param target: item of a case that the joint becomes: ``spring_slider`` (default), ``slider``, ``revolute``,
+        ``umbrella`` (default of rotations), ``torsion_spring``, ``iwan_joint``
+    :param normal_force_N: normal force in the test [N]; converts friction to a coefficient
+    :param journal_radius_m: radius of the journal [m]; converts a moment of friction to a coefficient
+    :param ignored: names of columns of a table that are not used
+    :raises StatejumpError: the file is no loop, or the joint is unknown
     """
     found: Identification = _IDENTIFIED(
         source, model=model, start=start, confidence=confidence, target=target, normal_force_N=normal_force_N,
@@ -125,14 +126,14 @@ def sweep(
 ) -> Campaign:
     """Run a case on a grid of its parameters.
 
-    :param values: values by key, one or several: ``section.key``, ``section.item.key`` of an item of a list,
-        ``section.*.key`` or ``section.joint*.key`` of all that fit; or of a key what a ``[[vary]]`` table says, as
-        ``{"start": 0.1, "stop": 1, "count": 10, "spacing": "log"}``
+    :param values: values by key. Keys are ``section.key``, ``section.item.key`` of one item of a list,
+        ``section.*.key`` or ``section.joint*.key`` of all matching items. A value is a list, or the fields of a
+        ``[[vary]]`` table: ``{"start": 0.1, "stop": 1, "count": 10, "spacing": "log"}``
     :param model: ``reduced`` or ``dem``
-    :param workers: processes; None: one for each core, or none of their own where the grid is small
-    :param outputs: more to record of every run, as ``jump:displacement_m[P].x``: end, jump, max, min or range of any
-        column of a run, of one of its items; see :mod:`statejump.campaign.outputs`
-    :raises StatejumpError: there is no such key, or the kind of case has no outcomes
+    :param workers: number of processes; None: one for each core, or no separate process if the grid is small
+    :param outputs: further outputs to record of every run, for example ``jump:displacement_m[P].x``: end, jump, max,
+        min or range of any column of a run at one item; see :mod:`statejump.campaign.outputs`
+    :raises StatejumpError: a key is unknown, or the kind of case has no outcomes
     """
     found: Campaign = _SWEEP(case, values, model=model, workers=workers, progress=progress, outputs=outputs)
     return found
@@ -142,15 +143,16 @@ def montecarlo(
     case: Case, distributions: Mapping[str, Mapping[str, Any]], *, samples: int = 1000, seed: int = 1,
     model: str = "reduced", workers: int | None = None, progress: Progress = False, outputs: Sequence[str] = (),
 ) -> Campaign:
-    """Run a case whose parameters are random.
+    """Run a case with random parameters.
 
-    :param distributions: of each key what a ``[[vary]]`` table says, as ``{"distribution": "normal", "relative": 0.1}``
-    :param samples: how many are drawn
+    :param distributions: for each key the fields of a ``[[vary]]`` table, for example ``{"distribution": "normal",
+        "relative": 0.1}``
+    :param samples: number of samples
     :param seed: of the random numbers: the same seed gives the same samples
     :param model: ``reduced`` or ``dem``
-    :param workers: as of :func:`sweep`
-    :param outputs: as of :func:`sweep`
-    :raises StatejumpError: there is no such key or distribution
+    :param workers: as for :func:`sweep`
+    :param outputs: as for :func:`sweep`
+    :raises StatejumpError: a key or distribution is unknown
     """
     found: Campaign = _MONTECARLO(case, distributions, samples=samples, seed=seed, model=model, workers=workers,
                                   progress=progress, outputs=outputs)

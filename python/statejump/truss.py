@@ -44,12 +44,12 @@ __all__ = ["answers", "chain", "control", "creak", "draw", "iwan", "mast", "ring
 
 Keys = ParamSpec("Keys")
 LARGEST = 1_000_000
-# The least number of bays, ribs or blocks of each.
+# Smallest number of bays, ribs or blocks of each.
 LEAST = {"chain": 1, "iwan": 1, "umbrella": 1, "ring": 3, "mast": 1}
 
 
 def _making(document: Callable[Keys, Document]) -> Callable[Keys, Case]:
-    """Return the function that makes a case of what a generator of documents makes."""
+    """Return the function that makes a case from the document of a generator."""
     name = document.__name__
     number = Rule(WHOLE, allowed=Range(LEAST[name], LARGEST))
 
@@ -69,7 +69,7 @@ iwan = _making(generate.iwan)
 umbrella = _making(generate.umbrella)
 ring = _making(generate.ring)
 mast = _making(generate.mast)
-# What the commands of ``statejump truss`` are made of.
+# The commands of ``statejump truss`` are made from these functions.
 MAKERS = dict[str, Callable[..., Case]](chain=chain, iwan=iwan, umbrella=umbrella, ring=ring, mast=mast)
 
 
@@ -77,21 +77,21 @@ def draw(case: Case, axes: Axes | None = None, names: bool = False) -> Figure:
     """Draw a truss before anything is solved: nodes, links by temperature, supports, joints, springs, loads.
 
     :param case: a case of kind ``truss``
-    :param axes: axes to draw into, of a spatial truss with projection ``3d``; None: a new figure
-    :param names: whether all nodes are named, however many there are
-    :raises StatejumpError: the case is of another kind, or the axes are not those of three dimensions
+    :param axes: axes to draw into, with projection ``3d`` for a spatial truss; None: a new figure
+    :param names: write the names of all nodes, whatever their number
+    :raises StatejumpError: the case is of another kind, or the axes are not three-dimensional
     """
     return require(case, CaseDrawing).draw(case, axes, names)
 
 
 def creak(case: Case, node: str, *, progress: Progress = False) -> Creak:
-    """Return what a node feels while the truss moves through its program: slips of the joints and the heat of each,
-    the node's acceleration with its spectrum, peak and RMS in octaves.
+    """Return slips and acceleration of a truss in motion: slips of the joints with their heat, and the acceleration of
+    a node with its spectrum, peak and RMS in octaves.
 
     :param case: a case of kind ``truss``; its ``[motion]`` gives the steps
     :param node: name of the node
-    :param progress: True: show it on standard error; or what is called with the finished share, 0 to 1
-    :raises StatejumpError: the case is of another kind, there is no such node, or a step has no solution
+    :param progress: True: show it on standard error; or a function of the finished fraction, 0 to 1
+    :raises StatejumpError: the case is of another kind, the node does not exist, or a step has no solution
     """
     kind = require(case, Creaking)
     with shown(progress, "motion") as tell:
@@ -103,17 +103,17 @@ def answers(
     case: Case, *, output: str = "node", cycles: int | None = None, each: bool = False, step: float = 0.01,
     sensitivity: bool = True, progress: Progress = False,
 ) -> TrussAnswers:
-    """Return what a designer asks of a truss: jumps, whether they settle, which joints hold them, what they follow.
+    """Answer the design questions of a truss: jumps, whether they settle, contributions of joints, sensitivities.
 
     :param case: a case of kind ``truss``
-    :param output: what is traced to the joints: ``node`` (the most moved one), ``node:NAME``, ``rms`` or ``tilt`` of
-        the reflector
-    :param cycles: instead of the case's
-    :param each: sensitivities to every single item, not only to all of a kind together
+    :param output: the output whose jump is divided among the joints: ``node`` (the one that moves most), ``node:NAME``,
+        ``rms`` or ``tilt`` of the reflector
+    :param cycles: replaces those of the case
+    :param each: sensitivities to every single item, besides those to all of a kind together
     :param step: of the sensitivities, relative
-    :param sensitivity: whether sensitivities are asked
-    :param progress: True: show it on standard error; or what is called with the finished share of each part
-    :raises StatejumpError: the case is of another kind, there is no such output, or the solver finds no path
+    :param sensitivity: whether to compute sensitivities
+    :param progress: True: show it on standard error; or a function of the finished fraction of each part
+    :raises StatejumpError: the case is of another kind, the output does not exist, or the solver finds no path
     """
     found: TrussAnswers = require(case, DesignAnswers).answers(
         case, output=output, cycles=cycles, each=each, step=step, sensitivity=sensitivity,
@@ -127,18 +127,18 @@ def control(
     add_spring: Sequence[tuple[str, str]] = (), scale: Sequence[str] = (), progress: Progress = False,
 ) -> Study:
     """Return the smallest springs, preloads, frictions or other parameters that keep the jump of a node at or below a
-    value: of each candidate by itself, and which of them is best.
+    value: for each candidate alone, and the best of them.
 
     :param case: a case of kind ``truss``
-    :param node: name of the node; None: the most moved one
-    :param jump_below: wanted largest jump over all cycles [m]; None: half of what the case has
-    :param add_spring: pairs of nodes between which a spring may be added, free of force in the drawn shape
-    :param scale: keys whose values may be scaled: ``section.item.key``, or ``section.*.key`` of all items; without
-        candidates all keys that a jump may follow
-    :param progress: True: show it on standard error; or what is called with the finished share, 0 to 1
-    :return: ``sentences`` and ``remarks`` say what was found, ``recommendation`` has it as numbers, ``frame()`` all
-        that was scanned
-    :raises StatejumpError: the case is of another kind, there is no such node or key, or the case has no path
+    :param node: name of the node; None: the one that moves most
+    :param jump_below: largest allowed jump over all cycles [m]; None: half of that of the case
+    :param add_spring: pairs of nodes between which a spring may be added, without force in the reference configuration
+    :param scale: keys whose values may be scaled: ``section.item.key``, or ``section.*.key`` for all items; without
+        candidates all keys that may affect a jump
+    :param progress: True: show it on standard error; or a function of the finished fraction, 0 to 1
+    :return: ``sentences`` and ``remarks`` have the result as text, ``recommendation`` as numbers, ``frame()`` the whole
+        scan
+    :raises StatejumpError: the case is of another kind, a node or key does not exist, or the case has no path
     """
     kind = require(case, ControlStudy)
     with shown(progress, "control") as tell:

@@ -30,9 +30,9 @@ COLUMNS = ("what", "repetition", "workers", "samples", "wall_time_s", "worker_ti
 
 
 def measured(what: str, repetition: int, campaign: Plan, workers: int | None) -> dict[str, object]:
-    """Run the campaign on a fresh cluster and journal; wall time without starting the cluster.
+    """Run the campaign on a fresh cluster and journal; return the wall time without the start of the cluster.
 
-    :param workers: None: as the command does, and the start of the cluster counts
+    :param workers: None: as the command does, with the start of the cluster
     """
     load = os.getloadavg()[0]
     with tempfile.TemporaryDirectory(prefix="statejump-bench-") as folder:
@@ -47,7 +47,7 @@ def measured(what: str, repetition: int, campaign: Plan, workers: int | None) ->
 
 
 def bare(repetition: int, campaign: Plan) -> dict[str, object]:
-    """The same samples in a loop of this process: no Dask, no journal."""
+    """Run the same samples in a loop of this process, without Dask and journal."""
     load, started = os.getloadavg()[0], time.perf_counter()
     for index in range(campaign.samples):
         work.run_sample(campaign, index)

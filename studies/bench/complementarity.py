@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Share of random frictional contact problems that are solved, with iterations and time.
+"""Fraction of random frictional contact problems that are solved, with iterations and time.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/complementarity.py [--problems 10000] [--siconos 10]
 
-Six families of studies/bench/piles.py in the plane and in space, one contact to 200. With --siconos N the first N
-problems of each family and dimension also
-go to the solvers of Debian's python3-siconos, and all are judged by its merit.
-Writes results/bench/complementarity.md.
+Six families of studies/bench/piles.py in the plane and in space, with 1 to 200 contacts. With --siconos N the solvers
+of Debian's python3-siconos also solve the first N problems of each family and dimension, and its merit judges all
+solutions. Writes results/bench/complementarity.md.
 """
 from __future__ import annotations
 
@@ -73,12 +72,12 @@ def runs_of(seed: int) -> list[Run]:
 
 
 def percent(values: Sequence[bool]) -> str:
-    """Return a share; all is only said of all."""
+    """Return a fraction in percent; 100 % only if all are solved."""
     return "100" if all(values) else f"{min(100.0 * sum(values) / len(values), 99.99):.2f}"
 
 
 def ours(number: int, seed: int, workers: int, most_seconds: float) -> list[str]:
-    """Return the table of our solver, of the problems that were solved in the time given."""
+    """Return the table of our solver: fraction of problems solved within a time."""
     end = time.monotonic() + most_seconds
     batches = range(seed, seed + -(-number // (2 * len(FAMILIES))))
     found: list[Run] = []
@@ -109,7 +108,7 @@ def _row(name: str, dimension: str, runs: Sequence[Run]) -> str:
 
 
 def beside_siconos(number: int, seed: int) -> list[str]:
-    """Return the table of Siconos' solvers on some of the problems."""
+    """Return the table of Siconos' solvers for some of the problems."""
     import siconos.numerics as sn
 
     named = {2: {"NSGS": sn.SICONOS_FRICTION_2D_NSGS, "Lemke": sn.SICONOS_FRICTION_2D_LEMKE},

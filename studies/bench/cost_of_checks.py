@@ -41,7 +41,7 @@ main()
 
 
 def instructions(*command: str, **environment: str) -> int:
-    """Return how many instructions a command takes. :raises SystemExit: it fails"""
+    """Return the number of instructions of a command. :raises SystemExit: it fails"""
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run(
             ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/out", *command], text=True,
@@ -54,7 +54,7 @@ def instructions(*command: str, **environment: str) -> int:
 
 
 def without_checks(headers: Path) -> None:
-    """Let the questions of every step be answered with yes. :raises SystemExit: one is not found"""
+    """Make every check of a step pass. :raises SystemExit: a check is not found"""
     for name, questions in QUESTIONS.items():
         file = headers / "statejump/stepper" / name
         text = file.read_text(encoding="utf-8")

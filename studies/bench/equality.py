@@ -47,7 +47,7 @@ def of_case(name: str) -> Row:
 
 
 def of_scenes(build: Path, script: str, joint: str, part: str) -> list[Row]:
-    """The scenes of one part of a script of the tests."""
+    """Return the scenes of one part of a script of the tests."""
     paths = [build / "python", SCRIPTS, *(REPOSITORY / "yade_scripts" / name for name in ("examples", "runner"))]
     done = subprocess.run(
         ["yade", "-n", "-x", "-j1", str(SCRIPTS / script), part], stdin=subprocess.DEVNULL, capture_output=True,
@@ -78,10 +78,11 @@ def main() -> None:
     equal = sum(yade == joint for *_, yade, joint in rows)
     text = f"""# The JointStepper's bits beside YADE's loop
 
-The first {DIGITS} digits of SHA-256 of what a run leaves, one thread: of shipped cases every number of the results,
-of the scenes and laws of [test_stepper.py](../../tests/yade/test_stepper.py) and, of bores of triangles,
-[test_stepper_bores.py](../../tests/yade/test_stepper_bores.py) all that `O` has at the end. {equal} of {len(rows)}
-pairs are equal. Hashes may differ from one compiler and processor to another, both columns alike.
+The table has the first {DIGITS} digits of the SHA-256 of each run, on one thread. For shipped cases the hash covers
+every number of the results. For the scenes and laws of [test_stepper.py](../../tests/yade/test_stepper.py), and for the
+bores of triangles of [test_stepper_bores.py](../../tests/yade/test_stepper_bores.py), it covers everything in `O` at
+the end. {equal} of {len(rows)} pairs are equal. Another compiler or processor may change the hashes, both columns
+together.
 
 | scene | law | steps | YADE's loop | `JointStepper` | equal |
 |---|---|--:|---|---|---|

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Creak and snap by the rate of heating; writes results/motion/heating_rate.md, .csv and .png.
+"""Creak and snap over the rate of heating; writes results/motion/heating_rate.md, .csv and .png.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/heating_rate.py [--case NAME]
 
-A chain of blocks that let go one after the other, and a shallow arch of two bars with play that snaps through, each
-with periods of several lengths and steps of one length.
+Two cases run with several periods and steps of one length: a chain of blocks that slip one after the other, and a
+shallow arch of two bars with play that snaps through.
 """
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from run import parse_cases, publish, start
 from statejump.core import figures
 from statejump.core.errors import StatejumpError
 
-# By case: the node that is listened to, periods [s], steps a second.
+# By case: the observed node, periods [s], steps per second.
 CASES: dict[str, tuple[str, tuple[float, ...], float]] = {
     "chain_10": ("N10", (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0), 20_000.0),
     "two_bar_snap": ("B", (0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0), 20_000.0),
@@ -46,7 +46,7 @@ def row(name: str, period_s: float) -> dict[str, Any]:
 
 
 def picture(rows: list[dict[str, Any]], path: Any) -> None:
-    """Draw what falls with the rate, and what does not."""
+    """Draw the quantities that fall with the rate, and those that do not."""
     with figures.style():
         figure, places = figures.panels(1, 2, (10.0, 4.2))
         for (name, marker, color) in (("chain_10", "o-", "#0072B2"), ("two_bar_snap", "s--", "#D55E00")):
@@ -75,9 +75,10 @@ def report(rows: list[dict[str, Any]]) -> str:
              "fastest [m/s]", "at [K]")
     return f"""# Creak and snap by the rate of heating
 
-Trusses in motion, {CASES['chain_10'][2]:,.0f} steps a second, elastic sticking, dashpots as the cases have them. What
-the node feels; heat of all slips and of the largest one; the largest speed and the temperature change where it comes.
-A slide so slow that it stops and begins again between two steps counts as many slips.
+Trusses in motion with {CASES['chain_10'][2]:,.0f} steps per second, elastic sticking, and the dashpots of the cases.
+The columns have the peak acceleration of the node, the heat of all slips and of the largest one, and the largest
+speed with its temperature change. A slide that is slow enough to stop and begin again between two steps counts as
+several slips.
 
 | {' | '.join(heads)} |
 |---{'|--:' * (len(heads) - 1)}|

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What increments leave of a quasi-static path; writes results/bench/increments.md and .csv.
+"""Errors of a quasi-static path over the number of increments; writes results/bench/increments.md and .csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/increments.py [--output DIR]
 
-Paths of shipped trusses with several numbers of increments a branch: how well energies balance at every state, and how
-far the nodes are at the end from where the most increments put them.
+Paths of shipped trusses with several numbers of increments per branch: the energy balance at every state, and the
+distance of the nodes at the end from the path with the most increments.
 """
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ COLUMNS = ("case", "increments", "balance", "displacement", "solves")
 
 
 def residue(path: solve.TrussPath) -> float:
-    """Return the largest residue of the balance of energies at any state over the largest work of the temperature."""
+    """Return the largest energy residue at any state over the largest work of the temperature."""
     states = path.states
     stored = states["elastic_energy_J"] + states["load_potential_J"]
     left = states["thermal_work_J"] - (stored - stored[0]) - solve.heat_of_joints_J(states).sum(axis=1)
@@ -35,7 +35,7 @@ def residue(path: solve.TrussPath) -> float:
 
 
 def rows_of(name: str) -> list[dict[str, Any]]:
-    """Return what every number of increments leaves of a case."""
+    """Return the errors of a case for every number of increments."""
     truss = load_case(REPOSITORY / "cases" / "trusses" / f"{name}.toml").resolve()
     end = solve.path(truss, increments_per_branch=FINEST).states["displacement_m"][-1]
     rows = []
@@ -55,20 +55,22 @@ def report(rows: list[dict[str, Any]]) -> str:
         return "\n".join(lines)
 
     head = f"| case | {' | '.join(map(str, INCREMENTS))} |\n|---{'|--:' * len(INCREMENTS)}|"
-    return f"""# What increments leave of a quasi-static path
+    return f"""# Errors of a quasi-static path over its increments
 
-Increments a branch of the temperature; 50 is the default. Events are located to 1e-9 of a branch.
+The columns are numbers of increments per branch of the temperature; 50 is the default. Events are located to 1e-9 of a
+branch.
 
 ## Balance of energies
 
-Temperature's work less what is stored and friction's heat, the largest of all states over the largest work.
+Largest energy residue of all states over the largest work. The residue is the work of the temperature less stored
+energy and heat of friction.
 
 {head}
 {table("balance")}
 
 ## Displacements at the end
 
-Of the node that is farthest from where {FINEST} increments put it, over the largest displacement.
+Largest difference of a node from the path with {FINEST} increments, over the largest displacement.
 
 {head}
 {table("displacement")}

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Trusses in motion beside the DEM and the quasi-static solver; writes results/motion/models.md and models.csv.
+"""Trusses in motion against the DEM and the quasi-static solver; writes results/motion/models.md and models.csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion.py [--case NAME]
 
-Each case runs in the DEM, in motion with the DEM's masses and elastic sticking or partial slip, in motion with the
-DEM's contacts in explicit steps, and on the quasi-static path with elastic and with rigid sticking: point by point at
-the DEM's samples. What a model has not is left out: latches in explicit steps, balls that stick rigidly.
+Each case runs in the DEM, in motion with the DEM's masses and elastic sticking or partial slip, in motion with penalty
+contact, and on the quasi-static path with elastic and with rigid sticking. Runs are compared point by point at the
+DEM's samples. Unsupported combinations are omitted: latches with penalty contact, balls that stick rigidly.
 """
 from __future__ import annotations
 
@@ -51,14 +51,14 @@ COLUMNS = ("case", "model", "jump_m", "jump_node", "jump_difference_m", "rms_ove
 
 
 def peak_acceleration(run: Any) -> float:
-    """Return the largest second difference of a node's displacement at the samples [m/s²]: what is faster than two
-    samples is lost, in both models alike."""
+    """Return the largest second difference of a node's displacement at the samples [m/s²]. Changes faster than two
+    samples are lost, in both models."""
     moved, interval = run["displacement_m"], run.time_s[1] - run.time_s[0]
     return float(np.linalg.norm(moved[2:] - 2 * moved[1:-1] + moved[:-2], axis=2).max() / interval**2)
 
 
 def row(case: Any, name: str, model: str, run: Any, dem: Any, steps: float, seconds: float) -> dict[str, Any]:
-    """Return what one run says, its difference from the DEM at the node that jumps most there."""
+    """Return the results of one run, and its difference from the DEM at the node with the DEM's largest jump."""
     jumps = compare.jumps_m(run)
     node = int(np.argmax(np.linalg.norm(compare.jumps_m(dem), axis=1)))
     apart = np.linalg.norm(run["displacement_m"] - dem["displacement_m"], axis=2)
@@ -76,14 +76,14 @@ def row(case: Any, name: str, model: str, run: Any, dem: Any, steps: float, seco
 
 
 def explicit(case: Any) -> Any:
-    """Return the case in explicit steps, as many between two samples as between all others."""
+    """Return the case with penalty contact, with equally many steps between two samples."""
     least, samples = stable_steps.least_steps_per_cycle(case.definition), case.output.samples_per_cycle
     return case.changed({"motion.scheme": "regularised",
                          "motion.steps_per_cycle": ceil(EXPLICIT_STEPS * least / samples) * samples})
 
 
 def models(case: Any, partial: bool) -> Iterator[tuple[str, Any, bool]]:
-    """Yield name and case of every model beside the DEM, and whether it moves."""
+    """Yield name and case of every model besides the DEM, and whether it has inertia."""
     yield "in motion", case, True
     if not case.latch_hinge:
         yield "in motion, regularised", explicit(case), True
@@ -132,12 +132,16 @@ def report(rows: list[dict[str, Any]]) -> str:
     table = "\n".join(lines)
     return f"""# Trusses in motion beside the DEM and the quasi-static solver
 
-Cases as they are but for the changes that their names tell, {SAMPLES:,} samples a cycle. In motion: {STEPS:,} steps a
-cycle, masses as the DEM has them (`motion.masses = "lumped"`), sticking elastic as in the DEM, or partial slip. Jump:
-of the node that jumps most in the DEM; difference: the largest of all nodes; rms: the largest of all nodes over the
-run, over the largest displacement. Regularised: the DEM's contacts in {EXPLICIT_STEPS} times as many explicit steps
-as are just stable. Peak acceleration: largest second difference of the samples, m/s². Heat in J. Steps of a
-quasi-static path are its systems. The CPU time is of one shared core; the DEM's includes its samples.
+The names of the cases state their changes. Each run has {SAMPLES:,} samples per cycle. Motion has {STEPS:,} steps per
+cycle, the masses of the DEM (`motion.masses = "lumped"`), and elastic sticking as in the DEM, or partial slip.
+
+- jump: of the node with the largest jump in the DEM
+- difference: largest difference of the jump from the DEM, of all nodes
+- rms: largest rms difference from the DEM over the run, of all nodes, over the largest displacement
+- peak acceleration: largest second difference of the samples [m/s²]; heat in J
+- steps: for a quasi-static path the number of linear systems
+- regularised: penalty contact with the DEM's laws, in {EXPLICIT_STEPS} times as many steps as are just stable
+- CPU: of one shared core; that of the DEM includes its samples
 
 | case | model | jump | difference | rms | peak acceleration | friction | dashpots | steps | CPU |
 |---|---|--:|--:|--:|--:|--:|--:|--:|--:|

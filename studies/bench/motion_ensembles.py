@@ -4,9 +4,9 @@
 
     PYTHONPATH=build/python:. /usr/bin/python3 studies/bench/motion_ensembles.py [--case NAME]
 
-Without dashpots what rings after a joint has knocked never dies away, and two runs that differ by little part. What can
-be compared then are distributions: both models run many times, with periods of heating that are drawn at random from
-a narrow range, each model with draws of its own; the tests are those of `statejump figures`.
+Without dashpots the ringing after an impact never decays, and runs with small differences diverge. Distributions can
+still be compared. Both models run many times, with random heating periods from a narrow range, drawn separately for
+each model. The tests are those of `statejump figures`.
 """
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ UNDAMPED = {"dem.link_damping_ratio": 0.0, "dem.contact_damping_ratio": 0.0, "de
 
 @dataclass(frozen=True)
 class Ensemble:
-    """What is run: how it is loaded, its period [s], implicit steps of a cycle, and the unit of its heat: how many a
-    joule has, and its name."""
+    """One ensemble: load, period [s], implicit steps per cycle, and the unit of heat: its number per joule, and its
+    name."""
 
     load: Callable[[], Any]
     period_s: float
@@ -58,13 +58,13 @@ COLUMNS = ("case", "model", "period_s", *QUANTITIES)
 
 
 def drawn_periods(period_s: float, model: int, count: int) -> np.ndarray:
-    """Return periods of heating [s], evenly spread; the same for the same seed, of each model its own."""
+    """Return heating periods [s], evenly spread; the same for the same seed, different for each model."""
     generator = np.random.default_rng([SEED, model])
     return period_s * (1 + SPREAD * (2 * generator.random(count) - 1))
 
 
 def measure(name: str, count: int) -> list[dict[str, Any]]:
-    """Run one case as often as asked in all models."""
+    """Run one case in all models, the requested number of times."""
     ensemble = CASES[name]
     case = ensemble.load().changed({**UNDAMPED, "motion.steps_per_cycle": ensemble.steps,
                                     "thermal.period_s": ensemble.period_s})
@@ -80,7 +80,7 @@ def measure(name: str, count: int) -> list[dict[str, Any]]:
 
 
 def drawn(case: Any, model: str, count: int) -> Iterator[Any]:
-    """Yield the case as a model takes it, with all its periods."""
+    """Yield the case for a model, with all its periods."""
     if model == REGULARISED:
         case = explicit(case)
     elif model != SETS:
@@ -90,7 +90,7 @@ def drawn(case: Any, model: str, count: int) -> Iterator[Any]:
 
 
 def row(name: str, model: str, case: Any, node: int, along: np.ndarray) -> dict[str, Any]:
-    """Run a case and return what is compared of it, the jump of a node along a direction."""
+    """Run a case and return its compared quantities, with the jump of a node along a direction."""
     run = case.dem() if model in FRACTIONS else case.reduced(dynamic=True)
     return {"case": name, "model": model, "period_s": case.thermal.period_s,
             "jump_m": float(compare.jumps_m(run)[node] @ along),
@@ -98,7 +98,7 @@ def row(name: str, model: str, case: Any, node: int, along: np.ndarray) -> dict[
 
 
 def unit(name: str, key: str) -> tuple[float, str]:
-    """Return how many of its unit a quantity of a case has in SI, and the unit."""
+    """Return the number of units per SI unit for a quantity of a case, and the unit."""
     return {"jump_m": (1e6, "µm"), "friction_J": CASES[name].heat, "peak_m_per_s2": (1.0, "m/s²")}[key]
 
 
@@ -108,13 +108,13 @@ def values(rows: list[dict[str, Any]], case: str, model: str, key: str) -> np.nd
 
 
 def tests(rows: list[dict[str, Any]], case: str, model: str) -> list[TwoSampleTest]:
-    """Return the tests of all quantities of a case between a model and the DEM in its shortest steps."""
+    """Return the tests of all quantities of a case between a model and the DEM with its shortest steps."""
     return [two_sample_test(words, *(values(rows, case, one, key) for one in (model, FINE)))
             for key, words in QUANTITIES.items()]
 
 
 def picture(rows: list[dict[str, Any]], names: list[str], path: Any) -> None:
-    """Draw the distributions of all quantities, a row a case."""
+    """Draw the distributions of all quantities, one row per case."""
     with figures.style():
         figure, places = figures.panels(len(names), len(QUANTITIES), (10.0, 2.6 * len(names)))
         for name, axes_of in zip(names, np.asarray(places, dtype=object).reshape(len(names), -1)):
@@ -149,17 +149,20 @@ def report(rows: list[dict[str, Any]], names: list[str], count: int) -> str:
     steps = ", ".join(f"{name} {CASES[name].steps:,}" for name in names)
     return f"""# Undamped trusses: ensembles in motion and in the DEM
 
-Cases without any dashpot, {count} runs of each model with periods of heating drawn evenly from ±{SPREAD:.0%} of the
-one in the table, each model with draws of its own. DEM: at {FRACTIONS[DEM]:g} of its stable step, its default; quarter
-step: at {FRACTIONS[FINE]:g}, which all others are held against. In motion with masses as the DEM has them: regularised,
-the DEM's contacts in {EXPLICIT_STEPS} times as many explicit steps as are just stable; by sets, elastic sticking in
-implicit steps, of a cycle: {steps}.
+The cases have no dashpots. Each model makes {count} runs, with heating periods drawn evenly from ±{SPREAD:.0%} of the
+one in the table, independently for each model.
 
-Jump: of the node that jumps most on the quasi-static path, along that jump, at the end of the cycle, where it still
-rings. Peak acceleration: largest second difference of {SAMPLES:,} samples. Tests as in `statejump figures`: Kolmogorov
-and Smirnov of the distributions, Welch of the means, Brown and Forsythe of the spreads; the models agree if none tells
-them apart at {SIGNIFICANCE:g}. Of {3 * len(lines)} tests of equal models {3 * len(lines) * SIGNIFICANCE:.2g} are
-expected to.
+- DEM: {FRACTIONS[DEM]:g} of its stable step, the default; quarter step: {FRACTIONS[FINE]:g} of it, the reference
+- regularised: penalty contact with the DEM's masses and laws, in {EXPLICIT_STEPS} times as many steps as are just
+  stable
+- by sets: Moreau–Jean with the DEM's masses and elastic sticking; steps per cycle: {steps}
+- jump: of the node with the largest jump on the quasi-static path, along that jump, at the end of the cycle. The node
+  still rings there
+- peak acceleration: largest second difference of {SAMPLES:,} samples
+
+The tests are those of `statejump figures`: Kolmogorov-Smirnov for the distributions, Welch for the means,
+Brown-Forsythe for the spreads. Two models agree if no test is significant at {SIGNIFICANCE:g}. Of {3 * len(lines)}
+tests of equal models {3 * len(lines) * SIGNIFICANCE:.2g} are expected to be significant.
 
 | case, period | model | quantity | mean | s.d. | mean, quarter | s.d. | p, distribution | p, mean | p, spread | agree |
 |---|---|---|--:|--:|--:|--:|--:|--:|--:|---|

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cost of trusses in motion by the number of joints that slip; writes results/motion/size.md and .csv.
+"""Cost of trusses in motion over the number of slipping joints; writes results/motion/size.md and .csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_size.py [--case CASE] [--largest JOINTS]
 
-Chains of blocks, and umbrellas with cables whose joints rub with coefficients scattered between 0.1 and 0.2, in equal
-steps and in steps as long as a tolerance allows. The largest ones take minutes of CPU.
+Chains of blocks, and umbrellas with cables and friction coefficients between 0.1 and 0.2, with equal steps and with
+steps by tolerance. The largest ones take minutes of CPU.
 """
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SAMPLES = 20  # of a cycle
 STEPS = 2000  # of a cycle, where they are equal
 SIZES = (10, 100, 1000, 10_000)
 EQUAL = {"motion.steps_per_cycle": STEPS}
-# Blocks of a chain of 100 go by up to a decimetre, joints of the umbrella have a clearance of 0.1 mm.
+# Blocks of a chain of 100 move by up to a decimetre; joints of the umbrella have a clearance of 0.1 mm.
 CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "chain": ("chain", EQUAL),
     "umbrella": ("umbrella", EQUAL),
@@ -55,7 +55,7 @@ def row(name: str, joints: int) -> dict[str, Any]:
 
 
 def power(rows: list[dict[str, Any]]) -> str:
-    """Return the power of the joints with which the cost of a step goes, from 100 on."""
+    """Return the power of the number of joints with which the cost of a step grows, from 100 on."""
     first = next((one for one in rows if one["joints"] == 100), None)
     last = rows[-1]
     if first is None or last["joints"] <= 100:
@@ -84,14 +84,19 @@ def report(rows: list[dict[str, Any]]) -> str:
                 f"{one['us_per_joint_and_step']:.3g} µs | {last} |")
     table = "\n".join(lines)
     problems = sum(one["contact_problems"] for one in rows)
-    return f"""# Trusses in motion by the number of joints that slip
+    return f"""# Trusses in motion: cost over the number of slipping joints
 
-One cycle of `sj.truss.chain(n)`, whose blocks go out one after the other, and of umbrellas of n ribs with cables of
-1 N, whose clearance joints rub with coefficients scattered between 0.1 and
-0.2; with equal steps, or with `motion.displacement_tolerance_m`. Slipped: joints with heat of friction.
-Events: changes of a joint between open, stick and slip. Factorizations: of the whole truss. Frictional contact
-problems of all contacts, where branches are not found: {problems}. CPU time of the stepping on one shared core;
-power: of the number of joints with which the cost of a step goes, from 100 to the largest.
+One cycle of two trusses, with equal steps or with `motion.displacement_tolerance_m`: `sj.truss.chain(n)`, whose
+blocks slip one after the other, and umbrellas of n ribs with cables of 1 N and friction coefficients between 0.1 and
+0.2.
+
+- slipped: joints with heat of friction
+- events: changes of a joint between open, stick and slip
+- factorizations: of the whole truss
+- CPU: time of the steps on one shared core
+- power: exponent of the number of joints in the cost of a step, from 100 joints to the largest number
+
+Steps whose statuses were not found, and which were solved as frictional contact problems: {problems}.
 
 | | joints | unknowns | slipped | steps | events | factorizations | CPU | per joint and step | power |
 |---|--:|--:|--:|--:|--:|--:|--:|--:|--:|

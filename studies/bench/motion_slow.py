@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Slow heating: trusses in motion with a tolerance beside the DEM; writes results/motion/slow_heating.md and .csv.
+"""Slow heating: trusses in motion with a tolerance against the DEM; writes results/motion/slow_heating.md and .csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_slow.py [--case CASE] [--runs FOLDER]
 
-A chain of 100 blocks with dashpots, heated and cooled once in several periods; "damped" are periods with critical
-dashpots in the links, in which the chain comes to rest between the slips of its blocks. The DEM's steps go with the
-period, those of the motion with what happens. Errors are against the motion with a tolerance of 1e-12 m. Runs of the
-DEM take minutes of CPU; with --runs they are kept and taken from there.
+A chain of 100 blocks with dashpots is heated and cooled once, with several periods. Periods named "damped" have
+critical dashpots in the links, so that the chain comes to rest between slips of its blocks. The number of DEM steps is
+proportional to the period; that of the motion depends on the events. Errors are against the motion with a tolerance of
+1e-12 m. DEM runs take minutes of CPU; --runs stores and reuses them.
 """
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ SAMPLES = 200  # of a cycle
 BLOCKS = 100
 PERIODS_S = {"10": 10.0, "100": 100.0, "1000": 1000.0, "100 damped": 100.0, "1000 damped": 1000.0}
 CRITICAL = 1.0  # dem.link_damping_ratio
-# Of the stable step. The shorter step of the other cases would take up to an hour.
+# Fraction of the stable step. The shorter step would take up to an hour for the other cases.
 FRACTIONS = {"10": (0.9, 0.1), "100": (0.9, 0.1), "1000": (0.9,), "100 damped": (0.9,), "1000 damped": (0.9,)}
 TOLERANCES_M = (1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11)
 REFERENCE_M = 1e-12  # of the motion that all are measured by
@@ -64,7 +64,7 @@ def moved(period: str, tolerance_m: float) -> dict[str, Any]:
 
 
 def row(period: str, model: str, run: dict[str, Any], reference: np.ndarray) -> dict[str, Any]:
-    """Return what one run costs, and how far from the reference it is."""
+    """Return the cost of one run, and its error against the reference."""
     apart = np.linalg.norm(run["d"] - reference, axis=2)
     largest = np.linalg.norm(reference, axis=2).max()
     return {
@@ -105,14 +105,20 @@ def report(rows: list[dict[str, Any]]) -> str:
             lines.append(f"| {first} | {one['model']} | {one['steps']:,} | {rms} | {largest} | "
                          f"{one['cpu_time_s']:.3g} s | {one['us_per_step']:.3g} µs | {ratio} |")
     table = "\n".join(lines)
-    return f"""# Slow heating: trusses in motion with a tolerance beside the DEM
+    return f"""# Slow heating: trusses in motion with a tolerance against the DEM
 
-A chain of {BLOCKS} blocks with dashpots of 0.1 of the critical ones in its links, or critical ones
-(`dem.link_damping_ratio`), heated and cooled once in the period, masses as the DEM has them, elastic sticking,
-{SAMPLES} samples. In motion: `motion.displacement_tolerance_m`. rms: the largest of all nodes over the run, over the
-largest displacement; largest: the largest at any time. Both against the motion with the smallest tolerance; how far
-the DEM with its shorter step is from that tells how far the reference may be off. CPU time of the stepping on one
-shared core. Times cheaper: than the DEM at 0.9 of its stable step.
+A chain of {BLOCKS} blocks is heated and cooled once in the period. Its links have dashpots of 0.1 of the critical
+ones, or critical ones (`dem.link_damping_ratio`). It has the masses of the DEM, elastic sticking and {SAMPLES}
+samples. Motion uses
+`motion.displacement_tolerance_m`.
+
+- rms: largest rms error of all nodes over the run, over the largest displacement
+- largest: largest error at any time, over the largest displacement
+- CPU: time of the steps on one shared core
+- times cheaper: than the DEM at 0.9 of its stable step
+
+The reference is the motion with the smallest tolerance. The DEM with its shorter step bounds the error of this
+reference.
 
 | period | model | steps | rms | largest | CPU | per step | times cheaper |
 |---|---|--:|--:|--:|--:|--:|--:|

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cost of trusses in motion beside the DEM at equal error; writes results/motion/speed.md and speed.csv.
+"""Cost of trusses in motion against the DEM at equal error; writes results/motion/speed.md and speed.csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_speed.py [--case NAME]
 
-Both models run with several steps and are measured by the DEM with its default step, to which both converge. CPU time
-of the stepping, one thread. Chains of 100 to 10 000 blocks tell how the cost of a step grows.
+Both models run with several steps. The reference is the DEM with its default step, to which both converge. CPU time of
+the steps, one thread. Chains of 100 to 10 000 blocks show how the cost of a step grows.
 """
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def moved(case: Any) -> tuple[Any, float]:
 
 
 def row(name: str, model: str, run: Any, reference: Any, steps: int, theta: Any, seconds: float) -> dict[str, Any]:
-    """Return what one run costs, and how far from the reference it is."""
+    """Return the cost of one run, and its error against the reference."""
     apart = np.linalg.norm(run["displacement_m"] - reference["displacement_m"], axis=2)
     jumps, exact = compare.jumps_m(run), compare.jumps_m(reference)
     return {
@@ -82,7 +82,7 @@ def measure(names: list[str]) -> list[dict[str, Any]]:
 
 
 def scaling() -> list[dict[str, Any]]:
-    """Run chains of blocks that stick, as studies/bench/truss_dem.py does in the DEM."""
+    """Run chains of sticking blocks, as studies/bench/truss_dem.py does in the DEM."""
     rows = []
     for blocks in SIZES:
         case = sj.truss.chain(blocks, temperature_change_K=1.0, friction_force_N=1e3).changed({
@@ -111,12 +111,15 @@ def report(rows: list[dict[str, Any]], grown: list[dict[str, Any]]) -> str:
     sizes = "\n".join(f"| {one['case']} | {one['us_per_step']:.4g} µs | "
                       f"{1e3 * one['us_per_step'] / size:.0f} ns |" for size, one in zip(SIZES, grown))
     fractions = " and at ".join(str(fraction) for fraction in FRACTIONS)
-    return f"""# Cost of trusses in motion beside the DEM
+    return f"""# Cost of trusses in motion against the DEM
 
-100 joints with dashpots, masses as the DEM has them, elastic sticking, {SAMPLES} samples a cycle. rms: the largest of
-all nodes over the run, over the largest displacement; jump: the largest error of all nodes, over the largest jump. Both
-against the DEM at {REFERENCE} of its stable step. CPU time of the stepping on one shared core. Times cheaper: than the
-DEM at {fractions} of the stable step.
+100 joints with dashpots, the masses of the DEM, elastic sticking, and {SAMPLES} samples per cycle. The reference is
+the DEM at {REFERENCE} of its stable step.
+
+- rms: largest rms error of all nodes over the run, over the largest displacement
+- jump: largest error of the jump of all nodes, over the largest jump
+- CPU: time of the steps on one shared core
+- times cheaper: than the DEM at {fractions} of the stable step
 
 | case | model | steps | θ | rms | jump | CPU | per step | times cheaper |
 |---|---|--:|--:|--:|--:|--:|--:|--:|

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What every program of these benchmarks is given: n contacts of the same bodies under the same load.
+"""Common input of all programs in these benchmarks: n contacts of the same bodies under the same load.
 
-Read in YADE, too. Table 2 of Chen et al. (2021): radius and clearance of the joint, material.
+Also read in YADE. Table 2 of Chen et al. (2021): radius and clearance of the joint, material.
 """
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def depth(effective_radius: float) -> float:
 
 
 def places(size: int) -> Iterator[tuple[float, float, float]]:
-    """Yield the places of the fixed bodies: a cubic grid."""
+    """Yield the positions of the fixed bodies: a cubic grid."""
     edge = ceil(size ** (1 / 3))
     for i in range(size):
         x, rest = i % edge, i // edge

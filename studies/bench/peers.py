@@ -47,7 +47,7 @@ NAME = {
 }
 PAIRS = (("joint_stepper", "bare_loop"), ("joint_stepper", "joint"), ("joint_stepper", "lammps_bore"),
          ("joint", "lammps_bore"), ("sphere", "lammps_sphere"))
-# Of the JointStepper's cost over that of another scene in the same run: at most, and what it is.
+# Largest allowed cost of the JointStepper over that of another scene in the same run, and the meaning of this number.
 GOALS = (
     ("joint", 1, 120 / 1666, "120 ns where YADE's loop takes 1666"),
     ("joint", 100, 60 / 180, "60 ns where YADE's loop takes 180"),
@@ -63,7 +63,7 @@ DENSITY = MASS / (4 / 3 * pi * RADIUS**3)
 
 @dataclass
 class Deck:
-    """What LAMMPS or LIGGGHTS reads: lines of commands, and the bodies (type, x, y, z)."""
+    """Input of LAMMPS or LIGGGHTS: lines of commands, and the bodies (type, x, y, z)."""
 
     program: str
     lines: list[str]
@@ -198,7 +198,7 @@ def ratios(rows: list[dict[str, Any]], first: str, second: str, size: int) -> li
 
 
 def goals(rows: list[dict[str, Any]], scenes: list[str]) -> str:
-    """What the JointStepper has to reach, and whether it does."""
+    """Return the goals of the JointStepper, and whether it reaches them."""
     lines = ["| `JointStepper` / | contacts | to reach | | measured: median (lowest to highest) | met |",
              "|---|--:|--:|---|--:|---|"]
     for second, size, most, meaning in GOALS:
@@ -247,17 +247,18 @@ def main() -> None:
     load, processors = os.getloadavg()[2], os.cpu_count()
     publish(options.output, "peers", COLUMNS, rows, f"""# Cost of a contact and step beside other programs
 
-n contacts with Hertz's normal force and Mindlin's spring under Coulomb's limit, the same material, load, step and
-search for neighbours in each program; {options.repetitions} repetitions in turn, one thread, medians. LAMMPS and
-LIGGGHTS are Debian's. In a bore LAMMPS knows one wall for all spheres, and one contact of a sphere with it.
-Load average of the machine at the end of the measurement: {load:.0f} on {processors} processors. Where it is above
-their number, caches and cores are shared, and the ratios say more than the nanoseconds.
+n contacts have Hertz's normal force and Mindlin's spring under Coulomb's limit. Material, load, step and search for
+neighbours are the same in each program. Numbers are medians of {options.repetitions} repetitions in turn, on one
+thread. LAMMPS and LIGGGHTS are Debian's. In a bore, LAMMPS has one wall for all spheres, and one contact of a
+sphere with it.
+The load average of the machine was {load:.0f} on {processors} processors at the end of the measurement. Where it
+exceeds their number, programs share caches and cores. Compare ratios then, not nanoseconds.
 
 {table(rows, scenes)}
 
-The `JointStepper` leaves one step in {SUBSTEPS} to YADE's loop, its default: that step, and the arrays that are filled
-and given back each time, are in its cost. What it has to reach was set on another machine in nanoseconds; here it is
-their ratio to the cost of the same scene in the same run.
+YADE's loop makes one step in {SUBSTEPS}, the default of the `JointStepper`. The cost includes this step and the copies
+to and from the arrays of the `JointStepper`. Goals were set in nanoseconds on another machine. Here they are ratios to
+the cost of the same scene in the same run.
 
 {goals(rows, scenes)}
 {left_out}

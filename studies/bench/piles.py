@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Frictional contact problems like those of granular and masonry mechanics, made by chance: piles of rigid bodies.
+"""Random frictional contact problems like those of granular and masonry mechanics: piles of rigid bodies.
 
-Each has W = H M^-1 H^T and q = H v, so that u = 0 is within reach and a solution exists (Acary and Cadoux 2013); where
-contacts outnumber the degrees of freedom W is rank-deficient.
+Each has W = H M^-1 H^T and q = H v, so that u = 0 is possible and a solution exists (Acary and Cadoux 2013). If
+contacts outnumber the degrees of freedom, W is rank-deficient.
 """
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Pile:
         self.contacts.append((below, above, point, normal))
 
     def rows(self) -> Array:
-        """Return H: relative velocities of the contacts of the bodies' velocities."""
+        """Return H: the map from velocities of the bodies to relative velocities of the contacts."""
         freedoms = 3 if self.dimension == 2 else 6
         h = np.zeros((self.dimension * len(self.contacts), freedoms * len(self.centres)))
         for k, (below, above, point, normal) in enumerate(self.contacts):
@@ -61,8 +61,8 @@ class Pile:
         return h
 
     def problem(self, random: Random, kick: float) -> tuple[Problem, int]:
-        """Return the problem of a step under gravity, with velocities of a random size ``kick`` before it, and the
-        number of degrees of freedom."""
+        """Return the problem of a step under gravity, with random velocities of size ``kick`` before it, and the number
+        of degrees of freedom."""
         h = self.rows()
         masses = np.concatenate(self.masses)
         velocity = kick * random.normal(size=masses.size)
@@ -83,7 +83,7 @@ def _frame(normal: Array) -> Array:
 
 
 def friction(random: Random, contacts: int) -> Array:
-    """Return friction coefficients up to 1: the same everywhere, another one at each contact, or none."""
+    """Return friction coefficients up to 1: equal everywhere, different at each contact, or zero."""
     kind = random.random()
     if kind < 0.1:
         return np.zeros(contacts)
@@ -109,7 +109,7 @@ def random_bodies(dimension: int, contacts: int, random: Random) -> tuple[Proble
 
 
 def random_rows(dimension: int, contacts: int, random: Random) -> tuple[Problem, int]:
-    """H of independent numbers: every contact feels every other."""
+    """H of independent numbers: every contact affects every other."""
     size = contacts * dimension
     h = random.normal(size=(size, max(1, round(random.uniform(0.2, 1.5) * size))))
     problem = Problem(h @ h.T, h @ random.normal(size=h.shape[1]), friction(random, contacts), dimension)
@@ -119,7 +119,7 @@ def random_rows(dimension: int, contacts: int, random: Random) -> tuple[Problem,
 def spheres(dimension: int, contacts: int, random: Random) -> tuple[Problem, int]:
     """Equal balls in a close packing on the ground."""
     pile = Pile(dimension)
-    # About three contacts a ball in the plane, six in space.
+    # About three contacts per ball in the plane, six in space.
     side = max(1, round((contacts / (2.5 if dimension == 2 else 4.5)) ** (1.0 / dimension)))
     places = {}
     for cell in product(range(side), repeat=dimension):
@@ -148,7 +148,7 @@ def _face(pile: Pile, below: int, above: int, low: Array, high: Array, height: f
 
 
 def bricks(dimension: int, contacts: int, random: Random) -> tuple[Problem, int]:
-    """A wall of bricks in bond: four contacts a face, forces undetermined."""
+    """A wall of bricks in bond: four contacts per face, forces not unique."""
     pile = Pile(dimension)
     per_face = 2 if dimension == 2 else 4
     courses = max(1, round((contacts / per_face / 2.0) ** 0.5))
@@ -199,7 +199,7 @@ def tower(dimension: int, contacts: int, random: Random) -> tuple[Problem, int]:
 
 
 def chain(dimension: int, contacts: int, random: Random) -> tuple[Problem, int]:
-    """Balls in a row, squeezed between two walls and struck in the middle."""
+    """Balls in a row, pressed between two walls and hit in the middle."""
     pile = Pile(dimension)
     axis = np.eye(dimension)[0]
     below = GROUND

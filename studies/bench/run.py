@@ -154,7 +154,7 @@ def table1_table(rows: list[dict[str, Any]]) -> str:
 
 
 def engine_table(build: Path, repetitions: int) -> str:
-    """Return the share of each engine by O.timingEnabled; runs of their own, it slows YADE down."""
+    """Return the fraction of each engine by O.timingEnabled, from separate runs, because it slows YADE down."""
     engines = [
         "ForceResetter", "ThermalExpansionEngine", "InsertionSortCollider", "InteractionLoop",
         "NewtonIntegrator",
@@ -181,7 +181,7 @@ def engine_table(build: Path, repetitions: int) -> str:
 
 
 def write(path: Path, text: str) -> None:
-    """Write aside, then rename, so that nothing half-written stays behind."""
+    """Write a temporary file, then rename it, so that no incomplete file remains."""
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_name("." + path.name + ".partial")
     partial.write_text(text)
@@ -216,11 +216,11 @@ def as_csv(rows: list[dict[str, Any]], columns: Sequence[str] = COLUMNS) -> str:
     return stream.getvalue()
 
 
-# The frame of the benchmarks beside this one: umbrella.py, campaign.py, truss_dem.py, peers.py, yade_import.py.
+# The main function of the other benchmarks: umbrella.py, campaign.py, truss_dem.py, peers.py, yade_import.py.
 
 
 def start(main: Callable[[], None], *failures: type[Exception]) -> None:
-    """Run a benchmark; a BenchError, an OSError or one of these ends it with status 2 and one sentence."""
+    """Run a benchmark. A BenchError, an OSError or one of the given errors ends it with status 2 and one sentence."""
     told: tuple[type[Exception], ...] = (BenchError, OSError, *failures)
     try:
         main()
@@ -271,15 +271,15 @@ def readme(
 ) -> str:
     return f"""# Cost of a joint contact beside YADE's own law
 
-n revolute joints (journal in a fixed bearing, R1 = 5 mm, c = 0.1 mm, material of Table 2, friction
-0.3) under a temperature that changes in every step, beside n pairs of spheres, one of each pair
-fixed, with YADE's `Law2_ScGeom_MindlinPhys_Mindlin`. The same number of bodies and contacts,
-collider, integrator, load and friction; every contact carries a normal and a tangential force
-below the friction limit, which is checked before and after each run. One process per run, one
-thread, CPU time, {repetitions} repetitions in turn, medians; a ratio is of two runs that follow
-each other.
+The first scene has n revolute joints: a journal in a fixed bearing, R1 = 5 mm, c = 0.1 mm, material
+of Table 2, friction 0.3, with a temperature that changes in every step. The second scene has n
+pairs of spheres with YADE's `Law2_ScGeom_MindlinPhys_Mindlin`; one sphere of each pair is fixed.
+Both scenes have the same number of bodies and contacts, and the same collider, integrator, load and
+friction. Every contact carries a normal force and a tangential force below the friction limit; a
+check before and after each run confirms this. Each run is a process with one thread. Numbers are
+medians of the CPU time of {repetitions} repetitions in turn. A ratio compares two consecutive runs.
 
-Absolute numbers are those of one machine and say little; the ratios are the point. Required: at most 1.0.
+Absolute numbers are those of one machine. Compare the ratios. Required: at most 1.0.
 
 ## CPU time per contact and step
 
@@ -292,9 +292,9 @@ parallel loops, counting time). The last column is for information.
 
 {table1_table(rows)}
 
-Both have five bodies, one contact (Table 1 has a second one while the slider is at its stop), others
-that could come next, and the energy account on. The Table 1 scene has a thermal link and the
-temperature besides.
+Both scenes have five bodies, one contact, possible further contacts, and the energy account. Table 1
+has a second contact while the slider is at its stop. Only the scene of Table 1 has a thermal link and
+a temperature.
 
 ## Reduced model
 
@@ -304,14 +304,14 @@ Required: a full cycle with all events below 2 µs.
 
 ## What dominates
 
-Share of each engine of the time spent in engines, by `O.timingEnabled` (wall time, runs of their
-own). What YADE spends between the engines is not in it. Read the shares: the totals are wall time,
-which other work on the machine lengthens, and say nothing about ratios. The collider runs only when
-a body has left its enlarged box, here never.
+The table has the share of each engine in the time of all engines, from separate runs with
+`O.timingEnabled`. It omits the time that YADE needs between engines. Compare only the shares: the
+totals are wall time, which other work on the machine increases. The collider runs only when a body
+has left its enlarged box, here never.
 
 {engines}
 
-The InteractionLoop is geometry, physics and law of the contacts together; the
+The InteractionLoop computes geometry, physics and law of the contacts. The
 ThermalExpansionEngine sets the strain of all 2 n bodies in every step.
 
 ## Again

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Moreau and Jean's scheme here and in Siconos; writes results/motion/siconos.md and siconos.csv.
+"""The Moreau–Jean scheme of this project and of Siconos; writes results/motion/siconos.md and siconos.csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/siconos_moreau_jean.py
 
-A journal bounces in a bearing that stands on an elastic link, and a second one bounces in a bore of the first: two
-clearance revolutes, rigid contact, Coulomb friction, Newton's restitution, five displacements. The same theta and the
-same steps in both. Siconos (Debian: python3-siconos) is needed for nothing else.
+A journal bounces in a bearing on an elastic link, and a second one bounces in a bore of the first: two clearance
+revolutes, rigid contact, Coulomb friction, Newton's restitution, five displacements. Both programs have the same theta
+and steps. Only this program needs Siconos (Debian: python3-siconos).
 """
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def case(friction: float) -> Any:
 
 
 def here(steps: int, friction: float) -> tuple[np.ndarray, float, list[float]]:
-    """Return places (steps + 1, 5) [m], the CPU time of the stepping [s] and the times of impacts [s]."""
+    """Return positions (steps + 1, 5) [m], the CPU time of the steps [s] and the times of impacts [s]."""
     definition = case(friction).changed({"motion.steps_per_cycle": steps, "output.samples_per_cycle": steps}).definition
     definition.resolve()
     begun = process_time()
@@ -68,7 +68,7 @@ def here(steps: int, friction: float) -> tuple[np.ndarray, float, list[float]]:
 
 
 def there(steps: int, friction: float) -> tuple[np.ndarray, float]:
-    """Return the same places by Siconos, and the CPU time of its stepping [s]."""
+    """Return the same positions by Siconos, and the CPU time of its steps [s]."""
     import siconos.kernel as kernel
     import siconos.numerics as numerics
 
@@ -102,7 +102,7 @@ def there(steps: int, friction: float) -> tuple[np.ndarray, float]:
     stepping.setNewtonMaxIteration(20)
     places, seconds = np.zeros((steps + 1, 5)), 0.0
     for k in range(1, steps + 1):
-        # Gaps and directions of the middle of the step, as here.
+        # Gaps and directions at the middle of the step, as in this project.
         middle = body.q() + 0.5 * step * body.velocity()
         borrowed = []
         for relation, interaction, apart in bores:
@@ -153,15 +153,16 @@ def report(rows: list[dict[str, Any]]) -> str:
         f"| {one['friction_coefficient']:g} | {one['steps']:,} | {one['after_first_impact_m']:.1e} m | "
         f"{one['impacts_together']} of {one['impacts']} | {1e3 * one['together_s']:.2f} ms | "
         f"{one['us_per_step']:.3g} µs | {one['siconos_us_per_step']:.3g} µs |" for one in rows)
-    return f"""# Moreau and Jean's scheme here and in Siconos
+    return f"""# The Moreau–Jean scheme of this project and of Siconos
 
 A bearing on an elastic link, a journal in it, and a second journal in a bore of the first, under constant forces from
 the middle of their clearances: {1e3 * CLEARANCE_M:g} mm each, rigid contacts, restitution {RESTITUTION:g}, θ = 1/2,
-{1e3 * PERIOD_S:g} ms. Siconos {version()} is given gaps and directions of the middle of each step as a linear
-relation, as the scheme here takes them, and solves its contact problems to 1e-12.
+{1e3 * PERIOD_S:g} ms. Siconos {version()} receives gaps and directions at the middle of each step as a linear relation,
+as this project uses them. It solves its contact problems to 1e-12.
 
-Difference: the largest of the five displacements before the second impact. Together: until they are more than
-{1e9 * APART_M:g} nm apart. Per step: CPU time; that of Siconos is of its steps alone, through its Python interface.
+- difference: largest difference of the five displacements before the second impact
+- together: time and impacts until the displacements differ by more than {1e9 * APART_M:g} nm
+- per step: CPU time; that of Siconos is for its steps alone, through its Python interface
 
 | friction | steps | difference | impacts together | together | here, per step | Siconos, per step |
 |--:|--:|--:|--:|--:|--:|--:|

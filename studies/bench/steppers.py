@@ -75,19 +75,18 @@ def report(rows: list[dict[str, Any]], measured: Scenes, repetitions: int) -> st
                      f"{'yes' if median(found) <= most else 'no'} |")
     rows_of_table = "\n".join(lines)
     load, processors = os.getloadavg()[2], os.cpu_count()
-    return f"""# Steps of cases by the JointStepper beside YADE's loop
+    return f"""# Steps of cases: JointStepper and YADE's loop
 
-Medians of {repetitions} repetitions in turn, one thread, CPU time without the start of YADE, with the energy account;
-every run is in `steppers.csv`. Both make the same steps, bit for bit. What has to be reached was set on another
-machine; here it is a ratio to YADE's loop in the same run. Load average of the machine at the end of the measurement:
-{load:.0f} on {processors} processors; the ratios say more than the nanoseconds.
+Numbers are medians of the CPU time of {repetitions} repetitions in turn, on one thread, without the start of YADE and
+with the energy account. `steppers.csv` has every run. Both loops make the same steps, bit for bit. The goals were set
+on another machine; here they are ratios to YADE's loop in the same run. The load average of the machine was {load:.0f}
+on {processors} processors at the end of the measurement, so compare ratios, not nanoseconds.
 
 | scene | YADE's loop [ns a step] | `JointStepper` [ns a step] | steps per s | ratio (range) | to reach | it is | met |
 |---|--:|--:|--:|--:|--:|---|---|
 {rows_of_table}
 
-Samples are those of a StateRecorder, worked up in blocks by Python in YADE, in both alike; the steps of the chain are
-without.
+Both columns include the samples of a StateRecorder, which Python in YADE processes in blocks. The chain has no samples.
 
 Again: `PYTHONPATH=build/python /usr/bin/python3 studies/bench/steppers.py [--repetitions N]`.
 """

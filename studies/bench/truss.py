@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Time and memory of the quasi-static truss solver against the number of joints.
+"""Time and memory of the quasi-static truss solver over the number of joints.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/truss.py [--largest 1000000] [--trusses ring umbrella]
 
-Two trusses, one temperature cycle, ten points a branch: the ring with preload as
-`statejump truss ring` makes it, and the umbrella with cables between its ribs, whose friction scatters so
-that every joint slips at its own temperature. Items come from HDF5 tables beside the case file; of 100 000
-joints also as Python objects. OMP_NUM_THREADS says how many threads. Every row is measured in a process of its
-own, so that the memory is its own; the tables are made in another one. Writes results/bench/truss.md after every
-row.
+Two trusses run through one temperature cycle with ten points per branch: the ring of `statejump truss ring` with
+preload, and the umbrella with cables between its ribs. Its friction is scattered, so that every joint slips at its own
+temperature. Items come from HDF5 tables beside the case file; for 100 000 joints also as Python objects.
+OMP_NUM_THREADS sets the number of threads. Every row is measured in its own process, so that the memory is its own;
+another process makes the tables. Writes results/bench/truss.md after every row.
 """
 from __future__ import annotations
 
@@ -39,12 +38,15 @@ BUSY_LOAD = 0.5  # above it others have their share of the cores
 HEAD = """# Quasi-static truss solver against the number of joints
 
 `PYTHONPATH=build/python /usr/bin/python3 studies/bench/truss.py`: one cycle, ten points a branch, with
-{threads} (results have the same bits with any number of threads). `read` is CPU time, `solve` the time that passes,
-`CPU` that of
-all threads together. Events: changes of stick, slip and contact. The ring of many bays is stiff around each
-joint, and none slips from 100 on; in the umbrella every joint slips out and back, each at its own temperature.
-Items are read and checked from HDF5 tables beside the case file, or as Python objects; memory is the peak of the
-process, 50 MiB of it Python itself. From tables the median of {repeated} runs, but of a million joints one run.
+{threads} (results have the same bits with any number of threads).
+
+- `read` is CPU time, `solve` is wall time, and `CPU` is the CPU time of all threads in `solve`.
+- Events are changes of stick, slip and contact. In rings of 100 joints and more the truss is stiff around each joint,
+  and no joint slips. In the umbrella every joint slips out and back, each at its own temperature.
+- Items come from HDF5 tables beside the case file, or from Python objects. `read` includes their checks.
+- Memory is the peak of the process. Python itself needs 50 MiB of it.
+- Rows with tables are medians of {repeated} runs, except the single run of a million joints.
+
 {machine}
 
 | truss | items as | joints | unknowns | events | solves | factorizations | read [s] | solve [s] | CPU [s] | \
@@ -65,7 +67,7 @@ def document(truss: str, joints: int) -> dict[str, Any]:
 
 
 def column(items: Sequence[Mapping[str, Any]], key: str) -> Any:
-    """Return a key of every item as a data set has it: NaN and empty texts where there is none."""
+    """Return a key of every item for a data set: NaN or empty texts if missing."""
     given: Any = next(item[key] for item in items if key in item)
     if not isinstance(given, list):
         none: Any = "" if isinstance(given, str) else np.nan
@@ -90,7 +92,7 @@ def write(truss: str, joints: int, folder: Path) -> None:
 
 
 def measure(truss: str, joints: int, folder: Path | None) -> tuple[float, str]:
-    """Return how long a path takes [s], and a row of the table.
+    """Return the time of a path [s], and a row of the table.
 
     :param folder: of the case file with tables; None: the items are Python objects
     """

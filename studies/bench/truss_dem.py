@@ -22,20 +22,20 @@ from statejump.kinds.truss.solve import path
 
 SIZES = (100, 1_000, 10_000)  # joints
 JOINT_STEPS = 3_000_000  # of the shorter run; the longer one has three times as many
-# Blocks that stick: the solver, which gives the start, has no slip to locate in 10 000 of them.
+# The blocks stick, so that the solver, which computes the start, need not locate slip in 10 000 of them.
 CASES = {"chain": lambda joints: generate.chain(joints, temperature_change_K=1.0, friction_force_N=1e3)}
 COLUMNS = ("truss", "joints", "links", "repetition", "steps", "cpu_time_s", "ns_per_joint_and_step")
 
 
 def resolved(kind: str, joints: int) -> dict[str, Any]:
-    """Return the case as the YADE script wants it."""
+    """Return the input of the YADE script."""
     case = parse_case(CASES[kind](joints))
     found = path(case.resolve(), increments_per_branch=1, locate_events=False)
     return {"scene": KIND.scene_module(), **dem.resolved(case, found)}
 
 
 def run(values: dict[str, Any], steps: int) -> float:
-    """Return the CPU time [s] of a run of so many steps, two samples included."""
+    """Return the CPU time [s] of a run with the given number of steps, including two samples."""
     step = values["dem"]["time_step_s"]
     shortened = {**values, "number_of_samples": 1,
                  "dem": {**values["dem"], "number_of_steps": steps, "time_step_s": step, "threads": 1}}

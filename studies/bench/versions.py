@@ -51,8 +51,8 @@ for line in sys.stdin:
 class Version:
     """A process that solves case files with a built package.
 
-    :param package: the folder that holds it
-    :param limit_s: seconds of the processor after which a path is given up
+    :param package: the folder that contains it
+    :param limit_s: CPU seconds after which a path is cancelled
     """
 
     def __init__(self, package: Path, limit_s: float) -> None:
@@ -62,7 +62,7 @@ class Version:
             env={**os.environ, "PYTHONPATH": str(package), "OMP_NUM_THREADS": "1"})
 
     def solve(self, file: Path) -> dict[str, Any]:
-        """Return seconds and sizes, or why it failed."""
+        """Return seconds and sizes, or the reason of the failure."""
         assert self.process.stdin is not None and self.process.stdout is not None
         self.process.stdin.write(f"{file}\n")
         self.process.stdin.flush()
@@ -84,7 +84,7 @@ def ordinary(folder: Path, count: int) -> Iterator[Path]:
 
 
 def measured(versions: tuple[Version, Version], file: Path, repeat: int) -> dict[str, Any] | None:
-    """Return medians of both versions; None where one fails or takes longer."""
+    """Return medians of both versions; None if one fails or takes longer."""
     firsts = [version.solve(file) for version in versions]  # also warms caches
     if any("failed" in first for first in firsts):
         return None

@@ -22,7 +22,8 @@ from statejump_yade import *
 
 R1, R2, load, dt, joints = 5e-3, 5.1e-3, 10.0, 1e-6, 100
 steps, warm_up, repetitions = 2000, 500, 5
-# Turns of the force per second, and a friction coefficient that holds at rest and lets slide.
+# Rotations of the force per second, and the friction coefficient: one that holds at rest, and one that lets the journal
+# slide.
 loads = {"at rest": (0.0, 0.3), "sliding slowly": (30 / 360, 1e-3), "sliding fast": (50.0, 0.1)}
 
 
@@ -96,15 +97,15 @@ sizes = [int(n) for n in os.environ.get("FACETS", "1000,10000,100000,1000000").s
 lines = [
     "# Cost of a contact in a bore of triangles beside the analytic bearing",
     "",
-    "`yade -n -x -j1 studies/bench/yade_bore.py`: 100 journals (R1 = 5 mm, c = 0.1 mm), CPU time per contact and",
-    "step of the whole YADE step, medians of five. At rest: under a slowly rising temperature. Sliding:",
-    "the force turns and the contacts run around their bores, slowly at 30 degrees per second, fast once in",
-    "20 ms: the point of contact then moves at 1.6 m/s, 1.6 um in a step, and the smooth wall is asked in",
-    "every step; the whole wall is searched once in about a hundred. Required: at most 5 times at 100 000",
-    "facets. The ratios are the point; the times are those of one machine.",
+    "`yade -n -x -j1 studies/bench/yade_bore.py` runs 100 journals with R1 = 5 mm and c = 0.1 mm. Numbers are",
+    "medians of five of the CPU time of a whole YADE step, per contact. At rest, the temperature rises slowly.",
+    "Sliding, the force rotates and the contacts move around their bores: slowly at 30 degrees per second, or",
+    "fast, once in 20 ms. Fast contacts move at 1.6 m/s, 1.6 um in a step. They need the smooth wall in every",
+    "step, and a search of the whole wall once in about a hundred steps. Required: at most 5 times the cost of",
+    "a bearing at 100 000 facets. The times are those of one machine; compare the ratios.",
     "",
-    "The last two columns are of the bore by the JointStepper, which fills its arrays and gives them back for",
-    "every 100 steps here, and of that over the bore by YADE's loop. Both make the same steps, bit for bit.",
+    "The last two columns have the cost of the bore by the JointStepper, and its ratio to that by YADE's loop.",
+    "Here the JointStepper copies to and from its arrays every 100 steps. Both make the same steps, bit for bit.",
     "",
     "| facets | load | bearing | bore | **ratio** | `JointStepper` | **over YADE's loop** |",
     "|--:|---|--:|--:|--:|--:|--:|",

@@ -19,7 +19,8 @@ from statistics import median
 
 from run import BenchError, start
 
-# What YADE runs. The library is loaded by itself first, to tell what the loader takes from what the plugin takes.
+# The script for YADE. It loads the library separately first, to distinguish the time of the loader from that of the
+# plugin.
 SCRIPT = """
 import importlib.util
 import sys

@@ -112,7 +112,7 @@ def spheres():
         body(Sphere(radius=RADIUS), material, centre, True)
         free = body(Sphere(radius=RADIUS), material, centre + Vector3(offset, 0, 0), False)
         O.forces.setPermF(free, Vector3(-1, INCLINATION, 0) * LOAD)
-        # Fixed bodies that the free one could touch next, as a slider its stops: boxes overlap.
+        # Fixed bodies that the free one could touch next, as the stops of a slider. Their boxes overlap.
         near = 2 * RADIUS + 0.4 * SEARCHED
         for direction in (Vector3(0, -1, 0), Vector3(0, 1, 0), Vector3(1, 0, 0))[:bystanders]:
             body(Sphere(radius=RADIUS), material, centre + Vector3(offset, 0, 0) + near * direction, True)
@@ -125,7 +125,7 @@ def spheres():
 
 
 def check(when):
-    """Every pair touches, carries both forces without slip, and nothing else touches."""
+    """Check that every pair touches, carries both forces without slip, and that nothing else touches."""
     contacts = [contact for contact in O.interactions if contact.isReal]
     carrying = sum(
         contact.phys.normalForce.norm() > 0.5 * LOAD

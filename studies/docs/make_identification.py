@@ -43,8 +43,8 @@ EXPANSION_m_per_K = 23.4e-6 * 0.5
 class Known:
     """A loop of a known joint.
 
-    :param name: where it is from
-    :param model: what fits it
+    :param name: its origin
+    :param model: the joint that fits it
     :param true: its parameters
     """
 
@@ -66,7 +66,7 @@ class Known:
 
 
 def kernel(law: str, model: str) -> Known:
-    """A contact under 10 N that slides to and fro; twice its slide to gross slip and half of it more."""
+    """A contact under 10 N that slides back and forth: up to twice its slide to gross slip, and half of it more."""
     young, shear, radius, mu, load = 38.5e9, 7.9e9, 0.01, 0.3, 10.0
     stiffness = 8 * shear * (3 * load * radius / (4 * young)) ** (1 / 3)
     reach = 2.5 * mu * load / stiffness
@@ -135,7 +135,7 @@ LOOPS: dict[str, Callable[[], Known]] = {
 
 
 def repeated(known: Known, repetitions: int) -> dict[str, int]:
-    """Return in how many repetitions the interval of each parameter holds its true value."""
+    """Return the number of repetitions in which the interval of each parameter contains its true value."""
     inside = dict.fromkeys(known.true, 0)
     for repetition in range(repetitions):
         count(inside, known.true, known.measured(repetition), known.model)
@@ -143,7 +143,7 @@ def repeated(known: Known, repetitions: int) -> dict[str, int]:
 
 
 def count(inside: dict[str, int], true: dict[str, float], columns: dict[str, np.ndarray], model: str) -> None:
-    """Count the intervals of a loop that hold the true values."""
+    """Count the intervals of a loop that contain the true values."""
     found = intervals(Fits(read_loop(columns)), model, CONFIDENCE, list(true))[1].of
     for name, value in true.items():
         inside[name] = inside.get(name, 0) + (found[name].low <= value <= found[name].high)
@@ -192,7 +192,7 @@ def random_joints(loops: int) -> None:
 
 
 def chosen(known: Known, choices: int) -> str:
-    """Return which joints BIC chooses, and how often."""
+    """Return the joints that BIC chooses, and how often."""
     count = Counter(sj.identify(known.measured(repetition)).model for repetition in range(choices))
     return ", ".join(f"{name} {times}" for name, times in count.most_common())
 

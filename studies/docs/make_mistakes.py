@@ -22,7 +22,7 @@ PAGE = REPOSITORY / "docs" / "reference" / "mistakes.md"
 
 @dataclass(frozen=True)
 class Mistake:
-    """One mistake: what is replaced in a case file, and the command that is then run on it."""
+    """One mistake: the replacement in a case file, and the command that is then run."""
 
     what: str
     case: str  # below cases/, without suffix
@@ -147,7 +147,7 @@ def edited(mistake: Mistake) -> str:
 
 
 def said(arguments: list[str]) -> tuple[int, str]:
-    """Run the command in this process; return its exit status and what it wrote to standard error."""
+    """Run the command in this process; return its exit status and its standard error."""
     from statejump.cli import main as cli
 
     with contextlib.redirect_stderr(io.StringIO()) as errors, contextlib.redirect_stdout(io.StringIO()):
@@ -204,7 +204,7 @@ def _as_json() -> list[str]:
     shown = ["## As JSON\n"]
     first = GROUPS["Values"][2]
     Path("table1.toml").write_text(edited(first), encoding="utf-8")
-    # A support taken away: the truss is a mechanism.
+    # A support is removed, so the truss is a mechanism.
     text = (REPOSITORY / "cases" / "trusses" / "umbrella_rib.toml").read_text(encoding="utf-8")
     Path("umbrella_rib.toml").write_text(text.replace('fixed = ["x", "y"]', 'fixed = ["x"]', 1), encoding="utf-8")
     _, message = said(["--json", "reduced", "table1.toml"])
@@ -226,7 +226,7 @@ def _as_json() -> list[str]:
 
 
 def _codes() -> list[str]:
-    """Every code with the sentence that its errors share."""
+    """Return every code with the sentence of its errors."""
     from statejump.core.error_codes import CODES
 
     lines = ["## Codes\n\nNames in braces are `details`. The sign … stands for what each error says itself: which key "

@@ -57,7 +57,7 @@ def first_loading_m(load: float, force: float, before: float = 0.0) -> float:
 
 
 def closed_form_m(place: int, path: tuple[tuple[float, float], ...]) -> float | None:
-    """Return the slide at the end of a case; None where the formula is that of a sum of cases."""
+    """Return the slide at the end of a case; None if the formula is a sum of cases."""
     def masing(change: float) -> float:
         return 2 * first_loading_m(1, change / 2)
 
@@ -75,7 +75,7 @@ def closed_form_m(place: int, path: tuple[tuple[float, float], ...]) -> float | 
 
 
 def punches_N(answer: dict[str, np.ndarray]) -> float:
-    """Return the force at the end of a path of depth and slide, of many flat punches side by side."""
+    """Return the force of many flat punches side by side at the end of a path of depth and slide."""
     depth, slide = answer["penetration_depth_m"], answer["slide_m"]
     stiffness = 8 * SHEAR * np.sqrt(RADIUS * depth.max())
     x = (np.arange(PUNCHES) + 0.5) * stiffness / PUNCHES

@@ -40,13 +40,13 @@ LABELS = {"rigid": "Coulomb", "elastic": "spring under Coulomb's limit", "partia
 
 
 def path(document: dict[str, Any], sticking: str, increments: int = INCREMENTS, **options: Any) -> solve.TrussPath:
-    """Return the path of a generated truss with one way to stick."""
+    """Return the path of a generated truss with one model of sticking."""
     truss = parse_case(document | {"reduced": {"sticking": sticking}}).resolve()
     return solve.path(truss, increments_per_branch=increments, cycle_ends_only=True, **options)
 
 
 def moves_m(found: solve.TrussPath) -> np.ndarray:
-    """Return how far the node that moves most has moved in every cycle [m]."""
+    """Return the displacement of the node that moves most in every cycle [m]."""
     moved = np.diff(found.cycle_ends["displacement_m"], axis=0)
     most: np.ndarray = np.linalg.norm(moved, axis=2).max(axis=1)
     return most
@@ -67,8 +67,8 @@ def constants() -> tuple[float, float, float]:
 
 
 def closed_form_m(change_K: float) -> float:
-    """Return the jump of the bar: Cattaneo's loading, Masing's way back, both in equilibrium with the bar, whose
-    stiffness E A/l is taken at its length."""
+    """Return the jump of the bar: Cattaneo's loading and Masing's unloading, both in equilibrium with the bar, whose
+    stiffness E A/l is that of its length."""
     stiffness, contact, expansion = constants()
     gross, strain = 1.5 * FRICTION_N / contact, expansion / TABLE1_LENGTH_M * change_K
 
@@ -99,7 +99,7 @@ def dem_m(change_K: float) -> float:
 
 
 def beside_the_dem(name: str, runs: Sequence[tuple[dict[str, Any], dict[str, float]]]) -> None:
-    """Print what `statejump compare` finds of a structure, a row per case and keys of its section [dem]."""
+    """Print the results of `statejump compare` for a structure, one row per case and keys of its section [dem]."""
     print(f"\n| {name}: period [s] | `[dem]` | jumps: largest difference over the largest "
           "| energy residue over friction | missed |\n|---:|---|---:|---:|---|")
     for document, keys in runs:
@@ -121,7 +121,7 @@ def rib(change_K: float, **more: Any) -> dict[str, Any]:
 
 
 def draw(axes: Any, changes_K: np.ndarray, jumps: dict[str, np.ndarray], unit: float) -> None:
-    """Draw the jumps of one structure; what is below rounding is left out."""
+    """Draw the jumps of one structure, without values below rounding."""
     for sticking, style in STYLES.items():
         shown = np.where(jumps[sticking] * unit > 2e-8, jumps[sticking] * unit, np.nan)
         axes.loglog(changes_K, shown, label=LABELS[sticking], **style)
@@ -190,7 +190,7 @@ def main() -> None:
 
 
 def told(name: str, changes_K: np.ndarray, jumps_m: np.ndarray) -> None:
-    """Print with which power of the amplitude a jump grows at both ends of its range."""
+    """Print the power of the amplitude with which a jump grows at both ends of its range."""
     slopes = np.diff(np.log(jumps_m)) / np.diff(np.log(changes_K))
     print(f"\n{name}: jump grows with the power {slopes[0]:.3f} of the amplitude at {changes_K[0]:.3g} K, "
           f"{slopes[-1]:.3f} at {changes_K[-1]:.3g} K")

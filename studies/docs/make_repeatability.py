@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Table of docs/howto/surface.md: how well an umbrella of eight ribs repeats, by days it has been through.
+"""Table of docs/howto/surface.md: repeatability of an umbrella of eight ribs, by the days of its history.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_repeatability.py [--samples N]
 """
@@ -24,7 +24,7 @@ TOLERANCES = {  # as made: every joint on its own
 
 
 def days(peaks_K: tuple[int, ...]) -> sj.Case:
-    """Return the umbrella that goes through such days of a second each."""
+    """Return the umbrella with a program of such days, one second each."""
     changes = [0, *(change for peak in peaks_K for change in (peak, 0))]
     return sj.load(CASE).changed({
         "thermal.shape": "table", "thermal.temperature_change_max_K": None, "thermal.period_s": None,

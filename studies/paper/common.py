@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the studies of the paper share: how they refuse a case, and how their pages say where they come from."""
+"""Shared by the studies of the paper: refusal of a case, and the command on each page."""
 from __future__ import annotations
 
 import os
@@ -12,13 +12,13 @@ from statejump.core.errors import NotAllowed
 
 
 def refused(case: Case, key: str, value: Any, cause: str) -> NotAllowed:
-    """Return why a study does not run a case."""
+    """Return the reason why a study does not run a case."""
     return NotAllowed(key, value, cause, file=case.origin.file, case=case.name)
 
 
 def made_by(command: str, case: Case) -> str:
-    """Return the command that makes a page again: with the case file as one finds it from the current folder, or
-    by its shipped name; without, if the case was made or changed in Python."""
+    """Return the command that makes a page again. It names the case file relative to the current folder, or by its
+    shipped name; it names none if the case was made or changed in Python."""
     origin = case.origin
     if origin.file is None or not origin.text:
         return f"statejump {command}"

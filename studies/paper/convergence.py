@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How the DEM approaches the reduced model: slower cycles, shorter time steps."""
+"""Convergence of the DEM to the reduced model: slower cycles, shorter time steps."""
 from __future__ import annotations
 
 import math
@@ -21,7 +21,7 @@ from statejump.kinds.spring_slider import KIND, compare, dem, reduced, stable_st
 from statejump.kinds.spring_slider.case import SpringSliderCase
 
 PERIOD_FACTORS = (1 / 256, 1 / 64, 1 / 16, 1 / 4, 1, 4)
-# Time steps are compared on a fast cycle, where the motion is not quasi-static and they matter; few
+# Time steps are compared on a fast cycle, because its motion is not quasi-static and depends on them. It has few
 # samples, because the number of steps is a multiple of theirs.
 STEP_PERIOD_FACTOR = 1 / 16
 STEP_SAMPLES = 50
@@ -73,7 +73,7 @@ class Convergence:
 
 
 def _variant(case: SpringSliderCase, factor: float, **settings: Any) -> SpringSliderCase:
-    """Return the case with a cycle that lasts so many times as long, at its own fraction of the stable step."""
+    """Return the case with a cycle of the given relative duration, at its own fraction of the stable step."""
     changes = {f"dem.{key}": value for key, value in settings.items()} | {"dem.time_step_s": None}
     times = case.thermal.table_time_s
     if times is None:
@@ -87,7 +87,7 @@ def _variant(case: SpringSliderCase, factor: float, **settings: Any) -> SpringSl
 
 
 def _further(values: Sequence[float], decades: int) -> list[float]:
-    """Return values that go on in their direction, one a decade."""
+    """Return further values in the same direction, one per decade."""
     direction = 1 if values[-1] > values[0] else -1
     return [*values, *(values[-1] * 10.0**(direction * decade) for decade in range(1, decades + 1))]
 
@@ -104,8 +104,8 @@ def variants(case: SpringSliderCase, decades: int = 0) -> tuple[list[SpringSlide
 def convergence(case: SpringSliderCase, tell: Tell = lambda share: None, decades: int = 0) -> Convergence:
     """Run the DEM with slower cycles, then with shorter steps.
 
-    :param decades: how much further than usual, 0 to 3; every decade takes ten times as long
-    :param tell: takes the finished share, 0 to 1
+    :param decades: extension beyond the default, 0 to 3; every decade takes ten times as long
+    :param tell: called with the finished fraction, 0 to 1
     :raises StatejumpError: a run failed
     """
     case.need_jump("'statejump convergence'")
@@ -131,7 +131,7 @@ def compared(
     finer = []
     for variant, run in zip(cases[1], runs[1], strict=True):
         rms = float(np.sqrt(np.mean((run["displacement_m"] - finest) ** 2)))
-        # Events are known to half a sample, and these runs have few samples.
+        # Events are accurate to half a sample, and these runs have few samples.
         finer.append(replace(
             _row(variant, run), first_slip_error_K=math.nan, stop_reached_error_K=math.nan, stop_left_error_K=math.nan,
             displacement_rms_from_finest_step_m=math.nan if run is runs[1][-1] else rms,
@@ -165,7 +165,8 @@ def _row(case: SpringSliderCase, run: Run) -> Row:
 
 
 def explanation(found: Convergence) -> list[str]:
-    """Return what the numbers say, as lines: what falls with slower cycles and shorter steps, and what stays."""
+    """Return the explanation of the numbers as lines: errors that fall with slower cycles and shorter steps, and those
+    that stay."""
     return ["First the duration of the cycle, then the time step (on a fast cycle, where it matters most).", "",
             *_of_cycles(found.slower), *_of_steps(found), "", *_what_stays(found)]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the energy account leaves over, against the steps of both models: ``statejump energy``."""
+"""Energy residue over the steps of both models: ``statejump energy``."""
 from __future__ import annotations
 
 import math
@@ -86,7 +86,7 @@ class Variant:
 
 
 def variants(case: UmbrellaCase) -> list[Variant]:
-    """The case itself, and free of friction and damping with ringing links."""
+    """Return the case itself, and a variant without friction and damping whose links vibrate."""
     if case.thermal.shape == "table":
         raise refused(case, "thermal.shape", "table", "'statejump energy' shortens the period")
     if case.thermal.temperature_change_max_K == 0:
@@ -129,13 +129,13 @@ def residue_J(columns: Columns | Run, sample: int = -1) -> float:
 
 
 def instants(case: UmbrellaCase, finest: Run) -> dict[str, int]:
-    """Return the samples at which the account is drawn up, from the finest run."""
+    """Return the samples at which the account is evaluated, from the finest run."""
     hottest = largest_temperature(finest)
     found = {INSTANTS[1]: max(hottest - 1, 1), INSTANTS[2]: len(finest) - 1}
     first = finest.events.first("first_contact")
     if first is None:
         return found
-    # One sample earlier than needed: with other steps the first contact comes a little sooner.
+    # One sample earlier than needed, because with other steps the first contact is slightly earlier.
     before = int(first.time_s / case.period_s * SAMPLES) - 1
     return {INSTANTS[0]: before, **found} if before > 0 else found
 
@@ -198,7 +198,7 @@ class Sampled:
 
 @dataclass(frozen=True)
 class Result:
-    """The rows of a variant, and what they are measured by."""
+    """The rows of a variant, and their scales."""
 
     variant: Variant
     thermal_work_J: float  # the largest
@@ -269,7 +269,7 @@ STYLES: dict[str, dict[str, Any]] = {
     "adaptive": dict(color="#009E73", linewidth=1.4, linestyle=(0, (6, 1, 1, 1)),
                      label="reduced model, adaptive"),
 }
-# Where the order stands: at which point of the curve, offset, alignment.
+# Position of the order in the figure: point of the curve, offset, alignment.
 LABELS = {"reduced": (0, (0, 11), "center"), "DEM": (-1, (7, 0), "left"), "adaptive": (0, (-7, 0), "right")}
 MARKERS = {INSTANTS[0]: "o", INSTANTS[1]: "s", INSTANTS[2]: "D"}
 
@@ -285,7 +285,7 @@ def figure(case: UmbrellaCase, results: Sequence[Result], folder: Path) -> list[
         grid[0, 0].set_xlim(9e3, 2.2e6)
         for line, result in zip(grid, results):
             for panel, instant in zip(line, names):
-                # Nothing happens before contact if the links follow their expansion.
+                # Before contact nothing happens if the links follow their expansion.
                 mine = [row for row in result.rows if row.instant == instant]
                 panel.set_visible(any(abs(row.residue_over_thermal_work) > result.floor for row in mine))
                 if not panel.get_visible():

@@ -167,7 +167,7 @@ def test_text_follows_the_verdicts() -> None:
     assert text.count("**holds**") == 9 and "**does not hold**" in text and "Chaotic" not in text
 
 
-UNDAMPED = "nothing else takes up the energy of the impacts"
+UNDAMPED = "nothing else dissipates the energy of the impacts"
 NO_LIMIT = {"clearance_limit_m": nan}
 
 
@@ -230,7 +230,7 @@ def test_reasons_of_measures_follow_their_verdicts() -> None:
 
 def test_former_rules_are_told_with_the_numbers_of_the_case() -> None:
     """What the rules said before they were changed is computed, not remembered."""
-    assert "would be *holds*, as it is now; with a monotone fall" in text_of(all_true())
+    assert "would be *holds*, as it is now. With a monotone fall" in text_of(all_true())
     near = replace(all_true(), end_shift_dem_m=np.array([5e-5, 5e-6]))  # beyond the spread, not beyond ten times of it
     assert "would be *holds in the mean* instead of *holds*" in text_of(near)
     up_again = groups([3, 1, 2], 0.1, (0.0, 1.0, 100.0))

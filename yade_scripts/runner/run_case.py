@@ -38,7 +38,7 @@ NO_DISPLAY = 3  # exit status of a view
 
 
 class CaseFailure(Exception):
-    """A failure in the case's names: its fields."""
+    """A failure with the names of the case, as fields."""
 
 
 def report(message):
@@ -166,7 +166,7 @@ def view(case):
 
 
 def end(failure):
-    """Report a failure; end YADE, or show the traceback and leave the scene to whoever started YADE without -x."""
+    """Report a failure. Then end YADE or, without -x, show the traceback and leave the scene to the user."""
     report({"failure": failure})
     if yade.runtime.opts.exitAfter:
         os._exit(2)

@@ -62,14 +62,14 @@ class States:
         return self._of("bodies", ids)
 
     def kinetic_energies(self, ids: Sequence[int]) -> np.ndarray:
-        """Return those of bodies that only move [J], at the time of the positions: YADE keeps velocities of half a
-        step before."""
+        """Return the kinetic energies of bodies without rotation [J], at the time of the positions: YADE stores
+        velocities half a step earlier."""
         bodies, masses = self.bodies(ids), np.array([O.bodies[body].state.mass for body in ids])
         velocities = bodies["velocity"] + (0.5 * O.dt / masses)[:, None] * bodies["force"]
         return 0.5 * masses * dot(velocities, velocities)
 
     def contacts(self, pairs: Iterable[Pair]) -> np.ndarray:
-        """Return ``real`` and ``slipping`` (1 or 0), ``penetrationDepth`` [m] and, as YADE has them, ``normal``,
+        """Return ``real`` and ``slipping`` (1 or 0), ``penetrationDepth`` [m] and, with YADE's conventions, ``normal``,
         ``normalForce`` and ``shearForce`` [N]; zeros where the bodies do not touch."""
         return self._of("contacts", pairs)
 

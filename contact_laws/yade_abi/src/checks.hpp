@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The single checks of the guard. Each answers with one sentence about the first difference,
-// without its end, or with nothing.
+// The single checks of the guard. Each returns the beginning of a sentence about the first
+// difference, or an empty string.
 #pragma once
 
 #include <boost/python/object.hpp>
@@ -14,7 +14,7 @@ std::string size_difference(const DeclaredInterface& declared);
 std::string table_difference(const DeclaredInterface& declared);
 std::string getter_difference(const DeclaredInterface& declared,
                               const boost::python::object& wrapper);
-// Whether every declared member is seen by some check, with the type that the check establishes.
+// Whether some check covers every declared member, with the type that the check establishes.
 std::string coverage_difference(const DeclaredInterface& declared);
 std::string sentinel_difference(const DeclaredInterface& declared,
                                 const boost::python::object& wrapper);

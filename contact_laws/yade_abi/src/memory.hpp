@@ -13,8 +13,8 @@ namespace statejump::yade_abi {
 
 using Word = std::uint64_t;
 
-// Reads through a pipe: the kernel refuses an address that cannot be read, where a plain read ends
-// the process.
+// Reads through a pipe. For an address that cannot be read the kernel returns an error, where a
+// plain read would end the process.
 class Memory {
  public:
   Memory();
@@ -24,7 +24,7 @@ class Memory {
 
   bool copy(const void* from, void* to, std::size_t bytes) const;
   std::optional<Word> word(Word address) const;
-  // Up to its end or to a length that no name reaches.
+  // The text up to its end, or to a length that no name has.
   std::optional<std::string> text(Word address) const;
 
  private:
@@ -42,21 +42,21 @@ Type read_as(const char* place) {
   return value;
 }
 
-// "5State": a class of the namespace yade as it stands within mangled names.
+// Name of a class as part of mangled names of the namespace yade, e.g. "5State".
 std::string mangled_name(const std::string& class_name);
-// Among the libraries that YADE loaded; null when there is none.
+// Address of a symbol in the libraries that YADE loaded; null if there is none.
 const void* symbol(const std::string& name);
 // Among those of this module.
 const void* own_symbol(const std::string& name);
 
-// A function of YADE by its symbol, null when it is missing. The guard calls YADE through this
-// alone, so no declaration that it checks decides what is called, and how.
+// A function of YADE by its symbol; null if it is missing. The guard calls YADE only in this way,
+// so no declaration under test determines which function is called, and how.
 template <class Function>
 Function* function(const std::string& name) {
   return reinterpret_cast<Function*>(const_cast<void*>(symbol(name)));
 }
 
-// What an object of the named class begins with; 0: YADE has no such class.
+// First word of an object of the named class; 0: YADE has no such class.
 Word table_pointer(const std::string& class_name);
 
 }  // namespace statejump::yade_abi

@@ -161,7 +161,7 @@ py::dict point_dict(const Point& point) {
   return result;
 }
 
-/// What a rigid and an elastic loop have in common.
+/// Common members of a rigid and an elastic loop.
 template <class Loop>
 py::class_<Loop> bind_path(py::module_& module, const char* name, const char* doc) {
   return py::class_<Loop>(module, name, doc)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The models beside the bar on a slider. Python finds their names in _engine.
+// All models except the bar on a slider. Python finds their names in _engine.
 #include <string>
 
 #include "../bindings.hpp"

@@ -33,7 +33,7 @@ using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Indices = py::array_t<int, py::array::c_style | py::array::forcecast>;
 using Flags = py::array_t<bool, py::array::c_style | py::array::forcecast>;
 
-/// The arrays of one kind of item; a missing one or one of another length is refused.
+/// The arrays of one kind of item; a missing array, or one of another length, is refused.
 class Table {
  public:
   Table(const char* kind, const py::dict& arrays) : kind_(kind), arrays_(arrays) {
@@ -73,7 +73,7 @@ Vector3d row(const Numbers& array, std::size_t i) {
   return Eigen::Map<const Vector3d>(array.data() + 3 * i);
 }
 
-/// The directions that neither a fixed coordinate nor a guide plane takes away, and how many.
+/// The directions that neither a fixed coordinate nor a guide plane constrains, and their number.
 std::pair<truss::Directions, int> free_directions(const bool* fixed, Vector3d normal) {
   std::vector<Vector3d> held;
   for (int k = 0; k < 3; ++k) {
@@ -103,15 +103,15 @@ std::pair<truss::Directions, int> free_directions(const bool* fixed, Vector3d no
 /// Nodes of a truss whose reading leaves megabytes.
 constexpr std::size_t many_nodes = 10000;
 
-/// Gives back to the system what the reading of a large truss has left free between what is kept:
-/// the solver's arrays are too large for it.
+/// Returns free memory between kept blocks to the system. Reading a large truss leaves such gaps,
+/// which are too small for the solver's arrays.
 void give_back_memory() {
 #ifdef __GLIBC__
   malloc_trim(0);
 #endif
 }
 
-/// Items of a type of element or joint, whose table has the columns of its parameters.
+/// Items of a type of element or joint, from a table with the columns of its parameters.
 template <class Type>
 std::vector<Type> items_of(const Table& table) {
   std::vector<Type> items(table.size());
@@ -169,7 +169,7 @@ truss::Model make_model(const py::dict& nodes_, const py::dict& elements_, const
     const auto fixed = table.flags("fixed", 3);
     const auto normal = table.numbers("guide_normal", 3);
     const auto force = table.numbers("force_N", 3);
-    // Few supports differ, and what is alike is kept once.
+    // Most nodes have one of a few supports, so equal ones are stored once.
     using Support = std::tuple<bool, bool, bool, double, double, double>;
     std::map<Support, std::pair<truss::Directions, int>> supports;
     model.nodes.reserve(table.size());
@@ -229,7 +229,7 @@ py::array_t<double> scalars(const std::vector<State>& states, Member member) {
   return result;
 }
 
-/// Where the joints of one type stand among all, and their outputs among all outputs.
+/// Indices of the joints of one type among all joints, and of their outputs among all outputs.
 struct OfType {
   std::vector<py::ssize_t> joints;
   std::vector<py::ssize_t> outputs;
@@ -328,8 +328,8 @@ py::array_t<Number> of_events(const std::vector<truss::Event>& found, Value valu
   return result;
 }
 
-/// Events by columns: a truss of a million joints has millions. Joints are numbered among those of
-/// their kind, statuses are codes whose names stand in `statuses`.
+/// Events as columns, because a truss of a million joints has millions. Joints are numbered within
+/// their kind. Statuses are codes whose names are in `statuses`.
 py::dict event_columns(const truss::Model& model, const std::vector<truss::Event>& found) {
   using truss::Event;
   std::vector<py::ssize_t> place(model.joints.size());
@@ -371,7 +371,7 @@ py::dict event_columns(const truss::Model& model, const std::vector<truss::Event
   return events;
 }
 
-/// What a caller's function says, asked with the share that is done: whether to go on.
+/// Calls a caller's function with the finished fraction. Returns whether to continue.
 std::function<bool(double)> going_on(const py::object& progress) {
   return [&progress](double done) {
     py::gil_scoped_acquire lock;
@@ -380,8 +380,7 @@ std::function<bool(double)> going_on(const py::object& progress) {
   };
 }
 
-/// Hands the iterations of a path to a caller's function, as tuples in the order of the
-/// record.
+/// Passes the iterations of a path to a caller's function, as tuples in the order of the record.
 truss::TraceSink trace_to(const py::object& function, const truss::Model& model) {
   if (function.is_none()) return {};
   return [&](const truss::TraceRecord& one) {
@@ -398,7 +397,7 @@ truss::TraceSink trace_to(const py::object& function, const truss::Model& model)
   };
 }
 
-/// The same, where Ctrl-C ends a run that is worth what it has.
+/// The same for runs whose partial results are useful: Ctrl-C ends them.
 std::function<bool(double)> until_interrupted(const py::object& progress) {
   return [go_on = going_on(progress)](double done) {
     try {

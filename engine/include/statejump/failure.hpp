@@ -57,7 +57,7 @@ struct FailureFields {
   bool more_modes = false;                        ///< There may be more than `mode_count`.
   std::optional<double> time = {};                ///< [s]
   std::optional<double> temperature_change = {};  ///< ΔT [K]; for a truss that of its first program
-  /// The result that was not found, e.g. "no equilibrium of the drawn shape"; for the kinds
+  /// The result that does not exist, e.g. "no equilibrium of the drawn shape". For the kinds
   /// singular and not_converged, and for too_many_steps of dynamics.
   std::string sought = {};
   /// Message of the law or part of the program that detected the failure.

@@ -14,7 +14,7 @@ namespace statejump::truss {
 
 namespace {
 
-/// Setting as many numbers to zero takes some ten times as long as starting a thread.
+/// Setting this many numbers to zero takes about ten times as long as starting a thread.
 constexpr std::size_t numbers_at_once = 500000;
 
 }  // namespace
@@ -32,7 +32,8 @@ void Assembly::clear() {
 }
 
 void Assembly::record() {
-  // A million joints write some 1e8 places: beside them only their rows are held, column by column.
+  // A million joints write some 1e8 positions, so only their rows are stored besides them, column
+  // by column.
   const Eigen::Index n = residual.size();
   std::vector<std::size_t> next(static_cast<std::size_t>(n) + 1, 0);
   for (const Run& run : runs_) {
@@ -193,7 +194,7 @@ VectorXd System::slide_rates(const VectorXd& z, double time, const StepStart& st
     JointWriter to_heated(of_heated);
     to_moving.places = to_heated.places = places;
     to_moving.first_force = to_heated.first_force = forces_from;
-    // One that slips is asked for the rate of what would be closed if it stuck.
+    // For a joint that slips, this evaluates the rate of the closure that would hold if it stuck.
     Trial at = trial(i, z, time, start, JointModel::friction, 1.0);
     at.unslipped = true;
     const double warming =

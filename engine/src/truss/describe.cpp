@@ -14,8 +14,8 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Integrating the work of as many links, or describing as many parts, takes some ten times as long
-/// as starting a thread.
+/// Integrating the work of this many links, or describing this many items, takes about ten times as
+/// long as starting a thread.
 constexpr std::size_t parts_at_once = 5000;
 
 }  // namespace
@@ -35,7 +35,7 @@ void System::describe(const VectorXd& z, double time, const StepStart& now, Stat
     state.load_potential -= model.nodes[index(i)].load.dot(moved.col(i));
   }
   state.elastic_energy = 0.0;
-  // Energies are added up in the order of the parts, whatever threads there are.
+  // Energies are added in the order of the items, for any number of threads.
   const auto add_energies = [&](const auto& parts, std::size_t at_once, auto&& energy_of) {
     VectorXd energies(size(parts));
     each_in_parallel(parts.size(), at_once, [&](std::size_t i) {
@@ -100,7 +100,7 @@ VectorXd System::heat(const VectorXd& z, double time, const StepStart& start,
   const Eigen::Matrix3Xd moved = displacements(z);
   each_joint([&](int i) {
     const Trial at = trial(i, z, moved, time, start, JointModel::friction, 1.0);
-    // What a joint that sticks is off by is no slip.
+    // The closure error of a sticking joint is no slip.
     const double slip = after.statuses[index(i)] == JointStatus::stick ? 0.0 : slips[i];
     found[i] =
         std::visit([&](const auto& one) { return one.dissipation(at, history(i, after), slip); },
@@ -133,7 +133,7 @@ void System::note_slides(const Way& way, const std::optional<Halves>& halves,
     if (after.statuses[index(i)] != JointStatus::stick) return;
     const Vector3d foreseen = start.foreseen(i, way.to_time);
     if (halves) {
-      // Both halves together are off by a quarter of what the whole step is.
+      // The error of both halves together is a quarter of that of the whole step.
       after.lost.col(i) =
           4.0 / 3.0 *
           (lag(i, halves->middle, halves->time, start) + lag(i, way.to, way.to_time, halves->half) -
@@ -147,7 +147,7 @@ void System::account(const Way& way, const std::optional<Halves>& halves, const 
                      const StepStart& after, const VectorXd& slips, State& state) const {
   VectorXd dissipated = heat(way.to, way.to_time, start, after, slips);
   if (halves && (dissipated.array() > 0.0).any()) {
-    // What both halves and the whole say of no steps at all.
+    // Extrapolation of the results of both halves and of the whole step to zero step length.
     const auto& [middle, then, half, whole] = *halves;
     const VectorXd by_halves =
         heat(middle, then, start, half, this->slips(middle, then, start, half)) +
@@ -185,7 +185,7 @@ double System::work_on_joints(const Way& way, const StepStart& start) const {
             const auto at = [&](const VectorXd& z) {
               return trial(i, z, way.to_time, start, JointModel::friction, 1.0);
             };
-            // A contact whose clearance grows gives way: ∂V/∂c = −N.
+            // A growing clearance yields to the contact force: ∂V/∂c = −N.
             const auto add = [&](auto&& joint_at) {
               work[i] = -growth * asked[index(frame.program)].along([&](double share, double) {
                 return one.contact_force(joint_at(share));

@@ -15,9 +15,9 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Copying as many displacements takes some ten times as long as starting a thread.
+/// Copying this many displacements takes about ten times as long as starting a thread.
 constexpr std::size_t nodes_at_once = 50000;
-/// Motion of a node by a dof that counts as none, as in moves_along().
+/// Motion of a node by a dof below which it counts as zero, as in moves_along().
 constexpr double least_motion = 1e-9;
 
 /// Whether an element at a node has 6 dofs per node, for every node.

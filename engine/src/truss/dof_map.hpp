@@ -16,27 +16,28 @@ struct DofTerm {
   int row;
   double factor;
 };
-/// The translations of a node in its free directions as sums of dofs.
+/// The translations of a node along its free directions, each as a sum of dofs.
 using DofSums = std::array<std::vector<DofTerm>, 3>;
 
 /// Degrees of freedom of one node: translations in the first `freedoms` of its free directions,
-/// then its rotations. None by default, as of the ground.
+/// then its rotations. The default, none, is the ground.
 struct NodeDofs {
   int row = 0;       ///< Of its first own dof.
   int freedoms = 0;  ///< Translations.
   const Eigen::Matrix3d* directions = nullptr;
   int rotations = 0;  ///< 3 where an element has 6 dofs per node, else 0.
-  /// Of a node of which constraints give translations; none: all translations are own dofs.
+  /// For a node whose translations follow from constraints; null: all translations are its own
+  /// dofs.
   const DofSums* sums = nullptr;
 
-  /// Whether a translation is a dof, not a sum of several or a multiple.
+  /// Whether a translation is itself a dof, and not a sum or a multiple of dofs.
   bool is_own(int direction, int dof) const {
     if (sums == nullptr) return true;
     const auto& terms = (*sums)[static_cast<std::size_t>(direction)];
     return terms.size() == 1 && terms.front().row == dof && terms.front().factor == 1.0;
   }
 
-  /// Calls `use(row, factor)` for the dofs in the translation along a free direction.
+  /// Calls `use(row, factor)` for the dofs that a translation along a free direction depends on.
   template <class Use>
   void each_term(int direction, Use&& use) const {
     if (sums == nullptr) return use(row + direction, 1.0);
@@ -50,8 +51,8 @@ namespace detail {
 
 struct Elimination;
 
-/// Numbering of the independent degrees of freedom of all nodes, node after node. Constraints give
-/// the other ones, see Elimination.
+/// Numbering of the independent degrees of freedom of all nodes, node after node. Constraints
+/// determine the dependent ones, see Elimination.
 class DofMap {
  public:
   /// The model must outlive it.
@@ -64,17 +65,17 @@ class DofMap {
   const NodeDofs& at(int node) const {
     return node < 0 ? nodes_.back() : nodes_[static_cast<std::size_t>(node)];
   }
-  /// Node that has a dof of its own.
+  /// The node to which a dof belongs.
   int node_of(int dof) const;
   /// Translation of a node at unknowns z [m].
   Eigen::Vector3d displacement(int node, const Eigen::VectorXd& z) const;
   /// Those of all nodes.
   void displacements(const Eigen::VectorXd& z, Eigen::Matrix3Xd& moved) const;
-  /// The dofs at displacements of all nodes that agree with the constraints.
+  /// The dofs for displacements of all nodes that satisfy the constraints.
   Eigen::VectorXd dofs_at(const Eigen::Matrix3Xd& moved) const;
   /// Adds a force on a node to the forces on the dofs [N].
   void add_force(int node, const Eigen::Vector3d& force, Eigen::VectorXd& to) const;
-  /// Whether some motion changes the distance of two nodes along a direction.
+  /// Whether any motion changes the distance of two nodes along a direction.
   bool moves_apart(int first, int second, const Eigen::Vector3d& direction) const;
   /// Translations of a node along its free directions at unknowns z.
   static Eigen::Vector3d along_directions(const NodeDofs& at, const Eigen::VectorXd& z);

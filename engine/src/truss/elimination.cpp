@@ -10,10 +10,10 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// What two numbers leave of the larger one where they cancel: each is a sum of at most some
-/// thousand products that are rounded by 1e-16.
+/// Remainder of two numbers that cancel, relative to the larger one: each is a sum of at most some
+/// thousand products with a rounding of 1e-16.
 constexpr double rounding_fraction = 1e-12;
-/// Factors that differ by less than rounding are equally large.
+/// Factors whose difference is below rounding are equal.
 constexpr double equal_fraction = 1.0 - rounding_fraction;
 
 using Sum = std::map<int, double>;
@@ -52,7 +52,7 @@ class Eliminating {
   Elimination take() && { return std::move(made_); }
 
  private:
-  /// The terms of a constraint, dependent displacements replaced by their sums.
+  /// The terms of a constraint, with sums in place of dependent displacements.
   Sum independent(const Constraint& constraint) const {
     Sum sum;
     for (const ConstraintTerm& term : constraint.terms) {

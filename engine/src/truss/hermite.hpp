@@ -8,8 +8,8 @@
 
 namespace statejump::truss::detail {
 
-/// Cubic over a step from the values and rates at its ends (Hermite), as a function of the share of
-/// the step; its error is of fourth order in the step.
+/// Cubic over a step from the values and rates at its ends (Hermite), as a function of the fraction
+/// of the step. Its error is fourth-order in the step.
 struct Cubic {
   double first;
   double last;
@@ -22,17 +22,18 @@ struct Cubic {
     return first + share * passed +
            share * left * (left * (first_rate - passed) - share * (last_rate - passed));
   }
-  /// Rate at a share is first_rate + linear · share + square · share².
+  /// The rate at a fraction s is first_rate + linear · s + square · s².
   double linear() const { return 6.0 * (last - first) - 4.0 * first_rate - 2.0 * last_rate; }
   double square() const { return 3.0 * (first_rate + last_rate) - 6.0 * (last - first); }
   double rate(double share) const { return first_rate + share * (linear() + share * square()); }
-  /// Share within the step at which the rate is least; nothing if that is an end of it.
+  /// Fraction inside the step at which the rate is smallest; empty if that is at an end.
   std::optional<double> slowest() const {
     if (!(square() > 0.0)) return std::nullopt;
     const double share = -0.5 * linear() / square();
     return share > 0.0 && share < 1.0 ? std::optional(share) : std::nullopt;
   }
-  /// First share in (0, end] at which a rate that begins above 0 is 0; it is not above 0 at `end`.
+  /// First fraction in (0, end] at which a rate that starts above 0 becomes 0. Requires a rate <= 0
+  /// at `end`.
   double turn(double end) const {
     double before = 0.0;
     for (int halving = 0; halving < 60; ++halving) {
@@ -43,8 +44,8 @@ struct Cubic {
   }
 };
 
-/// A joint on its way between both ends of a step of a duration, by the cubics of its nodes and
-/// forces; the rest is that of the end.
+/// A joint within a step of a given duration, with nodes and forces from cubics. All other values
+/// are those at the end.
 struct JointWay {
   Trial first;
   Trial last;

@@ -14,11 +14,11 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-/// Stiffness, as a share of that of the stiffest part, below which the truss without its contacts
-/// counts as a mechanism. W has its inverse, so this is a bound on how far forces determine
-/// motions.
+/// Stiffness, as a fraction of that of the stiffest element, below which the truss without its
+/// contacts counts as a mechanism. W contains its inverse, so this bounds the accuracy with which
+/// forces determine motions.
 constexpr double soft_share = 1e-9;
-/// Share with which the proximal term begins: the softest generated trusses have 1e-4.
+/// Initial fraction of the proximal term: the softest generated trusses have 1e-4.
 constexpr double proximal_share = 1e-3;
 
 /// The unknowns in two groups: contacts, and all others (the structure).
@@ -46,8 +46,7 @@ Sparse block(const Sparse& jacobian, const Groups& of, bool contact_rows, bool c
   return made;
 }
 
-/// Whether the displacements are held in every direction, their other rows as stiff as the stiffest
-/// part.
+/// Whether all displacements are constrained, with rows as stiff as the stiffest element.
 bool is_stable(const Sparse& structure, int displacements, double scale, double proximal) {
   const int rows = static_cast<int>(structure.rows()) - displacements;
   const Sparse full = structure.block(0, 0, displacements, displacements);
@@ -120,7 +119,7 @@ LocalProblem local_problem(const System& system, const VectorXd& z, double time,
     compliance.col(j) += rows * factor.solve(VectorXd(columns.col(j)));
   }
 
-  // Blocks of two: a normal force that is given has a gap of its own, which that force closes.
+  // Blocks of two: a given normal force has its own gap, which this force closes.
   const auto count = static_cast<Eigen::Index>(contacts.size());
   std::vector<Eigen::Index> row_of;
   for (Eigen::Index k = 0; k < count; ++k) {

@@ -15,13 +15,14 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Modes softer than this share of the stiffest part count as free: rounding of the stiffness is
-/// 1e-16, the softest mode of a ring of 100 000 bays 1e-12.
+/// Modes softer than this fraction of the stiffest element count as free. Rounding of the stiffness
+/// is 1e-16; the softest mode of a ring of 100 000 bays is 1e-12.
 constexpr double free_share = 1e-13;
 constexpr int most_modes = 6;
 
-/// Joints that are held for the question of stability, in the stiffest part's stiffness: their
-/// compliance is that of a hundredth of such a part, and rounding stays below the share above.
+/// Stiffness of joints that the stability check holds, relative to the stiffest element. Their
+/// compliance is a hundredth of that of such an element, and rounding stays below the fraction of
+/// free modes.
 constexpr double stiff_joint = 100.0;
 
 /// The nodes that move most in a mode.
@@ -53,7 +54,8 @@ struct Modes {
 };
 
 Modes lowest_modes(const Eigen::SparseMatrix<double>& matrix, const Factors& factors, int most) {
-  // Inverse iteration on a block: free modes outgrow all others by 20 and more in a round.
+  // Inverse iteration on a block: in each round, free modes grow at least 20 times as much as the
+  // others.
   const Eigen::Index n = matrix.rows();
   const Eigen::Index count = std::min<Eigen::Index>(most, n);
   Eigen::MatrixXd block(n, count);
@@ -70,21 +72,21 @@ Modes lowest_modes(const Eigen::SparseMatrix<double>& matrix, const Factors& fac
   return {found.eigenvalues(), block * found.eigenvectors()};
 }
 
-/// The stiffness of the truss with its joints held, see joined_stiffness(), and a share of that of
-/// its stiffest part everywhere.
+/// The stiffness of the truss with held joints, see joined_stiffness(), plus a fraction of that of
+/// its stiffest element on the diagonal.
 Eigen::SparseMatrix<double> shifted_stiffness(const System& system, const VectorXd& z, double time,
                                               const Statuses& statuses, JointModel joints,
                                               double held, double slack, double share) {
   Eigen::SparseMatrix<double> shifted =
       system.joined_stiffness(z, time, statuses, joints, held, slack);
-  // In place: entries of the diagonal are there, but of nodes that hang on nothing.
+  // In place: diagonal entries exist, except for nodes without any stiffness.
   for (Eigen::Index i = 0; i < shifted.rows(); ++i) {
     shifted.coeffRef(i, i) += share * system.stiffness_scale();
   }
   return shifted;
 }
 
-/// Those of the modes whose eigenvalues are in a range.
+/// The modes whose eigenvalues are in a range.
 FoundModes modes_between(const System& system, const Modes& modes, double smallest,
                          double largest) {
   FoundModes found;
@@ -100,7 +102,7 @@ FoundModes modes_between(const System& system, const Modes& modes, double smalle
   return found;
 }
 
-/// The free modes; whether some direction has a negative stiffness.
+/// The free modes, and whether some direction has a negative stiffness.
 std::pair<FoundModes, bool> free_modes(const System& system, const VectorXd& z, double time,
                                        const Statuses& statuses, JointModel joints) {
   const Eigen::SparseMatrix<double> shifted =
@@ -109,9 +111,10 @@ std::pair<FoundModes, bool> free_modes(const System& system, const VectorXd& z, 
   if (factors.info() != Eigen::Success) return {FoundModes{}, false};
   const double least = free_share * system.stiffness_scale();
   const bool pushed = (factors.vectorD().array() < 0.0).any();
-  // One vector tells whether there are any: five rounds from anywhere lead to below ten times the
-  // largest eigenvalue that counts as free, with some 1e6 other modes just above that and a start
-  // in which a free one has a hundredth of its usual part (6e9 · 10⁻⁹ < 10).
+  // One vector shows whether there is a free mode. After five rounds from any start, the Rayleigh
+  // quotient is below ten times the largest eigenvalue that counts as free. This holds with some
+  // 1e6 other modes just above that, and a start with a hundredth of the usual part of a free mode
+  // (6e9 · 10⁻⁹ < 10).
   const Modes first = lowest_modes(shifted, factors, 1);
   if (std::abs(first.eigenvalues[0]) > 10.0 * least) return {FoundModes{}, pushed};
   return {modes_between(system, lowest_modes(shifted, factors, most_modes), -least, least), pushed};
@@ -124,7 +127,8 @@ FoundModes mechanism(const System& system, const VectorXd& z, double time, const
   if (system.displacements() == 0) return {};
   const auto [found, pushed] = free_modes(system, z, time, statuses, joints);
   if (found || !pushed || !z.isZero()) return found;
-  // Forces of the drawn shape may push a mechanism along its free mode; without them it is one.
+  // Forces of the reference configuration may push a mechanism along its free mode. Without them
+  // the mode is free.
   Model unstressed = system.model();
   scale_misfits(unstressed, 0.0);
   return free_modes(System(unstressed), z, time, statuses, joints).first;

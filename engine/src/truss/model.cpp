@@ -33,7 +33,7 @@ void check_axis(const std::string& item, const Eigen::Vector3d& axis) {
   check(std::abs(axis.norm() - 1.0) < 1e-9, item, "length of the axis", axis.norm(), "1");
 }
 
-/// "finite, > 0 N": what a number may be, in words.
+/// Allowed range of a number as text: "finite, > 0 N".
 std::string range(Allowed allowed, const std::string& unit) {
   const std::string with_unit = unit == "-" ? "" : " " + unit;
   switch (allowed) {
@@ -127,8 +127,8 @@ void check_constraint(const Constraint& constraint, const Model& model) {
   }
 }
 
-/// Refuses joints whose nodes cannot move apart where the joint holds them: two forces would hold
-/// one direction.
+/// Refuses joints that constrain nodes along a direction in which they cannot move apart: two
+/// forces would constrain one direction.
 void check_held_directions(const Model& model) {
   const detail::DofMap dofs(model);
   for (const Joint& joint : model.joints) {

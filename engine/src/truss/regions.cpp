@@ -14,9 +14,11 @@ namespace {
 
 using numerics::Lists;
 
-/// Parts of a region: assembling them takes some ten times as long as starting a thread.
+/// Smallest number of items of a region: assembling them takes about ten times as long as starting
+/// a thread.
 constexpr std::size_t least_parts = 2000;
-/// Regions at most: enough to share them out evenly, few enough to have little between them.
+/// Largest number of regions: enough for an even distribution, few enough to have few items between
+/// them.
 constexpr std::size_t most_regions = 64;
 
 /// The nodes whose dofs move a constrained node.
@@ -28,7 +30,7 @@ std::set<int> moving_with(const DofMap& dofs, const NodeDofs& at) {
   return found;
 }
 
-/// The nodes that move of every part: of the elements type by type, then of the joints.
+/// The free nodes of every item: of the elements type by type, then of the joints.
 Lists moving_nodes(const DofMap& dofs, const ElementFrames& elements,
                    const std::vector<JointFrame>& joints) {
   Lists made;
@@ -40,7 +42,7 @@ Lists moving_nodes(const DofMap& dofs, const ElementFrames& elements,
           if (at.freedoms + at.rotations > 0) made.push_back(node);
           continue;
         }
-        // What is added there goes to the nodes whose dofs move it.
+        // Entries there belong to the nodes whose dofs move it.
         for (const int other : moving_with(dofs, at)) made.push_back(other);
       }
       made.end_list();
@@ -51,8 +53,8 @@ Lists moving_nodes(const DofMap& dofs, const ElementFrames& elements,
   return made;
 }
 
-/// Region of every node: pieces of the order in which a breadth-first search meets the nodes, with
-/// equally many parts each. Nodes that do not move are in none.
+/// Region of every node: parts of the order in which a breadth-first search visits the nodes, with
+/// equally many items each. Fixed nodes are in none.
 std::vector<int> cut(const Lists& nodes_of, std::size_t nodes, std::size_t regions) {
   const Lists parts_of = nodes_of.inverted(nodes);
   std::vector<int> region(nodes, -1);

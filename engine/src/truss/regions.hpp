@@ -10,17 +10,17 @@
 
 namespace statejump::truss::detail {
 
-/// Parts of a truss, by their indices in the model, each list in ascending order.
+/// Items of a truss, by their indices in the model, each list in ascending order.
 struct Region {
   std::vector<int> loaded;                               ///< Nodes with a load.
   std::array<std::vector<int>, element_types> elements;  ///< Of each type.
   std::vector<int> joints;
 };
 
-/// A truss cut into regions that share no node that moves, so that they may be assembled at the
-/// same time, and the parts between them, which are assembled after them. What is added to a row of
-/// the equations in which order depends on the cut, and the cut on the truss alone: results do not
-/// depend on the number of threads.
+/// A truss divided into regions without common free nodes, which can be assembled at the same time,
+/// and the items between them, which are assembled afterwards. The order of sums in a row depends
+/// on the division, and the division depends on the truss alone. Results therefore do not depend on
+/// the number of threads.
 struct Regions {
   std::vector<Region> apart;  ///< None of a small truss.
   Region between;

@@ -12,7 +12,7 @@
 
 namespace statejump::truss::detail {
 
-/// Points of a step at which the work of a program's temperature is integrated.
+/// Quadrature points of a step, for the work of a program's temperature.
 struct Quadrature {
   struct Point {
     double share;
@@ -22,7 +22,7 @@ struct Quadrature {
   std::array<Point, 4> points{};
   std::size_t count = 0;
 
-  /// Integral of `function(share, temperature)` of a step over the temperature [K].
+  /// Integral of `function(fraction, temperature)` over the temperature in a step [K].
   template <class Function>
   double along(Function&& function) const {
     double sum = 0.0;
@@ -33,7 +33,7 @@ struct Quadrature {
   }
 };
 
-/// Of every program: the trapezoidal rule of a straight way, else a rule of fourth order.
+/// Quadrature of every program: the trapezoidal rule for a straight path, else a fourth-order rule.
 std::vector<Quadrature> quadratures(const Way& way, const Model& model);
 
 /// A step in which elements integrate the work of the temperature.

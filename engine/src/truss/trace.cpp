@@ -153,7 +153,7 @@ void TracedSolve::close(bool ends) {
   } else if (halved) {
     record.decision = Decision::halved_step;
   } else {
-    // A step that was undone has left no length.
+    // A step that was undone has no length.
     record.decision = stepped_ && !view_.lengths.empty() ? Decision::step : Decision::restart;
   }
 }

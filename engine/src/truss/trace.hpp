@@ -13,8 +13,9 @@ namespace statejump::truss::detail {
 
 enum class StepEnd : unsigned char;
 
-/// Sends the iterations of a path to the sink of its options, or to nobody. It holds a record back
-/// until the next one begins: the end of the solve and of the step belong to the last record.
+/// Sends the iterations of a path to the sink of its options, if there is one. A record is sent
+/// when the next one begins, because the end of the solve and of the step belong to the last
+/// record.
 class Tracer {
  public:
   Tracer(const Model& model, TraceSink sink) : model_(&model), sink_(std::move(sink)) {}
@@ -37,7 +38,7 @@ class Tracer {
   std::optional<TraceRecord> held_;
 };
 
-/// Variables of the Newton solve that is traced.
+/// Variables of the traced Newton solve.
 struct SolveView {
   double time;
   JointModel joints;
@@ -49,9 +50,8 @@ struct SolveView {
   const long& factorizations;         ///< Since the start of the path.
 };
 
-/// One solve of a trace. It compares the variables of the solve at the beginning of an iteration
-/// and of the next one, so that the solver reports two numbers only. Without a tracer it does
-/// nothing.
+/// One solve of a trace. It compares the variables of the solve at the beginning of successive
+/// iterations, so the solver passes two numbers only. Without a tracer it does nothing.
 class TracedSolve {
  public:
   TracedSolve(Tracer* tracer, const SolveView& view) : tracer_(tracer), view_(view) {
@@ -63,11 +63,11 @@ class TracedSolve {
   TracedSolve(const TracedSolve&) = delete;
   TracedSolve& operator=(const TracedSolve&) = delete;
 
-  /// Begins an iteration, whose equations leave these residuals [N], [m], [N].
+  /// Begins an iteration with these residuals [N], [m], [N].
   void iteration(double nodes, double closures, double joints) {
     if (tracer_ != nullptr) open(nodes, closures, joints);
   }
-  /// Notes a full step of this length [m].
+  /// Records a full step of this length [m].
   void step(double length) {
     length_ = length;
     stepped_ = true;

@@ -5,7 +5,7 @@
 
 namespace statejump::truss::detail {
 
-/// Way of the unknowns in a step: straight, or a cubic where the rates at both ends are known.
+/// Path of the unknowns in a step: straight, or a cubic if the rates at both ends are known.
 struct Way {
   const Eigen::VectorXd& from;
   double from_time;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bores given by triangles: what they are, measured. Not ``bore``, which is the function of the package."""
+"""Measured bores, given as triangle meshes. The function ``statejump.bore`` is in :mod:`statejump.api`."""
 from __future__ import annotations
 
 from statejump.bores.measure import Bore, measured

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a bore given by triangles is: radius, roundness, lobes, clearance."""
+"""Measures a bore given as triangles: radius, roundness, lobes, clearance."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -25,23 +25,23 @@ _TOLD, _HTML, _WRITTEN = (Later(f"statejump.bores.words:{name}") for name in ("t
 ANGLES = 1024  # samples around a section
 SECTIONS = 5  # along the bore
 HARMONICS = range(2, 13)
-MARGIN = 0.05  # of the length that the end sections stay away from the ends
+MARGIN = 0.05  # margin between the end sections and the ends, as a fraction of the length
 
 
 @dataclass(frozen=True)
 class Section:
-    """Roundness of the bore at one place along its axis, about its own circle of least squares."""
+    """Roundness of the bore in one section, about the least-squares circle of that section."""
 
     z_m: float  # from the wall's middle
     mean_radius_m: float
     offset_m: tuple[float, float]  # centre of the circle from the axis
-    deviation_m: np.ndarray  # of the radius from the circle, at ANGLES equal angles
+    deviation_m: np.ndarray  # radius minus that of the circle, at ANGLES equal angles
     amplitude_m: np.ndarray  # of HARMONICS
-    phase_rad: np.ndarray  # of HARMONICS: the angle of largest radius, in [0, 2 pi/harmonic)
+    phase_rad: np.ndarray  # angle of the largest radius of each of HARMONICS, in [0, 2 pi/harmonic)
 
     @property
     def roundness_error_m(self) -> float:
-        """Peak to valley of the radius about the circle of least squares (ISO 12181)."""
+        """Peak to valley of the radius about the least-squares circle (ISO 12181)."""
         return float(np.ptp(self.deviation_m))
 
 
@@ -51,7 +51,7 @@ def angles_rad() -> np.ndarray:
 
 
 def section(mesh: _engine.BoreMesh, z_m: float) -> Section:
-    """Measure a section; StatejumpError where the wall has gaps or turns back about the centre of its circle."""
+    """Measure a section. Raises StatejumpError if the wall has gaps, or reverses its direction about the centre."""
     radii = mesh.section_radii_m(z_m, ANGLES)
     if not np.all(np.isfinite(radii)):
         missing = float(np.degrees(angles_rad()[int(np.argmin(np.isfinite(radii)))]))
@@ -67,8 +67,7 @@ def section(mesh: _engine.BoreMesh, z_m: float) -> Section:
         centre = centre + step[:2]
         if np.linalg.norm(step[:2]) < 1e-15 * distance[0]:
             break
-    # About the circle's centre the same samples lie at uneven angles: resampled along the wave,
-    # which is smooth and periodic.
+    # About the centre of the circle the samples are at uneven angles. They are resampled with a smooth periodic curve.
     away = points - centre
     around = np.unwrap(np.arctan2(away[:, 1], away[:, 0]))
     if not (np.all(np.diff(around) > 0) and around[-1] < around[0] + 2 * np.pi):
@@ -93,12 +92,12 @@ def _resample(around: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.
 
 @dataclass(frozen=True)
 class Bore:
-    """What is known of a bore.
+    """Measurements of a bore.
 
     :param name: for tables and figures: the file
     :param mesh: the fitted wall: axis, mean radius, curvatures
-    :param sections: roundness at SECTIONS places along the axis
-    :param journal_radius_m: radius of the journal that goes into it [m]; None: no clearance
+    :param sections: roundness in SECTIONS sections along the axis
+    :param journal_radius_m: radius of the journal in the bore [m]; None: no clearance
     """
 
     name: str
@@ -113,7 +112,7 @@ class Bore:
 
     @property
     def cylindricity_m(self) -> float:
-        """Peak to valley of the radius about the cylinder of least squares, over all sections."""
+        """Peak to valley of the radius about the least-squares cylinder, over all sections."""
         radii = np.concatenate([self.mesh.section_radii_m(s.z_m, ANGLES) for s in self.sections])
         return float(np.ptp(radii))
 
@@ -124,7 +123,7 @@ class Bore:
 
     @property
     def dominating_harmonic(self) -> int | None:
-        """Waves per turn of the largest lobes of the middle section; None below the mesh's error."""
+        """Number of waves of the largest lobes of the middle section; None if they are below the mesh's error."""
         largest = int(np.argmax(self.middle.amplitude_m))
         if self.middle.amplitude_m[largest] <= self.mesh.reconstruction_error_m:
             return None
@@ -132,7 +131,7 @@ class Bore:
 
     @property
     def clearance_m(self) -> float | None:
-        """Radial clearance to the journal, of the radius of least squares [m]; None: no journal."""
+        """Radial clearance to the journal, from the least-squares radius [m]; None: no journal."""
         return None if self.journal_radius_m is None else self.mesh.mean_radius_m - self.journal_radius_m
 
     @property
@@ -141,9 +140,9 @@ class Bore:
         return None if self.journal_radius_m is None else self.smallest_radius_m - self.journal_radius_m
 
     def frame(self) -> pandas.DataFrame:
-        """Return a row per section, from one end to the other, units in the names of the columns: place along the
-        axis from the middle, radius and centre of the circle of least squares, roundness error, and of every
-        harmonic amplitude and the angle of its largest radius."""
+        """Return one row per section, from one end to the other, with units in the column names: position along the
+        axis from the middle, radius and centre of the least-squares circle, roundness error, and for every harmonic its
+        amplitude and the angle of its largest radius."""
         pandas = libraries.pandas()
 
         rows = []
@@ -156,10 +155,10 @@ class Bore:
         return pandas.DataFrame(rows)
 
     def plot(self, axes: tuple[Axes, Axes] | None = None) -> Figure:
-        """Draw sections, their deviations magnified, and the harmonics of the middle one.
+        """Draw sections with magnified deviations, and the harmonics of the middle section.
 
         :param axes: axes to draw into, for the sections and for the harmonics; None: a new figure
-        :return: the figure; matplotlib's backend is left alone
+        :return: the figure; matplotlib's backend does not change
         """
         return _DRAWN(self, axes)
 
@@ -178,14 +177,14 @@ class Bore:
         return _HTML(self)
 
 
-# How a failure of each kind is cured: the sentence, and the setting that does it.
+# Remedy for each kind of failure: the end of the sentence, and the setting that it names.
 CURES = {"inside_out": ("; {} turns it", "flip=True"), "too_large": (" Then use {}", "unit_m=0.001")}
 
 
 class NoBore(StatejumpError):
-    """A file, or its mesh, is no bore that can be measured.
+    """A file or its mesh is no bore that can be measured.
 
-    :param what: what is wrong with it
+    :param what: the reason
     :param fault: the kind of failure
     """
 
@@ -202,30 +201,30 @@ def load(file: Path, unit_m: float = 1.0, flip: bool = False) -> _engine.BoreMes
     """Read the wall of a bore.
 
     :param unit_m: length of one unit of the file [m]
-    :param flip: turn every face over
-    :raises NoBore: it is none
+    :param flip: reverse every face
+    :raises NoBore: the file is no bore
     """
     try:
         return _engine.BoreMesh.read(str(file), scale=unit_m, flip=flip)
     except _engine.EngineFailure as failure:
         what = str(failure)
         if failure.file:
-            assert failure.cause is not None  # of a file the engine says both
+            assert failure.cause is not None  # the engine gives both for a failure of a file
             what = failure.cause
         raise NoBore(what, code=f"bore_{failure.kind}", fault=failure.kind, file=failure.file or None) from None
 
 
 def check_journal(key: str, radius_m: float | None) -> None:
-    """Raise NotAllowed for a radius of a journal that is none; None: there is no journal."""
+    """Raise NotAllowed for an invalid radius of a journal; None: there is no journal."""
     if radius_m is not None and not 0 < radius_m < float("inf"):
         raise NotAllowed(key, radius_m, code="not_positive", unit="m")
 
 
 def measure(mesh: _engine.BoreMesh, name: str, journal_radius_m: float | None = None) -> Bore:
-    """Measure a bore at SECTIONS places.
+    """Measure a bore in SECTIONS sections.
 
-    :raises NotAllowed: there is no such journal
-    :raises NoBore: the wall has gaps, or its radius is far from the journal's
+    :raises NotAllowed: the journal is invalid
+    :raises NoBore: the wall has gaps, or its radius differs too much from the journal's
     """
     check_journal("journal_radius_m", journal_radius_m)
     if journal_radius_m is not None:

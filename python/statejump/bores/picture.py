@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Picture of a bore: sections, their deviations magnified, and the harmonics of the middle one."""
+"""Picture of a bore: sections with magnified deviations, and the harmonics of the middle section."""
 from __future__ import annotations
 
 import numpy as np
@@ -11,7 +11,7 @@ from statejump.core.figures import panels, style
 
 
 def magnification(bore: Bore) -> float:
-    """How much larger than life the figure shows deviations: a round number."""
+    """Magnification of deviations in the figure: a round number."""
     largest = max(float(np.max(np.abs(each.deviation_m))) for each in bore.sections)
     largest = max(largest, bore.mesh.reconstruction_error_m, 1e-12)
     wanted = 0.25 * bore.mesh.mean_radius_m / largest
@@ -36,7 +36,7 @@ def drawn(bore: Bore, axes: tuple[Axes, Axes] | None = None) -> Figure:
 
 
 def _sections(panel: Axes, bore: Bore) -> None:
-    # Plain axes: matplotlib's polar ones do not write the same bytes twice.
+    # Plain axes, because matplotlib's polar axes do not write the same bytes twice.
     times = magnification(bore)
     angle = np.append(angles_rad(), 2 * np.pi)
     direction = np.array((np.cos(angle), np.sin(angle)))

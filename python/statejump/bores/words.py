@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is known of a bore, as a table: for the terminal, a notebook, a file."""
+"""Measurements of a bore as a table, for the terminal, a notebook or a file."""
 from __future__ import annotations
 
 from html import escape
@@ -15,7 +15,7 @@ HEADINGS = ("quantity", "value", "unit")
 
 
 def rows(bore: Bore) -> list[tuple[str, str, str]]:
-    """Return quantity, value and unit of everything that is known of a bore."""
+    """Return quantity, value and unit of every measurement of a bore."""
     mesh, middle = bore.mesh, bore.middle
     axis = ", ".join(f"{round(value, 6) + 0.0:.6f}" for value in mesh.axis)
     centre = ", ".join(f"{value:.6g}" for value in mesh.centre_m)

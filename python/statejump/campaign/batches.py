@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How many samples are run at a time."""
+"""Size of the batches of samples."""
 from __future__ import annotations
 
-BATCH_S = 0.5  # wanted length of a task: long against the millisecond that a task costs
+BATCH_S = 0.5  # duration of a task [s]: long against the millisecond that Dask needs for it
 MOST_IN_BATCH = 20_000
 
 
 class Batches:
-    """Hands out the missing samples in batches that last about BATCH_S, and learns how many.
+    """Distributes the missing samples in batches of about BATCH_S, and learns their size.
 
     :param missing: numbers of the samples
-    :param model: samples of the DEM go one by one
+    :param model: samples of the DEM are run one by one
     :param queued: tasks per worker
     """
 
@@ -24,14 +24,15 @@ class Batches:
         return len(self.missing) - self.given
 
     def next(self, workers: int) -> list[int]:
-        """Return the next batch; empty: there is none left."""
-        # The last batches are smaller: all workers end at the same time.
+        """Return the next batch; empty at the end."""
+        # The last batches are smaller, so that all workers end at the same time.
         size = 1 if self.one_by_one else max(1, min(self.size, -(-self.left // (self.queued * workers))))
         batch = self.missing[self.given : self.given + size]
         self.given += len(batch)
         return batch
 
     def learn(self, count: int, seconds: float) -> None:
-        """At most four times as many as were timed: the first sample of a worker is no measure."""
+        """Update the batch size, to at most four times the timed one: the first sample of a worker is not
+        representative."""
         fitting = int(BATCH_S / max(seconds / count, 1e-9))
         self.size = max(1, min(fitting, 4 * count, MOST_IN_BATCH))

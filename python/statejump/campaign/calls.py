@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Campaigns by a call, see :func:`statejump.sweep` and :func:`statejump.montecarlo`."""
+"""Campaigns from Python, see :func:`statejump.sweep` and :func:`statejump.montecarlo`."""
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -41,7 +41,7 @@ def montecarlo(
 
 
 def _values(values: Any) -> Any:
-    """Return values as a list of Python's numbers, of an array too; a single one is a list of one."""
+    """Return values as a list of Python numbers, also from an array; a single number gives a list of one."""
     if isinstance(values, Iterable) and not isinstance(values, (str, np.ndarray)):
         values = list(values)
     found = plain(values)

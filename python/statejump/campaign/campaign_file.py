@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Campaign files: which case, which model, what varies and how; checked as strictly as a case."""
+"""Campaign files: case, model, and what varies. They are checked as strictly as a case."""
 from __future__ import annotations
 
 import difflib
@@ -50,7 +50,7 @@ class MonteCarloHeader(SweepHeader):
 
 
 def _as_given(name: str, value: Any) -> list[Any]:
-    """What ``[[vary]]`` holds depends on the case: see :func:`vary_of`."""
+    """Leave ``[[vary]]`` unchecked: its rules depend on the case, see :func:`vary_of`."""
     return list(value) if isinstance(value, list) else []
 
 
@@ -92,7 +92,7 @@ def _campaign(path: Path, text_read: str, data: Mapping[str, Any], command: str)
         if command == SWEEP and isinstance(header_given, Mapping) and key in header_given:
             raise NotAllowed(f"campaign.{key}", code="sweep_with_distribution")
     _check_sections(data)
-    # The header is judged before what varies: that depends on the case.
+    # The header is checked first, because the rules of ``[[vary]]`` depend on the case that it names.
     found: Any = structure(FILES[command], {"vary": [{}], **data})
     header = found.campaign
     case = load_case(path.parent / header.case)
@@ -121,11 +121,11 @@ def plan_for(
 ) -> Plan:
     """Return the plan of a campaign without a file.
 
-    :param vary: what ``[[vary]]`` tables say, and how messages call each
+    :param vary: contents of ``[[vary]]`` tables, and the name of each in messages
     :param samples: of a Monte Carlo campaign; a sweep has its grid
-    :param seed: likewise
-    :param asked: outputs beside the outcomes of the kind
-    :raises StatejumpError: as of :func:`load_campaign`
+    :param seed: of a Monte Carlo campaign
+    :param asked: outputs besides the outcomes of the kind
+    :raises StatejumpError: as for :func:`load_campaign`
     """
     require(case, Outcomes)
     check_campaign(case, model, case.name)
@@ -147,9 +147,9 @@ def plan_for(
 
 
 def vary_tables(path: Path) -> list[tuple[str, Mapping[str, Any]]]:
-    """Return the ``[[vary]]`` tables of a file that has nothing else, as ``statejump identify`` writes it.
+    """Return the ``[[vary]]`` tables of a file that contains nothing else, as ``statejump identify`` writes it.
 
-    :raises StatejumpError: there is no such file, it has other sections or none
+    :raises StatejumpError: the file does not exist, has other sections, or has no such table
     """
     _, data = read_toml(path, "distributions")
     try:
@@ -174,10 +174,10 @@ def _check_sections(data: Mapping[str, Any], known: Sequence[str] = ("campaign",
 
 
 def check_campaign(case: Case, model: str, named: str, before: str = "") -> None:
-    """Raise NotAllowed unless campaigns run this kind of case in this model.
+    """Raise NotAllowed unless campaigns support this kind of case in this model.
 
-    :param named: how the caller calls the case
-    :param before: what stands before the keys of the case and of the model
+    :param named: name of the case for the caller
+    :param before: prefix of the keys of the case and of the model
     """
     behaviour = of(case)
     if not supports(behaviour, Outcomes):
@@ -189,16 +189,16 @@ def check_campaign(case: Case, model: str, named: str, before: str = "") -> None
 
 
 def check_workers(key: str, workers: int | None) -> None:
-    """Raise NotAllowed for a number of workers that is none."""
+    """Raise NotAllowed for an invalid number of workers."""
     if workers is not None and workers < 1:
         raise NotAllowed(key, workers, code="below_minimum", least=1)
 
 
 def vary_of(given: Iterable[tuple[str, Mapping[str, Any]]], case: Case, command: str) -> tuple[Varied, ...]:
-    """Return what varies.
+    """Return the varied parameters.
 
-    :param given: tables, and how messages call each
-    :raises StatejumpError: what is wrong with which table
+    :param given: tables, and the name of each in messages
+    :raises StatejumpError: a table is invalid
     """
     found: list[Varied] = []
     for item, table in given:
@@ -212,7 +212,7 @@ def vary_of(given: Iterable[tuple[str, Mapping[str, Any]]], case: Case, command:
 
 
 def points_of(vary: tuple[Varied, ...]) -> int:
-    """Return the number of points of a grid. :raises NotAllowed: there are too many"""
+    """Return the number of points of a grid. :raises NotAllowed: it is too large"""
     points = number_of_points([axis for axis in vary if isinstance(axis, Values)])
     if points > MOST_SAMPLES:
         raise NotAllowed("[[vary]]", code="grid_too_large", points=points, most_samples=MOST_SAMPLES)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Outputs of a campaign, held against a run of the case before the campaign begins."""
+"""Check of the outputs of a campaign on a run of the case, before the campaign begins."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -11,9 +11,9 @@ from statejump.core.errors import NotAllowed
 
 
 def checked(given: Sequence[str], case: Case) -> tuple[str, ...]:
-    """Return outputs after they were taken from one run of the reduced model of the case itself.
+    """Return the outputs, after computing them once for a run of the reduced model of the case itself.
 
-    :raises NotAllowed: what is wrong with one of them
+    :raises NotAllowed: one of them is invalid
     """
     names = tuple(given)
     for place, name in enumerate(names):

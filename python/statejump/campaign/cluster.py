@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Dask's ``distributed``: a cluster on this machine, or a scheduler that runs already."""
+"""Dask's ``distributed``: a cluster on this machine, or a running scheduler."""
 from __future__ import annotations
 
 import asyncio
@@ -15,16 +15,16 @@ from typing import Any
 
 import dask
 
-# Before distributed is imported: it and its workers take their log levels from here.
+# Set before distributed is imported, because it and its workers read their log levels from here.
 _QUIET = {
     "logging": {name: "critical" for name in ("distributed", "distributed.client", "bokeh", "tornado", "asyncio")},
     "distributed.comm.timeouts.connect": "5s",
     "distributed.scheduler.allowed-failures": 1,  # a task whose worker dies is tried once more
-    # A cluster on this machine would give up a worker whose process is not back by then, and start no other: its nanny
-    # starts it again however long that takes.
+    # By default a local cluster drops a worker whose process does not return in time, and starts no other. With this
+    # value its nanny restarts the worker however long that takes.
     "distributed.deploy.lost-worker-timeout": "365 days",
-    # Nobody looks at these: a profile of the workers, which stops the samples a hundred times per second, and how
-    # promptly their event loops answer.
+    # Unused diagnostics: a profile of the workers, which stops the samples a hundred times per second, and the response
+    # times of their event loops.
     "distributed.worker.profile.enabled": False,
     "distributed.admin.tick.interval": "1s",
 }
@@ -39,11 +39,11 @@ from statejump.core.scratch import scratch  # noqa: E402
 OPTION = "--scheduler"
 ADDRESS = "must be the address of a running dask scheduler, as 'tcp://host:8786'"
 CONNECT_S = 5
-WORKERS_S = 10  # how long a scheduler without workers is waited for
+WORKERS_S = 10  # longest wait for workers of a scheduler [s]
 
 
 class SchedulerUnusable(StatejumpError):
-    """A scheduler cannot be used: ``--scheduler = ADDRESS WHAT[: CAUSE]``."""
+    """A scheduler is unusable: ``--scheduler = ADDRESS WHAT[: CAUSE]``."""
 
     def __init__(self, address: str, **more: Any) -> None:
         super().__init__(key=OPTION, value=address, **more)
@@ -54,11 +54,11 @@ class SchedulerUnusable(StatejumpError):
 
 @contextmanager
 def open_client(scheduler: str | None, workers: int) -> Iterator[Client]:
-    """Yield a client; at the end everything that was started here is ended.
+    """Yield a client. On exit, everything that this function started is ended.
 
-    :param scheduler: address of a scheduler that runs already; None: a cluster on this machine
-    :param workers: processes of one thread each of the cluster on this machine
-    :raises StatejumpError: the scheduler cannot be reached, has no workers or other ones
+    :param scheduler: address of a running scheduler; None: a cluster on this machine
+    :param workers: number of single-threaded processes of the cluster on this machine
+    :raises StatejumpError: the scheduler cannot be reached, has no workers, or workers of another version
     """
     with ExitStack() as stack:
         stack.enter_context(_quiet())
@@ -71,7 +71,7 @@ def open_client(scheduler: str | None, workers: int) -> Iterator[Client]:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Lost connections are told in our own words."""
+    """Silence Dask's messages about lost connections, because the campaign reports them itself."""
     loggers = [logging.getLogger(name) for name in ("distributed", "tornado", "asyncio", "concurrent.futures")]
     levels = [logger.level for logger in loggers]
     for logger in loggers:
@@ -102,14 +102,14 @@ def _local(workers: int) -> Iterator[Client]:
 
 
 def restarts_workers(client: Client) -> bool:
-    """Is a worker whose process ended being started again by a cluster of our own?"""
+    """Return whether a local cluster is restarting a worker whose process ended."""
     nannies = client.cluster.workers.values() if client.cluster is not None else ()
     over = (Status.closing, Status.closed, Status.closing_gracefully, Status.failed)
     return any(nanny.status not in over for nanny in nannies)
 
 
 def kill_workers(cluster: LocalCluster) -> None:
-    """End the workers at once, also in the middle of a run."""
+    """End the workers at once, even during a run."""
     for nanny in list(cluster.workers.values()):
         process = None if nanny.process is None else nanny.process.process
         nanny.auto_restart = False
@@ -128,7 +128,7 @@ def _close(cluster: LocalCluster) -> None:
 
 @contextmanager
 def _interrupt_blocked() -> Iterator[None]:
-    """Threads and processes started within never see Ctrl-C: only this thread ends the campaign."""
+    """Block Ctrl-C for threads and processes started within, so that only this thread ends the campaign."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
@@ -138,7 +138,7 @@ def _interrupt_blocked() -> Iterator[None]:
 
 @contextmanager
 def _no_main_file() -> Iterator[None]:
-    """Hide the script that runs from new processes, which would run it again."""
+    """Hide the running script from new processes, which would run it again."""
     main = sys.modules["__main__"]
     hidden = {name: main.__dict__.pop(name) for name in ("__file__", "__spec__") if name in main.__dict__}
     main.__dict__["__spec__"] = None
@@ -155,7 +155,7 @@ def _existing(address: str) -> Iterator[Client]:
         raise NotAllowed(OPTION, address, ADDRESS, code="scheduler_address")
     _check_security(address)
     try:
-        # Whether anybody listens, before Dask begins to try again and again.
+        # Check the connection before Dask begins to retry.
         socket.create_connection((found[1].strip("[]"), int(found[2])), timeout=CONNECT_S).close()
         client = Client(address, timeout=CONNECT_S, set_as_default=False)
     except (OSError, ValueError, asyncio.TimeoutError):
@@ -167,7 +167,7 @@ def _existing(address: str) -> Iterator[Client]:
             raise SchedulerUnusable(address, code="scheduler_without_workers", workers_s=WORKERS_S) from None
         try:
             versions = client.run(_version)
-        except Exception as problem:  # the package is missing there, or is another one
+        except Exception as problem:  # the package is missing there, or is another version
             raise SchedulerUnusable(address, code="scheduler_without_statejump",
                                     cause=f"{type(problem).__name__}: {problem}", here=__version__) from None
         for worker, version in versions.items():
@@ -180,9 +180,9 @@ def _existing(address: str) -> Iterator[Client]:
 
 
 def _check_security(address: str) -> None:
-    """Raise SchedulerUnusable where Dask's configuration asks for encryption that the address has not, or has no
-    certificates for TLS that can be read."""
-    from distributed.security import Security  # of addresses tls:// only
+    """Raise SchedulerUnusable if Dask's configuration requires encryption that the address lacks, or has no readable
+    certificates for TLS."""
+    from distributed.security import Security  # loaded only for addresses tls://
 
     security = Security()
     if not address.startswith("tls://"):

@@ -17,10 +17,10 @@ from statejump.core.errors import StatejumpError
 
 from distributed import Client, Future, KilledWorker, wait  # noqa: E402, after cluster set it up
 
-QUEUED = 2  # tasks per worker, so that none waits for the next
-LOOK_S = 5.0  # how often workers are counted while none of them has finished a task
-NO_WORKERS_S = 60.0  # how long a cluster whose workers are all gone is waited for
-RESTART_S = 900.0  # the same where they are being started again here: on a busy machine that takes more than a minute
+QUEUED = 2  # tasks per worker, so that no worker waits for the next one
+LOOK_S = 5.0  # interval [s] at which workers are counted while no task finishes
+NO_WORKERS_S = 60.0  # longest wait [s] for a cluster without workers
+RESTART_S = 900.0  # the same for a local cluster that restarts them, which takes over a minute on a busy machine
 KEPT = "finished samples are kept, the same command goes on with the others"
 
 
@@ -28,8 +28,8 @@ KEPT = "finished samples are kept, the same command goes on with the others"
 class Workers:
     """A cluster that is ready.
 
-    :param count: samples that it runs at the same time
-    :param run: yields finished batches of the samples with these numbers, and the seconds that each took
+    :param count: number of samples that it runs at the same time
+    :param run: yields finished batches of the samples with the given numbers, and the seconds that each took
     """
 
     count: int
@@ -38,10 +38,10 @@ class Workers:
 
 @contextmanager
 def workers_for(recipe: Recipe, scheduler: str | None, workers: int) -> Iterator[Workers]:
-    """Yield a cluster for a campaign; at the end everything that was started here is ended.
+    """Yield a cluster for a campaign. On exit, everything that this function started is ended.
 
-    :param scheduler: address of a scheduler that runs already; None: a cluster on this machine
-    :param workers: processes of that cluster
+    :param scheduler: address of a running scheduler; None: a cluster on this machine
+    :param workers: number of processes of that cluster
     """
     with open_client(scheduler, workers) as client:
         yield Workers(_slots(client), lambda missing: _finished(client, recipe, missing))
@@ -55,8 +55,8 @@ def _slots(client: Client) -> int:
 def _finished(
     client: Client, recipe: Recipe, missing: list[int]
 ) -> Iterator[tuple[float, Batch]]:
-    """Yield finished batches. Samples whose worker died go one by one, each alone, at the end: only a
-    sample that kills its worker also then is to blame."""
+    """Yield finished batches. Samples whose worker died are repeated at the end, each alone. A sample that kills its
+    worker again is the cause."""
     batches = Batches(missing, recipe.model, QUEUED)
     running: set[Future] = set()
     asked: dict[str, list[int]] = {}
@@ -95,8 +95,8 @@ Given = TypeVar("Given")
 
 
 def _patiently(client: Client, ask: Callable[[], Given]) -> Given:
-    """Ask until there is an answer; TimeoutError means not yet. :raises StatejumpError: the cluster is gone, or
-    all its workers have been for too long"""
+    """Wait for a result. TimeoutError: not yet. :raises StatejumpError: the cluster is gone, or has been without
+    workers for too long"""
     alone_since: float | None = None
     while True:
         try:
@@ -119,8 +119,8 @@ def _some_of(client: Client, running: set[Future]) -> set[Future]:
 
 
 def _answer(client: Client, future: Future) -> tuple[float, Batch] | None:
-    """Result of a batch; None: its worker died. A result is lost with the worker that has it, and is then
-    computed again. :raises StatejumpError: see :func:`_patiently`"""
+    """Result of a batch; None: its worker died. A result is lost with its worker, and is then computed again. :raises
+    StatejumpError: see :func:`_patiently`"""
     try:
         return _patiently(client, lambda: future.result(timeout=LOOK_S))
     except KilledWorker:

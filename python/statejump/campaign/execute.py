@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Running the samples of a campaign that are still missing: in this process while they are few, else on a Dask
-cluster. A sample depends on the seed and its number alone, so that the table is the same."""
+"""Runs the missing samples of a campaign: a few in this process, many on a Dask cluster. A sample depends on the seed
+and its number alone, so the table is the same."""
 from __future__ import annotations
 
 import os
@@ -13,9 +13,9 @@ from statejump.campaign.plan import Plan
 from statejump.campaign.work import Batch, run_samples
 from statejump.core.progress import Tell
 
-# How long samples are run in this process, before workers are started for the others: about what starting them takes.
+# Time for which samples are run in this process before workers are started: about the start time of workers.
 HERE_S = 2.0
-# Samples that were run before the time of the others is foreseen: the first is no measure.
+# Number of samples before the time of the others is estimated, because the first is not representative.
 FORESEEN_FROM = 3
 
 
@@ -26,11 +26,11 @@ class Statistics:
     already_there: int
     run_now: int = 0
     workers: int = 0
-    wall_time_s: float = 0.0  # of the samples and of starting the cluster
-    start_time_s: float = 0.0  # of it, until the cluster was ready
+    wall_time_s: float = 0.0  # samples and start of the cluster
+    start_time_s: float = 0.0  # part of it before the cluster was ready
     worker_time_s: float = 0.0  # sum over all tasks
     batch_sizes: list[int] = field(default_factory=list)
-    note: str = ""  # of the journal
+    note: str = ""  # note of the journal
 
     @property
     def samples_per_second(self) -> float:
@@ -54,14 +54,14 @@ class _Account:
 
 
 def run_missing(campaign: Plan, kept: Kept, scheduler: str | None, workers: int | None, tell: Tell) -> Statistics:
-    """Run what is missing; every finished batch is kept before the next is counted.
+    """Run the missing samples. Every finished batch is stored before the next is counted.
 
-    :param kept: what is there already, and gets what is finished
+    :param kept: the stored samples; receives finished ones
     :param scheduler: address of a running scheduler; None: a cluster on this machine
-    :param workers: processes of that cluster; None: one per core, and of the reduced model none for what
-        takes this process about as long as starting them
+    :param workers: number of processes of that cluster; None: one per core, or none for a reduced model that takes this
+        process about as long as starting them
     :param tell: called with the finished fraction of all samples
-    :raises StatejumpError: no cluster; what is finished is kept
+    :raises StatejumpError: no cluster; finished samples are stored
     """
     missing = [index for index in range(campaign.samples) if index not in kept.finished]
     done = Statistics(already_there=campaign.samples - len(missing))
@@ -77,8 +77,8 @@ def run_missing(campaign: Plan, kept: Kept, scheduler: str | None, workers: int 
 
 
 def _here(campaign: Plan, missing: list[int], account: _Account) -> list[int]:
-    """Run samples in this process and return those that are left when its time is up, or when workers are foreseen to
-    have them done sooner, with the time to start them."""
+    """Run samples in this process. Return the remaining ones when the time is up, or when workers, with their start
+    time, would finish them sooner."""
     batches, started, done = Batches(missing, campaign.model, 1), time.perf_counter(), account.done
     cores = len(os.sched_getaffinity(0))
     done.workers = 1

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finished samples on disk, batch by batch, so that a killed campaign goes on where it was.
+"""Journal of finished samples on disk, written batch by batch, so that a killed campaign can continue.
 
-Lines, each a checksum (SHA-256), a blank and JSON: first format, version and the campaign's key and columns, then one
-line per batch, written at once and synced; values are packed (base64 of little-endian doubles, row by row). A last line
-that was torn is cut off, and its samples are run again; a damaged line before it is refused. Whoever opens a journal
-holds its folder, see :mod:`statejump.core.results_folder`.
+Each line has a checksum (SHA-256), a blank and JSON. The first line has format, version, key and columns of the
+campaign. Every other line has one batch, written at once and synced. Values are packed: base64 of little-endian
+doubles, row by row. A torn last line is removed, and its samples are run again. A damaged line before it is an error.
+Only the owner of the folder opens a journal, see :mod:`statejump.core.results_folder`.
 """
 from __future__ import annotations
 
@@ -41,10 +41,10 @@ class Kept:
 
 
 class Journal(Kept):
-    """The journal of one campaign; a context manager. ``note``: what was cut off, "" for nothing."""
+    """The journal of one campaign; a context manager. ``note`` describes a removed line, "" without one."""
 
     def __init__(self, folder: Path, campaign: Plan, restart: bool) -> None:
-        """Open or begin it. :raises StatejumpError: it belongs to another campaign, or is damaged"""
+        """Open or create it. :raises StatejumpError: it belongs to another campaign, or is damaged"""
         super().__init__()
         self.path, self.note = folder / NAME, ""
         self._columns = len(campaign.outcomes)
@@ -78,7 +78,7 @@ class Journal(Kept):
                 raise self._damaged(place) from None
 
     def _entries(self) -> list[Any]:
-        """Return what all lines say; a torn end is cut off."""
+        """Return the contents of all lines; remove a torn last line."""
         self._stream.seek(0)
         lines = self._stream.read().splitlines(keepends=True)
         entries, length = [], 0
@@ -105,7 +105,7 @@ class Journal(Kept):
             raise NotWritten(code="write_failed", file=self.path, cause=failure.strerror) from None
 
     def add(self, batch: Batch) -> None:
-        """Keep finished samples; on return they are on disk."""
+        """Store finished samples; on return they are on disk."""
         self._append(_entry(batch))
         super().add(batch)
 
@@ -122,7 +122,7 @@ def _line(entry: Any) -> bytes:
 
 
 def _entry_of(line: bytes) -> Any:
-    """Return what a line says. :raises ValueError: it is torn or altered"""
+    """Return the content of a line. :raises ValueError: it is torn or altered"""
     digest, _, text = line.removesuffix(b"\n").partition(b" ")
     if not line.endswith(b"\n") or digest != hashlib.sha256(text).hexdigest().encode():
         raise ValueError

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Outputs that a campaign records besides the outcomes of its kind of case: any column of a run, at named items.
 
-``HOW:COLUMN[ITEM].AXIS``, as ``jump:displacement_m[P].x`` or ``max:links.axial_force_N[L3]``. Columns are those of the
-CSV files, of links and contacts with that word before; a vector without axis counts by its length. Columns of a
-reflecting surface, as ``max:surface.pointing_error_rad``, are those of :func:`statejump.surface.history`. ``repeat`` is
-of the times at which the temperature is back where it began: the largest distance of a later one from the first.
+An output is ``HOW:COLUMN[ITEM].AXIS``, for example ``jump:displacement_m[P].x`` or ``max:links.axial_force_N[L3]``.
+Columns are those of the CSV files. Columns of links and contacts begin with ``links.`` or ``contacts.``. A vector
+without axis counts by its length. Columns of a reflecting surface, for example ``max:surface.pointing_error_rad``, are
+those of :func:`statejump.surface.history`. ``repeat`` is the largest distance of a later return from the first. Returns
+are times at which the temperature is back at its first value.
 """
 from __future__ import annotations
 
@@ -22,7 +23,7 @@ from statejump.core.units import split_unit, unit_of
 _HISTORY = Later("statejump.surface:history")
 FORM = re.compile(r"(?P<how>\w+):(?:(?P<group>links|contacts|surface)\.)?(?P<column>\w+)(?:\[(?P<item>.*)\])?"
                   r"(?:\.(?P<axis>\w+))?")
-# Of a column over time; which of them need every sample of a run, not only its ends.
+# Functions of a column over time. ENDS need only the ends of a run, the others every sample.
 ENDS: dict[str, Callable[[np.ndarray], np.ndarray]] = {"end": lambda values: values[-1],
                                                        "jump": lambda values: values[-1] - values[0]}
 ALL: dict[str, Callable[[np.ndarray], np.ndarray]] = {
@@ -35,7 +36,7 @@ HOW: dict[str, Callable[[np.ndarray], np.ndarray]] = {
 WORDS = {"end": "{} at the end", "jump": "jump of {}", "max": "largest {}", "min": "smallest {}",
          "range": "range of {}", REPEAT: "repeatability of {} from cycle to cycle"}
 SURFACE = "surface"
-# For editors, which know no names of groups.
+# For editors, which do not support names of groups.
 PATTERN = re.sub(r"\?P<\w+>", "", FORM.pattern)
 LIKE = "must be HOW:COLUMN[ITEM].AXIS, as 'jump:displacement_m[P].x'"
 
@@ -61,7 +62,7 @@ def unit(name: str) -> str:
 
 
 def in_words(name: str) -> str | None:
-    """Return an output in words, without unit; None: the name is that of an outcome."""
+    """Return an output in words, without unit; None if the name is that of an outcome."""
     found = FORM.fullmatch(name)
     if found is None:
         return None
@@ -72,9 +73,9 @@ def in_words(name: str) -> str | None:
 
 
 def values(names: Sequence[str], run: Run) -> dict[str, float]:
-    """Return outputs of a run.
+    """Return the outputs of a run.
 
-    :raises NotAllowed: the run has no such column, item or axis; a near one is told
+    :raises NotAllowed: the run has no such column, item or axis; the message suggests a similar name
     """
     columns: dict[tuple[str | None, bool], dict[str, Column]] = {}
     found = {}
@@ -94,7 +95,7 @@ def values(names: Sequence[str], run: Run) -> dict[str, float]:
 
 
 def _returned(run: Run, name: str) -> Run:
-    """Return the run at the times at which the temperature is back where it began."""
+    """Return the run at the times at which the temperature is back at its first value."""
     times = run.definition.returns_s()
     if len(times) < 2:
         raise NotAllowed("outputs", name, code="output_without_jump", times=len(times))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a campaign runs: a case, which of its keys vary and how, in which model."""
+"""The plan of a campaign: a case, its varied keys with their distributions or values, and the model."""
 from __future__ import annotations
 
 import hashlib
@@ -23,16 +23,16 @@ MOST_SAMPLES = 10_000_000
 
 @dataclass(frozen=True, kw_only=True)
 class Recipe:
-    """What a worker needs to run samples.
+    """The data with which a worker runs samples.
 
     :param command: ``montecarlo`` or ``sweep``
     :param model: ``reduced`` or ``dem``
-    :param case_data: the case as in its file, without what it leaves out
-    :param vary: what varies
+    :param case_data: the case as in its file, without defaults
+    :param vary: varied parameters
     :param seed: of the random numbers; None in a sweep
-    :param outcomes: names of what is recorded of a run, in the order of the table; outputs last
-    :param outputs: those of them that the campaign asks for, see :mod:`statejump.campaign.outputs`
-    :param kinds: where the kinds are that are not the project's own
+    :param outcomes: names of the recorded values of a run, in the order of the table; outputs last
+    :param outputs: the further outputs among them, see :mod:`statejump.campaign.outputs`
+    :param kinds: modules of kinds outside the project
     """
 
     command: str
@@ -74,8 +74,8 @@ class Plan(Recipe):
     :param name: of the campaign and of its results folder
     :param title: one line for figures
     :param case: the case without variation
-    :param samples: how many there are
-    :param file: the campaign file; None: it was made in Python
+    :param samples: number of samples
+    :param file: the campaign file; None: the campaign was made in Python
     :param text: the file as read
     """
 
@@ -88,7 +88,7 @@ class Plan(Recipe):
 
     @property
     def recipe(self) -> Recipe:
-        """What travels to the workers; the case itself does not."""
+        """The part of the plan that is sent to the workers; the case object is not part of it."""
         return Recipe(**{item.name: getattr(self, item.name) for item in fields(Recipe)})
 
     @property
@@ -102,8 +102,8 @@ class Plan(Recipe):
 
     @property
     def key(self) -> str:
-        """SHA-256 of all that a sample depends on. Name, title and number of samples are not in it:
-        a campaign may be extended."""
+        """SHA-256 of everything that a sample depends on. It excludes name, title and number of samples, so that a
+        campaign may be extended."""
         resolved = {
             "version": __version__, "command": self.command, "model": self.model, "seed": self.seed,
             "case": self.case.with_defaults(), "vary": [asdict(parameter) for parameter in self.vary],

@@ -23,7 +23,7 @@ MOST_WHOLE = 60
 
 
 def figures(campaign: Plan, table: Table) -> dict[str, Figure]:
-    """Return the figures by the names of their files; none if every sample failed."""
+    """Return the figures by file name; empty if every sample failed."""
     if bool(np.all(table.failed)):
         return {}
     with style():
@@ -39,7 +39,7 @@ def _label(name: str, unit: str) -> str:
         return output + ("" if unit == "-" else f" [{unit}]")
     section, _, key = split_unit(name)[0].rpartition(".")
     words = key.replace("_", " ").replace("temperature change", "ΔT")
-    # Of every item: of a Monte Carlo campaign the mean of their values.
+    # For a parameter of every item, the column has the mean of the values.
     every = "every " if section.endswith(".*") else ""
     section = section.removesuffix(".*").replace("_", " ")
     return words + (f" of {every}{section}" if section else "") + ("" if unit == "-" else f" [{unit}]")
@@ -98,7 +98,7 @@ def _bins(there: np.ndarray) -> np.ndarray:
     if high - low <= 1e-12 * max(abs(low), abs(high)):  # one value
         half = 0.5 * abs(low) or 0.5
         low, high = low - half, high + half
-    elif high - low <= MOST_WHOLE and bool(np.all(there == np.round(there))):  # counts: a bar each
+    elif high - low <= MOST_WHOLE and bool(np.all(there == np.round(there))):  # integers: one bar each
         return np.arange(low - 0.5, high + 1.0)
     return np.linspace(low, high, count + 1)
 
@@ -112,8 +112,8 @@ def _scatter(campaign: Plan, table: Table) -> Figure:
         there = np.isfinite(values)
         for column, (parameter, varied) in enumerate(table.parameters.items()):
             panel = panels[row, column]
-            shown = np.flatnonzero(there)[:MOST_POINTS]  # samples are independent: the first are as good
-            thin = float(np.clip(100 / max(1, len(shown)), 0.0, 1.0))  # few points: large and opaque
+            shown = np.flatnonzero(there)[:MOST_POINTS]  # samples are independent, so the first ones are representative
+            thin = float(np.clip(100 / max(1, len(shown)), 0.0, 1.0))  # few points are large and opaque
             panel.plot(varied[shown], values[shown], ".", color=BLUE, markersize=2.5 + 4.5 * thin,
                        alpha=0.35 + 0.5 * thin, markeredgewidth=0, rasterized=True)
             rank = spearman(varied, values)
@@ -155,7 +155,7 @@ def _sweep(campaign: Plan, table: Table) -> Figure:
                 f"{parameter.keys[0]} = {value:g}" for parameter, value in zip(others, combination)
             )
             colour = LINES[number] if few else colormaps["viridis"](number / (len(combinations) - 1))
-            # Lines that cover each other stay visible: the later the thinner.
+            # Lines that cover each other remain visible, because later ones are thinner.
             width = 1.2 + (1.3 * (len(combinations) - 1 - number) if few else 0.0)
             panel.plot(along[here][order], values[here][order], "o-", color=colour, markersize=1.8 + width,
                        linewidth=width, label=text or None)

@@ -32,11 +32,11 @@ _TABLE = Later("statejump.core.html:table")
 
 @dataclass(frozen=True)
 class Campaign:
-    """A case that was run many times.
+    """A finished campaign.
 
-    :param plan: what was run
+    :param plan: the plan
     :param table: varied keys and outcomes of every sample
-    :param done: how it was run: workers, seconds
+    :param done: workers and seconds of the run
     """
 
     plan: Plan
@@ -57,8 +57,8 @@ class Campaign:
         return self.plan.samples
 
     def frame(self) -> pandas.DataFrame:
-        """Return a row per sample: varied keys, outcomes with their units in the names, and ``error``, why a sample
-        failed. NaN: it did not happen, or the sample failed."""
+        """Return one row per sample: varied keys, outcomes with units in their names, and ``error``, the reason of a
+        failure. NaN: the event did not happen, or the sample failed."""
         return self.table.frame()
 
     @cached_property
@@ -67,7 +67,7 @@ class Campaign:
 
     def summary(self) -> dict[str, Any]:
         """Return mean, standard deviation, quantiles and extremes of every outcome and every varied key, rank
-        correlations, and failures by their kind."""
+        correlations, and the number of failures of each kind."""
         return self._summary
 
     @property
@@ -89,7 +89,7 @@ class Campaign:
         return found[name or next(iter(found))]
 
     def told(self) -> list[Shown | str]:
-        """Return what a command prints of it, tables and lines."""
+        """Return the tables and lines that a command prints."""
         found, done = self.summary(), self.done
         rows = [(name, *(shown(entry[key]) for key in COLUMNS)) for name, entry in found["outcomes"].items()]
         lines: list[Shown | str] = [
@@ -110,7 +110,7 @@ class Campaign:
         return lines + [f"failed: {entry['samples']:,} sample(s): {entry['sentence']}" for entry in found["failures"]]
 
     def write(self, folder: Path) -> list[Path]:
-        """Write tables, summary, figures and how the last run went; return the paths of the results."""
+        """Write tables, summary, figures and data about the last run; return the paths of the results."""
         csv, hdf5 = folder / "samples.csv", folder / "samples.h5"
         write_csv(self.table, csv)
         write_hdf5(self.plan, self.table, hdf5)
@@ -121,7 +121,7 @@ class Campaign:
         return written
 
     def _write_run(self, folder: Path) -> None:
-        """How the last run went; not part of the result, which does not depend on it."""
+        """Write how the last run went. This is separate from the result, which does not depend on it."""
         done = self.done
         write_json(folder / "run.json", {
             "samples_already_there": done.already_there, "samples_run": done.run_now, "workers": done.workers,
@@ -155,9 +155,9 @@ def run(plan: Plan, workers: int | None, tell: Tell) -> Campaign:
 def run_in(
     plan: Plan, folder: Path, scheduler: str | None, workers: int | None, restart: bool, tell: Tell
 ) -> Campaign:
-    """Run what the journal in a folder lacks.
+    """Run the samples that the journal in a folder lacks.
 
-    :raises Interrupted: Ctrl-C; finished samples are kept
+    :raises Interrupted: Ctrl-C; finished samples are stored
     """
     _check_yade(plan, scheduler)
     with Journal(folder, plan, restart) as kept:
@@ -172,6 +172,6 @@ def run_in(
 
 
 def _check_yade(plan: Plan, scheduler: str | None) -> None:
-    """Raise FailedRun where the DEM is to run on this machine without YADE: before workers are started."""
+    """Raise FailedRun, before workers start, if the DEM is to run on this machine without YADE."""
     if plan.model == "dem" and scheduler is None:
         find_yade()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a campaign varies, and the values of sample ``i``: they depend on the seed and ``i`` alone."""
+"""Varied parameters, and their values in sample ``i``, which depend on the seed and ``i`` alone."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -14,10 +14,10 @@ DISTRIBUTIONS = ("normal", "truncated_normal", "lognormal", "uniform")
 
 @dataclass(frozen=True)
 class Distribution:
-    """A parameter as a random variable. ``mean`` and ``standard_deviation`` are those of the
-    parameter itself, of the normal variable before it is truncated."""
+    """A parameter as a random variable. ``mean`` and ``standard_deviation`` are those of the parameter itself; for a
+    truncated normal variable, those before truncation."""
 
-    keys: tuple[str, ...]  # as section.key; all of them get the same value
+    keys: tuple[str, ...]  # paths section.key; all get the same value
     distribution: str
     mean: float = 0.0
     standard_deviation: float = 0.0
@@ -25,7 +25,7 @@ class Distribution:
     high: float = inf
 
     def draw(self, generator: np.random.Generator) -> float:
-        """Return one value; takes exactly one variate from the generator."""
+        """Return one value; uses exactly one variate of the generator."""
         if self.distribution == "uniform":
             return float(self.low + (self.high - self.low) * generator.random())
         if self.distribution == "truncated_normal":
@@ -37,8 +37,8 @@ class Distribution:
         return float(exp(log(self.mean) - 0.5 * spread**2 + spread * variate))
 
     def probabilities(self) -> tuple[float, float, float]:
-        """Cumulated probability of both limits, and the sign with which they are on the side on
-        which small probabilities keep their digits."""
+        """Cumulative probabilities of both limits, and a sign. The sign selects the tail in which small probabilities
+        keep their digits."""
         ends = [(end - self.mean) / self.standard_deviation for end in (self.low, self.high)]
         sign = -1.0 if ends[0] > 0 else 1.0
         low, high = sorted(float(ndtr(sign * end)) for end in ends)
@@ -52,14 +52,14 @@ class Distribution:
 
 @dataclass(frozen=True)
 class Independent:
-    """A parameter of every item of a list, ``slider.*.friction_coefficient``: one draw per item, of items
-    of one kind as manufacture makes them. Its column holds the mean over the items."""
+    """A parameter of every item of a list, ``slider.*.friction_coefficient``: one independent draw per item, as in
+    manufacture. Its column has the mean over the items."""
 
     keys: tuple[str, ...]
     items: tuple[Distribution, ...]  # keys with the item's name
 
     def draws(self, generator: np.random.Generator) -> list[float]:
-        """Return one value per item; takes as many variates from the generator, in the items' order."""
+        """Return one value per item; uses as many variates of the generator, in the order of the items."""
         return [item.draw(generator) for item in self.items]
 
 
@@ -96,7 +96,7 @@ def montecarlo_draws(
 
 
 def montecarlo_values(vary: Sequence[Random], seed: int, index: int) -> list[float]:
-    """Values of sample ``index``, one per varied parameter: of an independent one the mean of its items."""
+    """Values of sample ``index``, one per varied parameter; an independent one gives the mean of its items."""
     draws = iter(montecarlo_draws(vary, seed, index))
     found = []
     for parameter in vary:
@@ -106,7 +106,7 @@ def montecarlo_values(vary: Sequence[Random], seed: int, index: int) -> list[flo
 
 
 def sweep_values(vary: Sequence[Values], index: int) -> list[float]:
-    """Values of point ``index`` of the grid; the last list runs fastest."""
+    """Values of point ``index`` of the grid; the last list varies fastest."""
     found: list[float] = []
     for axis in reversed(vary):
         index, place = divmod(index, len(axis.values))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Statistics of a campaign: every outcome, what it follows, and what failed."""
+"""Statistics of a campaign: outcomes, correlations, failures."""
 from __future__ import annotations
 
 from collections import Counter
@@ -19,7 +19,7 @@ QUANTILES = (0.05, 0.5, 0.95, 0.99)
 
 
 def statistics(values: np.ndarray) -> dict[str, float | None]:
-    """Mean, standard deviation, quantiles and extremes of the values that are there; the samples of the extremes."""
+    """Mean, standard deviation, quantiles and extremes of the existing values, and the samples of the extremes."""
     is_there = np.isfinite(values)
     there = values[is_there]
     places = np.flatnonzero(is_there)
@@ -37,7 +37,7 @@ def statistics(values: np.ndarray) -> dict[str, float | None]:
 
 
 def spearman(parameter: np.ndarray, outcome: np.ndarray) -> float | None:
-    """Rank correlation over the samples that have the outcome; None: one of the two is constant."""
+    """Rank correlation over the samples that have the outcome; None if one of the two is constant."""
     from scipy.stats import rankdata  # 0.5 s; workers do without
 
     there = np.isfinite(outcome)

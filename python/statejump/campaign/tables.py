@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""All samples as one table: CSV and HDF5, the same bytes however the campaign was run."""
+"""All samples as one table, in CSV and HDF5. The bytes do not depend on how the campaign was run."""
 from __future__ import annotations
 
 import json
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Table:
-    """Columns over the samples; outcomes of a failed sample are NaN and ``error`` says why.
+    """Columns over the samples. Outcomes of a failed sample are NaN, and ``error`` has the reason.
 
     :param parameters: values by varied key
     :param outcomes: values by outcome
-    :param error: sentences, "" of a sample that did not fail
-    :param error_kind: the same without what differs between failures of one kind
+    :param error: sentences, "" if the sample did not fail
+    :param error_kind: the sentences without the parts that differ between failures of one kind
     """
 
     parameters: dict[str, np.ndarray]
@@ -53,7 +53,7 @@ class Table:
 
 
 def make_table(campaign: Plan, batches: Iterable[Batch]) -> Table:
-    """Gather all samples, in their order; batches may hold more than the campaign asks for."""
+    """Collect all samples in their order; batches may contain more than the campaign needs."""
     parameters = np.array([campaign.values(index) for index in range(campaign.samples)], dtype=float)
     outcomes = np.full((campaign.samples, len(campaign.units)), np.nan)
     errors, kinds = [""] * campaign.samples, [""] * campaign.samples
@@ -75,7 +75,7 @@ def write_csv(table: Table, path: Path) -> None:
     """Write one line per sample, full precision; outcomes of a failed sample are empty."""
     columns = [values.tolist() for values in (*table.parameters.values(), *table.outcomes.values())]
     count = len(table.parameters)
-    # Cells as texts: NaN of a sample that did not fail is a value, it did not happen.
+    # Cells as texts. NaN of a sample that did not fail is a value: the event did not happen.
     rows = (
         [index, *map(repr, row[:count]), *("" if error else repr(value) for value in row[count:]), error]
         for index, (error, *row) in enumerate(zip(table.error, *columns))

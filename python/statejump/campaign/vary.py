@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a ``[[vary]]`` table may hold, and what it means for a case: most of its keys depend on each other.
+"""Fields of a ``[[vary]]`` table, and their meaning for a case. Most fields depend on each other.
 
-Failures name the key of the table; which table it is says the caller.
+Failures name the key within the table; the caller adds the table.
 """
 from __future__ import annotations
 
@@ -31,12 +31,13 @@ LIKE = "must be section.key as in the case file"
 
 
 def numbers_of(model: type[Case]) -> dict[str, Any]:
-    """Return every key of a kind of case that holds one number, of items of a list as ``section.*.key``."""
+    """Return every key of a kind of case with a single number as value; keys of items of a list as
+    ``section.*.key``."""
     return {path: key for path, key in keys_of(model).items() if rule_of(key).form in (NUMBER, WHOLE)}
 
 
 def _expression() -> str:
-    """Regular expression of the keys that can vary, for editors."""
+    """Regular expression of the keys that can vary, for the completion of editors."""
     paths = sorted({path for name in names_of_kinds_with(Outcomes) for path in numbers_of(kind(name).Case)})
     return "(?:" + "|".join(re.escape(path).replace(r"\*", ".+") for path in paths) + ")"
 
@@ -79,10 +80,10 @@ TABLES: dict[str, type[Section]] = {MONTECARLO: MonteCarloVary, SWEEP: SweepVary
 
 
 def varied(table: Mapping[str, Any], case: Case, command: str) -> Varied:
-    """Return what a table means.
+    """Return the varied parameter of a table.
 
     :param command: ``montecarlo`` or ``sweep``
-    :raises StatejumpError: what is wrong with the table, by the name of its key
+    :raises StatejumpError: the table is invalid; the failure names its key
     """
     known = list(fields_of(TABLES[command]))
     other = SWEEP if command == MONTECARLO else MONTECARLO
@@ -114,7 +115,7 @@ def varied(table: Mapping[str, Any], case: Case, command: str) -> Varied:
 
 
 def check_apart(found: list[Varied], case: Case) -> None:
-    """Raise NotAllowed if the last of the varied parameters has a key in common with itself or another."""
+    """Raise NotAllowed if the last varied parameter shares a key with itself or with another one."""
     taken = [key for parameter in found[:-1] for key in parameter.keys]
     for key in found[-1].keys:
         if any(_overlap(key, other, case) for other in taken) or found[-1].keys.count(key) > 1:
@@ -122,7 +123,7 @@ def check_apart(found: list[Varied], case: Case) -> None:
 
 
 def _overlap(one: str, other: str, case: Case) -> bool:
-    """Whether two paths have a number of the case in common."""
+    """Return whether two paths share a number of the case."""
     if pattern_of(one) != pattern_of(other):
         return False
     if one == other:
@@ -132,12 +133,12 @@ def _overlap(one: str, other: str, case: Case) -> bool:
 
 
 def _items(case: Case, path: str) -> list[str]:
-    """Names of the items of the list that a path begins with."""
+    """Names of the items of the list at the beginning of a path."""
     return [item.name for item in case.value_named(split_path(path)[0])]
 
 
 def _own_value(case: Case, path: str) -> float | None:
-    """What the case itself says, of a pattern if its items agree; None: nothing."""
+    """The value in the case itself; of a pattern, if its items agree; else None."""
     section, item, key = split_path(path)
     if not item:
         found: float | None = getattr(case.value_named(section), key)
@@ -173,7 +174,7 @@ def _meant(word: str, known: list[str]) -> str | None:
 
 
 def _number(table: Mapping[str, Any], name: str, *, above: float | None = None) -> float | None:
-    """Return a finite number of a table; None: it is not there."""
+    """Return a finite number of a table; None if it is missing."""
     if name not in table:
         return None
     value = table[name]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a worker does: run some samples. Every sample ends as outcomes or as a sentence."""
+"""The work of a worker: it runs some samples. Every sample ends with outcomes or with a sentence."""
 from __future__ import annotations
 
 import time
@@ -22,7 +22,7 @@ from statejump.kinds.protocol import DemModel, QuickModel, ReducedModel
 
 @dataclass(frozen=True)
 class Sample:
-    """A finished sample: either values or an error, and of which kind the error is."""
+    """A finished sample: either values, or an error and its kind."""
 
     index: int
     values: tuple[float, ...] | None
@@ -31,7 +31,7 @@ class Sample:
 
 
 def sampled(case: Case, model: str, outputs: Sequence[str]) -> Run:
-    """Run one sampled case, with all samples in time only where an output needs them.
+    """Run one sampled case. All samples in time are kept only if an output needs them.
 
     :raises StatejumpError: the run failed
     """
@@ -50,19 +50,19 @@ def outcome(case: Case, model: str, outputs: Sequence[str] = ()) -> dict[str, fl
     :raises StatejumpError: the run failed
     """
     run = sampled(case, model, outputs)
-    # A sample whose program ends at the reference temperature, among others that do not, lacks these.
+    # A program that ends at the reference temperature lacks these outcomes, although other samples may have them.
     nothing = dict.fromkeys(of(case).AT_PROGRAM_END, nan)
     return nothing | of(case).recorded(case, run) | values(outputs, run)
 
 
 def run_sample(recipe: Recipe, index: int) -> Sample:
-    """Run one sample; whatever goes wrong is its error, in one sentence."""
+    """Run one sample; any failure becomes its error, in one sentence."""
     try:
         found = outcome(parse_case(recipe.data(index)), recipe.model, recipe.outputs)
         return Sample(index, tuple(float(found[name]) for name in recipe.outcomes))
     except StatejumpError as problem:
         return Sample(index, None, _one_line(str(problem)), _one_line(problem.general()))
-    except Exception as problem:  # one sample never ends the campaign
+    except Exception as problem:  # a failed sample does not end the campaign
         said = _one_line(f"the run failed: {type(problem).__name__}: {problem}")
         return Sample(index, None, said, said)
 
@@ -73,11 +73,11 @@ def _one_line(text: str) -> str:
 
 @dataclass(frozen=True)
 class Batch:
-    """Finished samples together.
+    """Several finished samples.
 
-    :param values: outcomes (samples, outcomes); of a failed sample NaN
+    :param values: outcomes (samples, outcomes); NaN for a failed sample
     :param errors: sentences of the failed samples, by index
-    :param error_kinds: the same without what differs between failures of one kind
+    :param error_kinds: the sentences without the parts that differ between failures of one kind
     """
 
     indices: tuple[int, ...]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Campaigns in YADE's own way: a parameter table for ``yade-batch`` and what its script needs."""
+"""Campaigns with ``yade-batch``: a parameter table, and the data for its script."""
 from __future__ import annotations
 
 import json
@@ -19,19 +19,19 @@ from statejump.schema.paths import filled
 
 
 def column_of(path: str) -> str:
-    """Column of a varied key: yade-batch wants names of Python variables."""
+    """Column of a varied key: yade-batch requires names of Python variables."""
     return path.replace(".", "__")
 
 
 def write_table(campaign: Plan, path: Path) -> None:
     """Write the table: one line per sample, to be run by ``yade_scripts/runner/batch_case.py``.
 
-    The script takes the values from their columns; the campaign file tells case and outcomes.
+    The script reads the values from their columns, and case and outcomes from the campaign file.
     """
     if campaign.file is None or "dem" not in of(campaign.case).campaign_models():
         raise NotAllowed("--yade-batch", code="no_yade_batch_of_kind", file=campaign.file, kind=campaign.case.kind)
     columns = [column_of(parameter.keys[0]) for parameter in campaign.vary]
-    # Tables have neither blanks nor '#' in a value.
+    # Values in the table contain neither blanks nor '#'.
     file = quote(str(campaign.file.resolve()))
     with write_atomically(path) as stream:
         stream.write(f"# statejump {campaign.command} {campaign.name}: {campaign.samples} samples\n")
@@ -42,10 +42,10 @@ def write_table(campaign: Plan, path: Path) -> None:
 
 
 class BatchSample:
-    """One line of the table, for the script."""
+    """One line of the table, as the script uses it."""
 
     def __init__(self, line: dict[str, Any]) -> None:
-        """:raises StatejumpError: the campaign file or the sampled case is bad"""
+        """:raises StatejumpError: the campaign file or the sampled case is invalid"""
         path, command = Path(unquote(line["campaign"])), line.get("command", MONTECARLO)
         self.campaign, self.index = load_campaign(path, command), int(line["sample"])
         self.case = parse_case(filled(self.campaign.case_data, [
@@ -57,7 +57,7 @@ class BatchSample:
         return of(self.case).dem_values(self.case)
 
     def outcomes(self, samples: Path) -> dict[str, float]:
-        """Return the outcomes of a run that left its samples, and what it says of itself beside them."""
+        """Return the outcomes of a run that wrote its samples, and its own remarks."""
         about = json.loads(samples.with_name(samples.name + ".json").read_text(encoding="utf-8"))
         case = self.case
         run = require(case, DemResult).dem_run(case, read_samples(samples), about)

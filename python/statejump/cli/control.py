@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``statejump control``: what governs the state jump of a case, and what keeps it below a value."""
+"""``statejump control``: sensitivities of the state jump of a case, and changes that keep it below a value."""
 from __future__ import annotations
 
 from collections.abc import Iterator
@@ -17,7 +17,7 @@ from statejump.core.tables import Shown
 from statejump.kinds import require
 from statejump.kinds.protocol import DemInput
 
-LONGEST_NOTE = 60  # of a table; control.csv has all of it
+LONGEST_NOTE = 60  # characters of a note in a table; control.csv has all of it
 
 
 def _table(title: str, done: Study, sweep: Sweep, unit: str) -> Shown:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``statejump identify``: what a measured loop says of a joint."""
+"""``statejump identify``: a joint from a measured loop."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -12,7 +12,7 @@ from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey
 from statejump.core.results_folder import Results
 from statejump.identification import identified
 
-# The arguments of the library as options of the command.
+# The arguments of the library, as options of the command.
 OPTIONS = {"model": "--model", "start": "--start", "confidence": "--confidence", "target": "--for",
            "normal_force_N": "--normal-force", "journal_radius_m": "--journal-radius",
            "ignored": "--ignore"}

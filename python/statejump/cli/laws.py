@@ -30,7 +30,7 @@ class CaseOrCommand(Suggesting):
     ``statejump laws --drive FILE`` is ``statejump laws drive --drive FILE``."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Put the command in front of its arguments."""
+        """Insert the name of the command before its arguments."""
         if not args or (args[0] not in self.commands and args[0] not in ctx.help_option_names):
             driven = any(argument.partition("=")[0] == "--drive" for argument in args)
             args = ["drive" if driven else "show", *args]

@@ -14,14 +14,14 @@ from statejump.core.output import check_suffix
 from statejump.results.layout import SUFFIX
 
 PAGE = "report.html"
-BUDGET_BYTES = 7e6  # of the histories of all runs; a page stays below 10 MB
+BUDGET_BYTES = 7e6  # size of the histories of all runs; a page stays below 10 MB
 
 
 def result_files(run: Path) -> list[Path]:
-    """Return the result files that an argument means: a file itself, those of a results folder, or
-    of the folders in it. A comparison stands for the single models' files beside it, not for the answers.
+    """Return the result files of an argument: the file itself, the files of a results folder, or those of the folders
+    in it. A comparison replaces the files of its single models, but not the answers.
 
-    :raises Unreadable: there is nothing
+    :raises Unreadable: there is no result file
     """
     if not os.path.isdir(run):
         return [run]
@@ -42,7 +42,7 @@ def _target(output: Path | None, runs: tuple[Path, ...], files: list[Path]) -> P
 
 
 def _source(file: Path, files: list[Path]) -> str:
-    """Return what the page calls a file: by its name, one of several by its folder too."""
+    """Return the name of a file on the page: the file name, with its folder if there are several."""
     return file.name if len(files) == 1 else f"{file.absolute().parent.name}/{file.name}"
 
 
@@ -71,7 +71,7 @@ def report_command(runs: tuple[Path, ...], output: Path | None, quiet: bool) -> 
     if output is not None and not os.path.isdir(output):
         check_suffix("--output", output, ".html", ".htm")
     files = list(dict.fromkeys(path for run in runs for path in result_files(run)))
-    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused where it is drawn
+    with np.errstate(over="ignore", invalid="ignore"):  # numbers that are not finite are refused where they are drawn
         documents: list[Document | CampaignDocument | UnsolvedDocument] = [
             UnsolvedDocument(loaded(path), _source(path, files), f"run{place}") if is_case(path)
             else CampaignDocument(path, f"run{place}", _source(path, files)) if is_campaign(path)

@@ -181,10 +181,10 @@ def export_command(
 
 
 def compare_files(files: Sequence[Path], console: Console) -> None:
-    """Print two result files of the same case beside each other.
+    """Print a comparison of two result files of the same case.
 
     :raises TolerancesMissed: a tolerance of the case in the first file is missed
-    :raises StatejumpError: not two result files of the same case
+    :raises StatejumpError: these are not two result files of the same case
     """
     if len(files) != 2:
         raise StatejumpError(code="wrong_number_of_files", files=len(files))

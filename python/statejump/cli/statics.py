@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``statejump statics``: where a loaded joint can rest."""
+"""``statejump statics``: rest positions of a loaded joint."""
 from __future__ import annotations
 
 from pathlib import Path

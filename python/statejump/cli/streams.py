@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The one door through which the command tells: standard output and standard error, which cannot make a run fail.
+"""All output of the command to standard output and standard error. It cannot make a run fail.
 
-A pipe that is closed, a full disk, a locale without the letters that a text has: the run goes on and its files are
-complete. Whatever else than a closed pipe has lost standard output is told at the end.
+Output may be lost: a closed pipe, a full disk, a locale without the needed letters. The run still continues, and its
+files are complete. At the end the command reports why standard output was lost, unless a pipe was closed.
 """
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from statejump.core.errors import NotWritten
 
 
 class Stream(io.TextIOBase):
-    """Text for people; what nobody can take is dropped.
+    """A text stream that drops what cannot be written.
 
-    :param stream: where it goes; None: nowhere
+    :param stream: the destination; None: nowhere
     """
 
     def __init__(self, stream: TextIO | None) -> None:
@@ -59,7 +59,7 @@ class Stream(io.TextIOBase):
                 self._lose(error)
 
     def _lose(self, error: OSError) -> None:
-        """Send what is still to come, and what the stream holds back, to nowhere."""
+        """Redirect further output, and the unwritten part of the buffer, to nowhere."""
         self.lost = self.lost or error
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, self.fileno())
@@ -67,8 +67,8 @@ class Stream(io.TextIOBase):
 
 
 def open_standard_files() -> None:
-    """Open what was closed of standard input, output and error: a file of results would get its number, and what
-    libraries print there."""
+    """Open closed standard input, output and error. Otherwise a result file would get the number of one of them, and
+    libraries would print into it."""
     for number in (0, 1, 2):
         try:
             os.fstat(number)
@@ -77,13 +77,13 @@ def open_standard_files() -> None:
 
 
 def install() -> None:
-    """Let everything that is told go through this door."""
+    """Replace standard output and error by these streams."""
     open_standard_files()
     sys.stdout, sys.stderr = cast(TextIO, Stream(sys.stdout)), cast(TextIO, Stream(sys.stderr))
 
 
 def finish() -> NotWritten | None:
-    """Bring out what was told; return what is to be said of it where standard output was lost."""
+    """Flush the streams. Return the reason, as a text, if standard output was lost."""
     failure = None
     for stream in (sys.stdout, sys.stderr):
         stream.flush()

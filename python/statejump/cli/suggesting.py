@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Groups of commands that say the nearest name of a misspelt one, and list their commands in full sentences."""
+"""Groups of commands. They suggest the nearest name for a misspelt one, and list their commands in full sentences."""
 from __future__ import annotations
 
 from collections.abc import Iterator
@@ -34,7 +34,7 @@ class Suggesting(click.Group):
 
 
 def commands(command: click.Command, name: str) -> Iterator[tuple[str, click.Command]]:
-    """Yield every command that does something: as it is typed, and itself."""
+    """Yield every executable command: its full name and itself."""
     if isinstance(command, click.Group):
         context = click.Context(command, info_name=name)
         for part in command.list_commands(context):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What commands share on the terminal: console, options, progress, tables."""
+"""Shared by commands on the terminal: console, options, progress, tables."""
 from __future__ import annotations
 
 import os
@@ -31,8 +31,8 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 class CaseFile(click.Path):
-    """A case file: as given, or, where there is none, that of the cases that come with the program, so that
-    ``cases/table1.toml`` is found from every folder."""
+    """A case file: the given path or, if it does not exist, a shipped case. So ``cases/table1.toml`` is found from
+    every folder."""
 
     def __init__(self) -> None:
         super().__init__(path_type=Path)
@@ -47,7 +47,7 @@ FORCE = click.option("--force", is_flag=True, help="Replace results of another c
 
 
 def RESULTS(command: Command) -> Command:
-    """Give a command the options of its results folder, as one argument ``results``."""
+    """Give a command the options of its results folder. They become one argument ``results``."""
 
     @wraps(command)
     def called(results: Path, wait: bool, force: bool, **values: Any) -> Any:
@@ -65,7 +65,7 @@ QUIET = click.option("--quiet", is_flag=True, help="Print errors only.")
 def make_console(quiet: bool) -> Console:
     """Return the console of a command."""
     made = console(quiet=quiet)
-    if not made.is_terminal:  # a pipe or a log has no width: do not cut numbers short
+    if not made.is_terminal:  # a pipe or a log has no width: do not truncate numbers
         made.width = 160
     return made
 
@@ -78,7 +78,7 @@ def since_start_s() -> float:
 
 
 def loaded(case_file: Path, *capabilities: type) -> Case:
-    """Load a case and refuse it if its kind lacks a capability that the command needs."""
+    """Load a case. Refuse it if its kind lacks a capability that the command needs."""
     case = load_case(case_file)
     for capability in capabilities:
         require(case, capability)
@@ -111,7 +111,7 @@ def print_shown(parts: Sequence[Shown | str], console: Console) -> None:
 
 def print_comparison(title: str, rows: Sequence[Quantity], console: Console,
                      names: dict[str, str] | None = None) -> None:
-    """Print rows of a comparison; ``names`` head the columns of values, by whose they are."""
+    """Print the rows of a comparison; ``names`` are the headings of the columns of values, by source."""
     heads = {"closed_form": "closed form", "reduced": "reduced", "dem": "DEM", "fe": "CalculiX", **(names or {})}
     known = sides(rows)
     table = Table(title=title)
@@ -126,14 +126,16 @@ def print_comparison(title: str, rows: Sequence[Quantity], console: Console,
 
 @contextmanager
 def progress(console: Console, label: str) -> Iterator[Callable[[float], None]]:
-    """Yield a function that takes the finished share: a bar on a terminal, with a line every 10 % elsewhere."""
+    """Yield a function of the finished fraction: it moves a bar on a terminal, and prints a line every 10 %
+    elsewhere."""
     with on_console(console, label) as tell:
         yield tell
 
 
 @contextmanager
 def undivided(console: Console, label: str) -> Iterator[Callable[[float], None]]:
-    """As :func:`progress`, of runs that are written together at the end: Ctrl-C says that nothing was."""
+    """As :func:`progress`, for runs that are written together at the end. On Ctrl-C it reports that nothing was
+    written."""
     try:
         with progress(console, label) as tell:
             yield tell

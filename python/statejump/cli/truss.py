@@ -53,12 +53,12 @@ def truss_command() -> None:
 
 
 def _shown(key: str) -> str:
-    """Return the option of a key: the unit is in the help text."""
+    """Return the option of a key; the help text contains the unit."""
     return "--" + split_unit(key)[0].replace("_", "-")
 
 
 def _summary(function: Callable[..., Case]) -> tuple[str, dict[str, str]]:
-    """Return the docstring without its parameters, and those."""
+    """Return the docstring without its parameters, and the parameters."""
     text = inspect.getdoc(function) or ""
     described = dict(re.findall(r"^:param (\w+): (.*)$", text, re.MULTILINE))
     return text.split(":param", 1)[0].strip(), described
@@ -72,7 +72,7 @@ def _help(function: Callable[..., Case], kind: str) -> str:
 
 
 def _generator_command(kind: str, function: Callable[..., Case]) -> click.Command:
-    """Return the command that writes what a generator makes; its options are the function's keys."""
+    """Return the command that writes the truss of a generator. Its options are the parameters of the function."""
     keys = {key: parameter.default for key, parameter in inspect.signature(function).parameters.items()
             if key not in ("n", "name")}
     _, described = _summary(function)

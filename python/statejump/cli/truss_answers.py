@@ -18,13 +18,13 @@ from statejump.kinds import require
 from statejump.schema.rules import WHOLE, Rule
 
 FRAMES = Rule(WHOLE, allowed=Range(0, 1_000_000))
-# Options by the name of the parameter that they give.
+# Options by the parameter that they set.
 OPTIONS = {name: f"--{name}" for name in ("output", "cycles", "step", "frames")}
 
 
 def folder_of(case: str, output: str) -> str:
-    """Return the folder below that of the results which gets the answers: of an output that was chosen its own, so that
-    the answers of another stay."""
+    """Return the subfolder for the answers. A selected output has its own, so that answers about other outputs
+    remain."""
     return case if output == "node" else f"{case}/answers_{re.sub(r'[^A-Za-z0-9_.-]', '_', output)}"
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the commands share that write a case file of a truss."""
+"""Shared by commands that write a case file of a truss."""
 from __future__ import annotations
 
 import os
@@ -21,9 +21,9 @@ TABLES: dict[str, Any] = {
 def new_files(output: Path, tables: bool, force: bool) -> tuple[str, ...]:
     """Return the lists that go into files beside the case.
 
-    :param tables: whether any do
+    :param tables: whether there are such files
     :param force: whether files may be overwritten
-    :raises StatejumpError: one of the files is there already, or cannot be written
+    :raises StatejumpError: a file exists already, or cannot be written
     """
     check_suffix("--output", output, ".toml")
     beside = sections_in_files() if tables else ()

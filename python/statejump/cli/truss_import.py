@@ -17,7 +17,7 @@ from statejump.kinds.truss.importing import SYSTEMS, Options, Units, case_docume
 from statejump.schema.json_schema import head_line
 from statejump.schema.rules import folder_name
 
-# Keys whose number is out of range where the units of a deck are others than SI.
+# Keys whose number is out of range if the units of a deck are not SI.
 UNIT_KEYS = ("cross_section_area_m2", "young_modulus_Pa", "density_kg_per_m3", "position_m", "mass_kg")
 
 
@@ -53,7 +53,7 @@ def _thermal(output: Path, file: Path | None, given: dict[str, float | None]) ->
 
 
 def _refuse_units(file: Path, given: dict[str, str | float | None]) -> None:
-    """Refuse options for the units of a file that names its own."""
+    """Refuse unit options for a file that states its own units."""
     for option, value in given.items():
         if value not in (None, "SI"):
             raise NotAllowed(option, value, code="units_in_columns", file=file)

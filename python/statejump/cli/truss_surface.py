@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from statejump.core.case import Case
     from statejump.surface import Design
 
-# The arguments of the library as options of the command.
+# The arguments of the library, as options of the command.
 OPTIONS = {"axis": "--axis", "focal_length_m": "--focal-length", "direction": "--direction", "terms": "--zernike",
            "measure": "--measure", "share": "--share", "length_m": "--length"}
 
@@ -115,7 +115,7 @@ def surface_command(
 def _of_case(
     case: Case, measure: str, console: Console
 ) -> tuple[Design, dict[str, np.ndarray], dict[str, np.ndarray]]:
-    """Return the surface of a case, its displacements where it is farthest from its design and at the end, and its
+    """Return the surface of a case, its displacements in the sample farthest from the design and at the end, and its
     history."""
     design, nodes = surface.reflector_of(case)
     with undivided(console, f"{case.name}, reduced model") as tell:

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What makes a state jump smaller: studies of one parameter after the other, whatever the kind of case."""
+"""Reduction of a state jump: studies of one parameter after another, for any kind of case."""

@@ -18,22 +18,22 @@ if TYPE_CHECKING:
 
 @capability("control")
 class ControlStudy(Protocol):
-    """What makes the state jump smaller; the settings are those of the kind."""
+    """A study that makes the state jump smaller. The kind defines its settings."""
 
     def control(self, case: Any, **settings: Any) -> Study: ...
 
 
 class RestSets(Protocol):
-    """Where a joint can rest; each kind of case has its own."""
+    """Rest positions of a joint; each kind of case has its own class."""
 
     def frame(self) -> pandas.DataFrame:
-        """Return the sets as a table, units in the names of the columns."""
+        """Return the sets as a table, with units in the column names."""
 
     def plot(self, axes: Axes | None = None) -> Figure:
-        """Draw the sets; into given axes, or into a new figure."""
+        """Draw the sets into the given axes, or into a new figure."""
 
     def told(self) -> list[Shown | str]:
-        """Return what a command prints, tables and lines."""
+        """Return the tables and lines that a command prints."""
 
     def write(self, folder: Path) -> list[Path]:
         """Write the sets and their picture into a folder; return the paths."""
@@ -48,13 +48,13 @@ class JointStatics(Protocol):
 
 @capability("truss answers")
 class DesignAnswers(Protocol):
-    """What a designer asks of a truss; see :func:`statejump.truss.answers`."""
+    """Design questions of a truss; see :func:`statejump.truss.answers`."""
 
     def answers(self, case: Any, **settings: Any) -> Any: ...
 
 
 @capability("truss creak")
 class Creaking(Protocol):
-    """What a node feels while the truss moves; see :func:`statejump.truss.creak`."""
+    """Slips and the acceleration of a node in motion; see :func:`statejump.truss.creak`."""
 
     def creak(self, case: Any, node: str, tell: Tell) -> Any: ...

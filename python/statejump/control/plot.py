@@ -17,7 +17,7 @@ RECOMMENDED: dict[str, Any] = dict(color="#009E73", linewidth=1.6, label="recomm
 FLOOR: dict[str, Any] = dict(color="0.3", linewidth=1.0, linestyle=(0, (1, 1)))
 DEM: dict[str, Any] = dict(color="#000000", marker="D", markersize=6, markerfacecolor="white", linestyle="", zorder=6,
                            label="|jump| by DEM (YADE)")
-NOTHING = 1e-4  # of the jump: a joint that never touches leaves 1e-12, off any scale
+NOTHING = 1e-4  # fraction of the jump that counts as zero: a joint that never touches leaves 1e-12, below any scale
 
 
 def figure(title: str, study: Study, folder: Path) -> list[Path]:
@@ -41,7 +41,7 @@ def figure(title: str, study: Study, folder: Path) -> list[Path]:
         if count < len(places):
             places[count].legend(handles.values(), handles.keys(), loc="center", framealpha=1, handlelength=3.4)
         else:
-            # Of four parameters the clearance governs least: its panel has room.
+            # Of four parameters the clearance has the least effect, so its panel has room for the legend.
             places[count - 1].legend(
                 handles.values(), handles.keys(), loc="lower right" if count == 4 else "best", framealpha=1,
                 handlelength=3.4, fontsize=8
@@ -65,7 +65,7 @@ def _draw(panel: Axes, study: Study, sweep: Sweep) -> None:
     if sweep.scale == "log":
         positive = np.abs(x[x != 0])
         if 0.0 in x:
-            # Zero has its place at the left edge, one step before the first value.
+            # Zero is at the left edge, one step before the first value.
             panel.set_xscale("symlog", linthresh=float(positive.min()), linscale=0.4)
             panel.set_xlim(left=-0.12 * float(positive.min()))
         else:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a control study is made of, whatever the case: swept parameters, wanted value, searches."""
+"""Parts of a control study of any kind of case: swept parameters, wanted value, searches."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
@@ -20,14 +20,14 @@ from statejump.schema.paths import attribute_of
 if TYPE_CHECKING:
     import pandas
 
-# How a result is drawn: its name in the legend, and its line.
+# Style of a result in figures: its name in the legend, and its line.
 Line = tuple[str, Mapping[str, Any]]
-RUNS = 40  # of an ensemble, where nothing else is asked for
+RUNS = 40  # default size of an ensemble
 
 
 @dataclass
 class Row:
-    """One value of one parameter and what comes out; None: the model has no answer, see ``note``."""
+    """One value of one parameter and the result; None: the model has no result, see ``note``."""
 
     value: float
     results: dict[str, float | None]
@@ -37,16 +37,16 @@ class Row:
 
 @dataclass
 class Sweep:
-    """A parameter over a range, everything else as in the case."""
+    """Sweep of one parameter; all others have the values of the case."""
 
-    parameter: str  # section.key, with the unit in the key
-    label: str  # for the axis, without unit
+    parameter: str  # path section.key, with the unit in the key
+    label: str  # label of the axis, without unit
     display_unit: str
     display_scale: float
     own: float
     rows: list[Row]
-    scale: str = "log"  # of the axis: log, linear; zero is shown on either
-    meets: list[tuple[float, float]] = field(default_factory=list)  # ranges that meet the wanted value
+    scale: str = "log"  # scale of the axis: log, linear; both show zero
+    meets: list[tuple[float, float]] = field(default_factory=list)  # ranges with the wanted value
     recommended: float | None = None
 
     def row(self, value: float) -> Row:
@@ -54,15 +54,15 @@ class Sweep:
         return next(row for row in self.rows if row.value == value)
 
     def insert(self, row: Row) -> None:
-        """Add a row in its place; one of the same value is replaced."""
+        """Insert a row in order of its value; replace a row with the same value."""
         self.rows = sorted([kept for kept in self.rows if kept.value != row.value] + [row], key=lambda r: r.value)
 
     def column(self, name: str) -> np.ndarray:
-        """Results of all rows, NaN where there is none."""
+        """Results of all rows; NaN for a missing result."""
         return np.array([np.nan if row.results.get(name) is None else row.results[name] for row in self.rows])
 
     def shown(self, most: int = 7) -> list[Row]:
-        """Return the rows for a table: own, recommended, and some of the others."""
+        """Return the rows for a table: the value of the case, the recommended one, and some others."""
         stride = max(1, -(-len(self.rows) // most))
         return [
             row for i, row in enumerate(self.rows)
@@ -73,9 +73,9 @@ class Sweep:
 
 @dataclass(frozen=True)
 class Places:
-    """Of what the jump is asked and what may be changed, of a case with many nodes and parameters.
+    """The node whose jump counts, and the changes that are allowed, for a case with many nodes and parameters.
 
-    :param node: that jumps; None: the most moved one
+    :param node: node whose jump counts; None: the one that moves most
     :param add_spring: pairs of nodes between which a spring may be added
     :param scale: parameters that may be scaled, ``section.item.key`` or ``section.*.key``
     """
@@ -89,13 +89,13 @@ class Places:
 class Study:
     """A study of a case.
 
-    :param measure: sentence: what is measured and how
+    :param measure: sentence: the measured quantity and the method
     :param unit: of the jump, m or rad
     :param results: columns: name with unit, heading
-    :param jump: of the case as it is [unit]
+    :param jump: of the unchanged case [unit]
     :param wanted: largest allowed jump [unit]; None: there is no jump to control
-    :param quantity: what figures call the results, with their displayed unit
-    :param lines: how results are drawn, by name
+    :param quantity: name of the results in figures, with their displayed unit
+    :param lines: style of the results in figures, by name
     :param logarithmic: whether figures show the results on a logarithmic axis
     """
 
@@ -111,10 +111,10 @@ class Study:
     logarithmic: bool = True
     sweeps: list[Sweep] = field(default_factory=list)
     recommendation: dict[str, Any] = field(default_factory=dict)
-    sentences: list[str] = field(default_factory=list)  # the recommendation in words
+    sentences: list[str] = field(default_factory=list)  # the recommendation as sentences
     remarks: list[str] = field(default_factory=list)
     dem: list[dict[str, Any]] = field(default_factory=list)
-    # A level that one parameter alone cannot go below: key of the parameter, name in the legend, value [unit].
+    # Lower limit of the jump if only one parameter changes: key of the parameter, name in the legend, value [unit].
     floor: tuple[str, str, float] | None = None
 
     def sweep(self, parameter: str) -> Sweep:
@@ -132,26 +132,27 @@ class Study:
                 for sweep in self.sweeps for row in sweep.rows]
 
     def frame(self) -> pandas.DataFrame:
-        """Return all that was swept as a table, units in the names of its columns."""
+        """Return the whole sweep as a table, with units in the column names."""
         pandas = libraries.pandas()
 
         return pandas.DataFrame(self.rows(), columns=self.columns())
 
 
 def check_wanted(jump_below: float | None, unit: str) -> None:
-    """Raise NotAllowed for a wanted jump that is none."""
+    """Raise NotAllowed for an invalid wanted jump."""
     if jump_below is not None and not (isfinite(jump_below) and jump_below > 0):
         raise NotAllowed("--jump-below", jump_below, code="not_positive", unit=unit)
 
 
 def refuse_runs(runs: int | None, case: Case) -> None:
-    """Raise NotAllowed for a size of an ensemble where none is run."""
+    """Raise NotAllowed for an ensemble size if the study runs no ensemble."""
     if runs is not None:
         raise NotAllowed("--runs", runs, code="exact_path_without_ensemble", name_of_case=case.name)
 
 
 def refuse_places(places: Places, case: Case) -> None:
-    """Raise NotAllowed for nodes and parameters to choose from where a case has one jump and a study of all it has."""
+    """Raise NotAllowed for a choice of nodes and parameters, for a kind of case with one jump and a study of all
+    parameters."""
     asked = (("--node", [places.node] if places.node else []),
              ("--add-spring", [" ".join(ends) for ends in places.add_spring]), ("--free", places.scale))
     for option, values in asked:
@@ -160,7 +161,7 @@ def refuse_places(places: Places, case: Case) -> None:
 
 
 def highest(case: Case, path: str) -> float:
-    """Return the largest value that a case may have for ``section.key``."""
+    """Return the largest allowed value of ``section.key``."""
     allowed = rule_of(attribute_of(type(case), path)).allowed
     assert allowed is not None
     return allowed.high
@@ -169,7 +170,7 @@ def highest(case: Case, path: str) -> float:
 def bisect(
     passes: Callable[[float], bool], bad: float, good: float, relative: float = 1e-12, steps: int = 200
 ) -> tuple[float, float]:
-    """Narrow a bracket: ``bad`` does not pass, ``good`` does. Geometric between positive ends.
+    """Narrow a bracket of ``bad``, which does not pass, and ``good``, which does. Geometric between positive ends.
 
     :return: the bracket, narrower than ``relative`` times its larger end
     """
@@ -190,10 +191,10 @@ def ranges_that_pass(
     values: Sequence[float], flags: Sequence[bool], passes: Callable[[float], bool] | None = None,
     narrow: Callable[[float, float], float] | None = None,
 ) -> list[tuple[float, float]]:
-    """Return the ranges of neighbouring values that pass, with their ends refined.
+    """Return the ranges of neighbouring values that pass, with refined ends.
 
-    :param passes: by which they are, with bisection; None: they are not refined
-    :param narrow: instead: takes a value that does not pass and one that does, returns the end that passes
+    :param passes: the condition, for bisection of the ends; None: the ends are not refined
+    :param narrow: replaces bisection: takes a value that does not pass and one that does, returns the end that passes
     """
     if narrow is None and passes is not None:
         by_bisection = passes
@@ -221,9 +222,9 @@ def ranges_that_pass(
 
 
 def grid(own: float, low: float, high: float, count: int, zero: bool = False) -> list[float]:
-    """Geometric grid from ``low`` to ``high`` with the case's own value, with zero if wanted."""
+    """Geometric grid from ``low`` to ``high`` with the value of the case, and with zero if wanted."""
     values = {float(value) for value in np.geomspace(low, high, count)}
-    # The own value as written in the case, and no other so near that it says nothing.
+    # The value as written in the case replaces values too near to it.
     values = {value for value in values if abs(value - own) > 0.02 * abs(value)}
     values.add(float(own))
     if zero:
@@ -232,7 +233,7 @@ def grid(own: float, low: float, high: float, count: int, zero: bool = False) ->
 
 
 def number(value: float | None, digits: int = 4) -> str:
-    """Return a number for a sentence or a table."""
+    """Format a number for a sentence or a table."""
     return "none" if value is None else f"{value:.{digits}g}"
 
 
@@ -259,7 +260,7 @@ def write(case_name: str, study: Study, folder: Path) -> list[Path]:
 
 
 def with_notes(study: Callable[..., Study], case: Case, **settings: Any) -> Study:
-    """Return a study of a case that has a state jump, with the notes on its temperature program."""
+    """Return a study of a case that has a state jump, with notes on its temperature program."""
     case.need_jump("'statejump control'")
     found = study(case, **settings)
     found.remarks += case.thermal_notes

@@ -62,7 +62,7 @@ class Origin:
 
     @property
     def document(self) -> dict[str, Any]:
-        """The sections and keys of a file that holds all items itself."""
+        """The sections and keys of a file that contains all items itself."""
         return with_rows(self.data)
 
     @property
@@ -91,7 +91,8 @@ class Case(Section):
     thermal: CaseThermal = section(CaseThermal, required=True)
 
     if TYPE_CHECKING:
-        # Sections of the kind, for programs that check types: ``statejump.load`` returns a case of any kind.
+        # Attributes are the sections of the kind. This declaration is for type checkers, because ``statejump.load``
+        # returns a case of any kind.
         def __getattr__(self, name: str) -> Any: ...
 
     def __init_subclass__(cls) -> None:
@@ -120,7 +121,7 @@ class Case(Section):
 
     @property
     def member_histories(self) -> Histories | None:
-        """Temperature histories of members, of a kind that has them."""
+        """Temperature histories of members, for kinds that support them."""
         return None
 
     @property
@@ -147,7 +148,7 @@ class Case(Section):
 
     @property
     def implausible(self) -> tuple[str, ...]:
-        """Warnings for allowed but implausible values, one sentence each."""
+        """Warnings of allowed but implausible values, one sentence each."""
         return ()
 
     def need_jump(self, what: str) -> None:
@@ -175,15 +176,15 @@ class Case(Section):
                 if name not in self.NOT_IN_FILE and part is not None and part != []}
 
     def to_toml(self) -> str:
-        """Return the case as the text of a case file, with the keys that were given and without defaults.
+        """Return the case as the text of a case file, with the given keys and without defaults.
 
-        :raises NotAllowed: it holds the histories of members, which stand in a file of their own
+        :raises NotAllowed: it has histories of members, which need a file of their own
         """
         text: str = _TEXT(self)
         return text
 
     def save(self, path: str | Path) -> Path:
-        """Write the case as a case file, histories of members as a table beside it; return its path.
+        """Write the case as a case file, and histories of members as a table beside it; return its path.
 
         :raises NotWritten: it cannot be written
         :raises NotAllowed: the name does not end with ``.toml``
@@ -195,10 +196,10 @@ class Case(Section):
                 trace: str | Path | Callable[[tuple[Any, ...]], object] | None = None) -> Run:
         """Run the reduced model.
 
-        :param progress: True: show it on standard error; or what is called with the finished fraction, 0 to 1
-        :param dynamic: with inertia, where the reduced model has none by default: the motion of a truss
-        :param trace: CSV file that gets a row for every Newton iteration of a truss, or a function that is called with
-            each row as a tuple; :data:`statejump.kinds.truss.trace.COLUMNS` names its entries
+        :param progress: True: show it on standard error; or a function of the finished fraction, 0 to 1
+        :param dynamic: with inertia, for a kind whose reduced model has none by default: the motion of a truss
+        :param trace: CSV file with a row for every Newton iteration of a truss, or a function that is called with each
+            row as a tuple; :data:`statejump.kinds.truss.trace.COLUMNS` names its entries
         :raises StatejumpError: the kind has no such reduced model, or the run could not be finished
         """
         run: Run = _RUN(self, "dynamic" if dynamic else "reduced", progress, trace=trace)
@@ -213,11 +214,11 @@ class Case(Section):
         return _PATHS(self)
 
     def dem(self, progress: Progress = False, *, keep_input: str | Path | None = None) -> Run:
-        """Run the case in YADE, in a process of its own.
+        """Run the case in YADE, in a separate process.
 
-        :param progress: True: show it on standard error; or what is called with the finished fraction, 0 to 1
-        :param keep_input: folder that gets the script and the data of the run, to repeat it by hand
-        :raises StatejumpError: the kind has no DEM, YADE is missing or failed
+        :param progress: True: show it on standard error; or a function of the finished fraction, 0 to 1
+        :param keep_input: folder for the script and the data of the run, to repeat it by hand
+        :raises StatejumpError: the kind has no DEM, or YADE is missing or failed
         :raises Interrupted: Ctrl-C; its ``run`` has the samples so far
         """
         self.check_dem()
@@ -276,7 +277,7 @@ class Case(Section):
         return programs.program(self.thermal, self.period_s)
 
     def returns_s(self) -> NDArray[np.float64]:
-        """Return the times [s] at which all parts have their first temperature again."""
+        """Return the times [s] at which all items have their first temperature again."""
         return programs.returns_s([self.thermal], self.period_s)
 
     def check(self) -> None:
@@ -328,7 +329,7 @@ class Case(Section):
 
 
 def no_length_left(key: str, thermal_expansion_per_K: float, case: Case) -> None:
-    """Raise NotAllowed for a link that the program shrinks to nothing."""
+    """Raise NotAllowed for a link whose length the program reduces to zero."""
     for change in case.temperature_range_K:
         if 1 + thermal_expansion_per_K * change <= 0:
             raise NotAllowed(key, thermal_expansion_per_K, code="link_without_length", at_K=change)

@@ -14,7 +14,7 @@ from statejump.core.tables import write_columns
 from statejump.core.temperature_files import Histories
 from statejump.schema.toml_text import to_toml
 
-OF_MEMBERS = ("members", "table_time_s", "table_temperature_change_K")  # keys for which members_file stands
+OF_MEMBERS = ("members", "table_time_s", "table_temperature_change_K")  # keys that members_file replaces
 
 
 def document_of(case: Case) -> dict[str, Any]:
@@ -26,7 +26,7 @@ def document_of(case: Case) -> dict[str, Any]:
 def text_of(case: Case) -> str:
     """Return a case as the text of a case file.
 
-    :raises NotAllowed: it holds the histories of members, which stand in a file of their own
+    :raises NotAllowed: it has histories of members, which need a file of their own
     """
     made = document_of(case)
     if made.get("thermal", {}).get("members") is not None:
@@ -35,7 +35,7 @@ def text_of(case: Case) -> str:
 
 
 def save(case: Case, path: Path) -> Path:
-    """Write a case as a case file, histories of members as a table beside it; return its path.
+    """Write a case as a case file, and histories of members as a table beside it; return its path.
 
     :raises NotAllowed: the name ends with another suffix
     :raises NotWritten: it cannot be written
@@ -62,10 +62,10 @@ def save(case: Case, path: Path) -> Path:
 
 
 def made_by(command: str, case: Case) -> str:
-    """Return how a file was made, for its text: the command with the case file, relative to the current folder or as
-    the case that comes with the program is called.
+    """Return the command that made a file, for the text of the file. The case file is relative to the current folder,
+    or has the name of a shipped case.
 
-    :param command: as ``statejump hold``
+    :param command: for example ``statejump hold``
     """
     file = case.origin.file
     if file is None:

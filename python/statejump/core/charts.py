@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parts of a kind on the page of ``statejump report``: its curves, and a part of its own."""
+"""Contributions of a kind to the page of ``statejump report``: its curves, and a part of its own."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
@@ -15,8 +15,8 @@ class Axis:
     """An axis of a chart.
 
     :param column: name of the column, in the history or in the curves of the page's part
-    :param label: what it is called; "": as the words of the kind call the column
-    :param from_start: whether the change since the first sample is shown
+    :param label: its label; "": the kind's name of the column
+    :param from_start: whether to show the change since the first sample
     """
 
     column: str
@@ -26,12 +26,12 @@ class Axis:
 
 @dataclass(frozen=True)
 class Chart:
-    """Curves of all models over each other.
+    """Curves of all models in one chart.
 
     :param equal: same scale on both axes
     :param rings_m: radii of circles about the origin [m]
-    :param stages: whether the stages of the run are shaded, along the time
-    :param marks: whether events and the state jump are marked
+    :param stages: whether to shade the stages of the run along the time
+    :param marks: whether to mark events and the state jump
     """
 
     x: Axis
@@ -48,9 +48,9 @@ TIME = Axis("time_s", "Time")
 
 
 class Part(Protocol):
-    """A part of a run's page that only one kind has: what its ability ``page`` returns.
+    """The part of a run's page that only one kind has: the result of its capability ``page``.
 
-    :param template: file of its HTML, which gets the part as ``part``
+    :param template: file of its HTML, in which the part is ``part``
     :param columns: curves of its charts by model and name
     :param units: their units by name
     """
@@ -64,11 +64,12 @@ class Part(Protocol):
         """The finding of the part, as a sentence; "": none."""
 
     def cards(self) -> list[dict[str, Any]]:
-        """Return numbers for the top of the page: ``label`` and ``values``, pairs of a name and a text."""
+        """Return numbers for the top of the page: ``label`` and ``values``, the latter as pairs of a name and a
+        text."""
 
     def charts(self) -> list[Chart]:
         """Return the charts of the page."""
 
     def payload(self, encoded: Callable[[np.ndarray], Any]) -> dict[str, Any]:
-        """Return the data of the drawing of nodes and joints, ``Truss`` of web/src/payload.ts. ``encoded`` makes a
-        column of the page of an array."""
+        """Return the data of the drawing of nodes and joints, ``Truss`` of web/src/payload.ts. ``encoded`` converts an
+        array to a column of the page."""

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Keys of the columns of a table, and conversion of their numbers to the unit of the key.
 
-A key ends in its unit: ``force_N``. A column may name another unit of the same quantity, and in other ways:
-``force_kN``, ``Force [kN]``, ``Force (kN)``, ``Force / kN``, ``Force kN``. Only then units are looked up in pint, which
-takes some time to load.
+A key ends with its unit: ``force_N``. A column may use another unit of the same quantity, and other spellings:
+``force_kN``, ``Force [kN]``, ``Force (kN)``, ``Force / kN``, ``Force kN``. Only then does the module look up units in
+pint, which takes some time to load.
 """
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from statejump.core.conversion import SAME, Conversion
 from statejump.core.errors import StatejumpError, UnknownKey
 from statejump.core.units import split_unit
 
-# Accepted spellings that a refusal lists, by unit of a key.
+# Accepted spellings that an error message lists, by unit of a key.
 EXAMPLES = {"m": ("mm", "in"), "N": ("kN", "lbf"), "s": ("min", "h"), "K": ("°C",), "rad": ("deg", "mrad"),
             "N m": ("N mm", "lbf in"), "Pa": ("MPa", "psi"), "m2": ("mm2",), "N/m": ("N/mm",), "kg/m3": ("g/cm3",)}
 QUANTITIES = {"m": "length", "N": "force", "s": "time", "K": "temperature", "rad": "angle", "N m": "moment",
@@ -30,9 +30,9 @@ NO_UNIT = ("", "-", "1")
 class Column:
     """A column of a table.
 
-    :param name: as the table has it
-    :param key: what it is
-    :param converted: its numbers into the unit of the key
+    :param name: its name in the table
+    :param key: its key
+    :param converted: converts its numbers to the unit of the key
     :param iso: whether its cells are ISO times
     """
 
@@ -44,11 +44,11 @@ class Column:
 
 def matched(header: Sequence[str], known: Sequence[str], words: Mapping[str, Sequence[str]] | None = None
             ) -> list[Column]:
-    """Return what the columns of a table are.
+    """Return the columns of a table with their keys.
 
-    :param known: keys that end in their units
-    :param words: by key: what else its quantity is called
-    :raises StatejumpError: a column is unknown, names no unit or one of another quantity, or two are one key
+    :param known: keys that end with their units
+    :param words: other names of the quantity, by key
+    :raises StatejumpError: a column is unknown, has no unit or one of another quantity, or two columns have one key
     """
     bases = {_plain(split_unit(key)[0]): key for key in known}
     for key, more in (words or {}).items():
@@ -82,13 +82,13 @@ def _column(name: str, known: Sequence[str], bases: Mapping[str, str]) -> Column
 
 
 def _plain(base: str) -> str:
-    """Return a name without what differs from one spelling to the next; single letters stay as they are."""
+    """Return a name without differences of spelling; single letters keep their case."""
     found = re.sub(r"[\s_\-.:]+", "_", base.strip()).strip("_")
     return found if len(found) == 1 else found.lower()
 
 
 def splits(name: str) -> Iterator[tuple[str, str]]:
-    """Return a name without its unit, and the unit, in all ways that it may be read."""
+    """Return all possible divisions of a column name into name and unit."""
     for pattern in (*_BRACKETS, _SLASH):
         if bracket := pattern.fullmatch(name.strip()):
             yield bracket[1], bracket[2].strip()
@@ -112,13 +112,13 @@ def _converted(name: str, base: str, unit: str, key: str) -> Conversion:
 
 
 def accepted(base: str, key: str, wanted: str) -> str:
-    """Return which spellings of a column are accepted, for a sentence."""
+    """Return the accepted spellings of a column, for a sentence."""
     shown = [f"{base.strip()} [{unit}]" for unit in (wanted, *EXAMPLES.get(wanted, ()))] if wanted != "-" else [key]
     return f"accepted are {', '.join(dict.fromkeys((key, *shown)))}"
 
 
 def conversion(unit: str, wanted: str, change: bool = False) -> Conversion | None:
-    """Return how numbers of a unit become those of another; None: it is no unit of the same quantity.
+    """Return the conversion from one unit to another; None: the unit is of another quantity.
 
     :param change: whether a temperature is a difference of two
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Models beside each other, quantity by quantity, against the tolerances of the case."""
+"""Comparison of models, quantity by quantity, with the tolerances of the case."""
 from __future__ import annotations
 
 import math
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 # Sources of a value, in the order of the columns.
 CLOSED_FORM, REDUCED, DEM, FE = "closed_form", "reduced", "dem", "fe"
-# Of two runs of one model, or of two files.
+# Sources for two runs of one model, or for two files.
 FIRST, SECOND = "first", "second"
 SIDES = (CLOSED_FORM, REDUCED, DEM, FE, FIRST, SECOND)
 _DRAWN, _HTML = Later("statejump.core.figures:drawn"), Later("statejump.core.html:comparison_html")
@@ -115,9 +115,9 @@ def table(rows: Sequence[Quantity]) -> list[dict[str, Any]]:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Two models of a case beside each other.
+    """Comparison of two models of a case.
 
-    :param reasons: possible reasons for a missed tolerance, with the keys to set; empty if all are met
+    :param reasons: possible reasons for a missed tolerance, with the keys to set; empty if all tolerances are met
     """
 
     case: Case
@@ -138,9 +138,10 @@ class Comparison:
         return [row.name for row in self.rows if not row.passed]
 
     def with_fe(self, rows: Iterable[Quantity], notes: Iterable[str] = ()) -> Comparison:
-        """Return the comparison with finite elements as another column.
+        """Return the comparison with finite elements as a further column.
 
-        :param rows: of the reduced model and finite elements, their differences and tolerances relative to the former
+        :param rows: of the reduced model and finite elements; differences and tolerances are relative to the reduced
+            model
         """
         more = []
         for row in rows:
@@ -157,7 +158,7 @@ class Comparison:
         return pandas.DataFrame(table(self.rows))
 
     def plot(self, axes: Axes | Sequence[Axes] | None = None) -> Figure:
-        """Draw the models on top of each other; see :meth:`statejump.Run.plot`."""
+        """Draw the models in one figure; see :meth:`statejump.Run.plot`."""
         return _DRAWN(self.case, list(self.models.values()), axes)
 
     def save(self, path: str | Path) -> Path:
@@ -187,5 +188,5 @@ class Comparison:
 
 
 def write_comparison_csv(rows: Sequence[Quantity], folder: Path) -> Path:
-    """Write the rows of a comparison as ``comparison.csv``; there must be one."""
+    """Write the rows of a comparison as ``comparison.csv``; there must be at least one."""
     return write_rows(folder / "comparison.csv", table(rows))

@@ -9,8 +9,8 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Conversion:
-    """Numbers of one unit become those of another: x · factor/divisor + offset. The divisor keeps 12.5 mm at 0.0125 m
-    exactly as if it were written so."""
+    """Conversion of numbers to another unit: x · factor/divisor + offset. The divisor converts 12.5 mm to exactly the
+    number 0.0125."""
 
     factor: float = 1.0
     divisor: float = 1.0

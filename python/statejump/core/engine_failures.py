@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Failures of the engine as those of the package: the same fields, and the engine's own sentence."""
+"""Failures of the engine as failures of the package, with the same fields and the engine's sentence."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
@@ -11,11 +11,11 @@ from statejump.core.errors import FailedRun
 
 
 class EngineFailed(FailedRun):
-    """The engine gave no result: ``[WHERE: ][WHAT: ]SENTENCE[; REMEDY]``. Its sentence holds cause and own remedy.
+    """The engine returned no result: ``[WHERE: ][WHAT: ]SENTENCE[; REMEDY]``. Its sentence has cause and remedy.
 
-    :param failure: what the engine threw
-    :param what: which run it was, "" for none
-    :param remedy: what would help besides
+    :param failure: the exception of the engine
+    :param what: the run that failed; "" for none
+    :param remedy: a further remedy
     """
 
     def __init__(
@@ -40,7 +40,7 @@ class EngineFailed(FailedRun):
 
 @contextmanager
 def engine(what: str = "", **more: Any) -> Iterator[None]:
-    """Inside of this a failure of the engine is raised as :class:`EngineFailed`; parameters as there."""
+    """Convert failures of the engine within this context to :class:`EngineFailed`; same parameters."""
     try:
         yield
     except _engine.EngineFailure as failure:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What ends a command or a call early: a code and fields, from which the sentence is rendered.
+"""Errors that end a command or a call: a code and fields, from which the sentence is rendered.
 
-``str(error)`` is one sentence, ``[FILE: ][ITEM: ]WHAT[: CAUSE][; REMEDY]``. :meth:`StatejumpError.fields` returns
-the same facts by name. :mod:`statejump.core.error_codes` declares the codes and their sentences. Programs and tests
-compare the code and the fields; nothing reads a sentence back.
+``str(error)`` is one sentence, ``[FILE: ][ITEM: ]WHAT[: CAUSE][; REMEDY]``. :meth:`StatejumpError.fields` returns the
+same facts by name. :mod:`statejump.core.error_codes` declares the codes and their sentences. Programs and tests compare
+the code and the fields; nothing parses a sentence.
 """
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ FIELDS = (
 )
 
 
-# Of a fault of the program itself; EX_SOFTWARE of sysexits.h. 1 says that a tolerance is missed.
+# Exit status of a fault of the program itself; EX_SOFTWARE of sysexits.h. 1 means that a tolerance is missed.
 INTERNAL_STATUS = 70
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
 
 def printable(text: str) -> str:
-    """Return a text that a terminal takes as nothing but text: control characters but new lines as ``\\x1b``."""
+    """Return a text without control characters: all except new lines are written as ``\\x1b``."""
     return _CONTROL.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
 
 
 def size(count: float) -> str:
-    """Return a number of bytes for a sentence."""
+    """Format a number of bytes for a sentence."""
     for unit in ("bytes", "kB", "MB", "GB"):
         if count < 1000:
             break
@@ -46,7 +46,7 @@ def size(count: float) -> str:
 
 
 class _Absent:
-    """No value was given; None is a value."""
+    """Marks an argument without a value, because None is a value."""
 
     def __repr__(self) -> str:
         return "absent"
@@ -59,7 +59,7 @@ ABSENT = _Absent()
 
 
 class _Some:
-    """Stands in a sentence for a number that is left open."""
+    """Stands in a sentence for an unspecified number."""
 
     def __repr__(self) -> str:
         return "…"
@@ -73,7 +73,7 @@ SOME: Any = _Some()
 
 @dataclass(frozen=True)
 class Range:
-    """Numbers that a key allows: ``low`` to ``high`` [unit], without ``low`` itself if ``above``."""
+    """Range of a key: ``low`` to ``high`` [unit], without ``low`` itself if ``above``."""
 
     low: float
     high: float
@@ -91,25 +91,25 @@ class Range:
         return self.low <= value <= self.high and not (self.above and value == self.low)
 
     def to_json(self) -> dict[str, Any]:
-        """Return the range as JSON takes it; an end without bound is left out."""
+        """Return the range for JSON; an infinite end is omitted."""
         ends = {"above" if self.above else "low": self.low, "high": self.high}
         return {key: end for key, end in ends.items() if isfinite(end)} | {"unit": self.unit}
 
 
 @runtime_checkable
 class _OfNumpy(Protocol):
-    """A number or array of numpy, asked without numpy, which the start of the command does not load."""
+    """A number or array of numpy, detected without numpy, which the start of the command does not load."""
 
     def tolist(self) -> Any: ...
 
 
 def _without_type(value: Any) -> Any:
-    """Return a number or array of numpy as what it holds: numpy 2 says the type of a number with it."""
+    """Return the content of a number or array of numpy, because numpy 2 prints its type."""
     return value.tolist() if isinstance(value, _OfNumpy) and not isinstance(value, type) else value
 
 
 def shown(value: Any) -> str:
-    """Return a value as one would write it in a case file."""
+    """Return a value as text, as in a case file."""
     value = _without_type(value)
     if isinstance(value, bool):
         return str(value).lower()
@@ -117,24 +117,24 @@ def shown(value: Any) -> str:
 
 
 class StatejumpError(Exception):
-    """Bad input, or a run that could not be finished.
+    """Invalid input, or a run that could not be finished.
 
-    :param what: what is wrong, without what the other fields say; by default what the code declares
-    :param code: code, a key of ``CODES``; by default that of the class
-    :param file: the file that is meant
-    :param place: how the sentence calls the file, if not by its path alone (``results folder out/x``)
-    :param case: name of the case that ran
-    :param item: which table of a list is meant, as ``node 'tip'``
-    :param key: key of a file, name of an argument
-    :param value: what was given for it
-    :param allowed: what may be given: a range, or names
+    :param what: the problem, without the content of the other fields; default: that of the code
+    :param code: a key of ``CODES``; default: that of the class
+    :param file: the file
+    :param place: name of the file in the sentence, if it is not its path alone (``results folder out/x``)
+    :param case: name of the case of the run
+    :param item: item of a list, for example ``node 'tip'``
+    :param key: key of a file, or name of an argument
+    :param value: its value
+    :param allowed: allowed values: a range, or names
     :param joint: name of the joint
     :param nodes: names of nodes
-    :param time_s: when [s]
-    :param temperature_change_K: at which temperature change [K]
-    :param cause: why; by default what the code declares, else what ``allowed`` says
-    :param remedy: what would help; by default what the code declares
-    :param details: further fields, which the sentences of the code name
+    :param time_s: time [s]
+    :param temperature_change_K: temperature change [K]
+    :param cause: the reason; default: that of the code, else derived from ``allowed``
+    :param remedy: the remedy; default: that of the code
+    :param details: further fields, which the sentence of the code contains
     """
 
     kind: ClassVar[str] = "bad_input"
@@ -174,15 +174,15 @@ class StatejumpError(Exception):
         self.remedy = remedy or None
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Exceptions travel between the processes of a campaign.
+        # Makes the exception picklable, because the processes of a campaign exchange exceptions.
         return (_remade, (type(self), self.__dict__.copy()))
 
     def phrase(self) -> str:
-        """Return what is wrong, without file and item."""
+        """Return the problem, without file and item."""
         return self.what
 
     def located(self, *, file: object = None, case: str | None = None) -> StatejumpError:
-        """Say in which file or case it is, where that is not known yet; return the error itself."""
+        """Set the file or case if it is unknown; return the error itself."""
         if self.file is None and file is not None:
             self.file = str(file)
         if self.case is None and case is not None:
@@ -198,7 +198,7 @@ class StatejumpError(Exception):
 
     def __str__(self) -> str:
         phrase, item = self.phrase(), self.item
-        if item and item.endswith("]"):  # an item without a name is called by its place: vary[1].key
+        if item and item.endswith("]"):  # an item without a name has its index: vary[1].key
             phrase, item = f"{item}.{phrase}", None
         sentence = ": ".join(part for part in (self._where(), item, phrase, self.cause) if part)
         if not self.remedy:
@@ -206,8 +206,8 @@ class StatejumpError(Exception):
         return f"{sentence}{'; ' if self.cause else ': '}{self.remedy}"
 
     def general(self) -> str:
-        """Return the sentence without what differs from one sample of a campaign to the next: the number that was
-        given, when it happened. Failures of one kind have the same."""
+        """Return the sentence without the parts that differ between samples of a campaign: the given number, and the
+        time. Failures of one kind have the same sentence."""
         alike = copy(self)
         if isinstance(self.value, float):
             alike.value = SOME
@@ -217,7 +217,7 @@ class StatejumpError(Exception):
         return str(alike)
 
     def fields(self) -> dict[str, Any]:
-        """Return the failure by the names of ``FIELDS``; what is not known is left out."""
+        """Return the failure by the names of ``FIELDS``; unknown ones are omitted."""
         allowed = self.allowed.to_json() if isinstance(self.allowed, Range) else self.allowed and list(self.allowed)
         known = {
             "kind": self.kind, "code": self.code, "message": str(self), "file": self.file, "case": self.case,
@@ -239,8 +239,8 @@ def _remade(kind: type[StatejumpError], state: dict[str, Any]) -> StatejumpError
 
 
 def _plain(value: Any) -> Any:
-    """Return a value if JSON can hold it, else as text."""
-    import json  # not to start the command
+    """Return a value if JSON supports it, else its text."""
+    import json  # loaded here, because the start of the command does not need it
 
     value = _without_type(value)
     if isinstance(value, PathLike):
@@ -253,12 +253,12 @@ def _plain(value: Any) -> Any:
 
 
 class NotAllowed(StatejumpError):
-    """A key has a value that it may not have: ``KEY = VALUE is not allowed[ BESIDE]: CAUSE``.
+    """A key has an invalid value: ``KEY = VALUE is not allowed[ BESIDE]: CAUSE``.
 
     :param key: the key
-    :param value: what was given; ABSENT: the key may not be there at all, or its value says nothing
-    :param cause: why; by default what ``allowed`` says
-    :param beside: with what it is not allowed, as ``with start.mode = 'loaded'``
+    :param value: its value; ABSENT: the key itself is not allowed, or its value does not matter
+    :param cause: the reason; default: derived from ``allowed``
+    :param beside: the other key that forbids it, for example ``with start.mode = 'loaded'``
     """
 
     default_code = "not_allowed"
@@ -274,13 +274,13 @@ class NotAllowed(StatejumpError):
 
     def fields(self) -> dict[str, Any]:
         found = super().fields()
-        if self.beside and "cause" not in found:  # what it does not go with is why
+        if self.beside and "cause" not in found:  # the contradicting key is the cause
             found["cause"] = self.beside
         return {name: found[name] for name in FIELDS if name in found}
 
 
 class MissingKey(StatejumpError):
-    """A key or a section that must be there is not: ``KEY is missing[: NEEDS]``."""
+    """A required key or section is missing: ``KEY is missing[: NEEDS]``."""
 
     default_code = "missing_key"
 
@@ -293,14 +293,14 @@ class MissingKey(StatejumpError):
 
 
 class UnknownKey(StatejumpError):
-    """There is no such key or section: ``KEY is unknown: did you mean OTHER?``.
+    """A key or section is unknown: ``KEY is unknown: did you mean OTHER?``.
 
     :param key: the key
-    :param section: how the sentence calls a section, as ``section [demm]``
-    :param value: where the key names another key: the unknown one
-    :param beside: where it is unknown, as ``in a case of kind 'truss'``
-    :param cause: which are known, where none is near
-    :param remedy: which was probably meant
+    :param section: name of a section in the sentence, for example ``section [demm]``
+    :param value: if the key names another key: the unknown one
+    :param beside: where it is unknown, for example ``in a case of kind 'truss'``
+    :param cause: the known ones, if none is similar
+    :param remedy: the one that was probably meant
     """
 
     default_code = "unknown_key"
@@ -317,17 +317,17 @@ class UnknownKey(StatejumpError):
 
 
 class Unreadable(StatejumpError):
-    """A file cannot be read, or is not what it should be."""
+    """A file cannot be read, or has other contents than expected."""
 
     default_code = "unreadable"
 
 
 class MissingPart(Unreadable, KeyError):
-    """A part of a file that is asked for is not there; a KeyError, as of any mapping."""
+    """A requested part of a file is missing; a KeyError, as for any mapping."""
 
 
 class FailedRun(StatejumpError):
-    """The input is right as far as it can be judged; the run could not be finished."""
+    """The input is valid as far as it can be checked; the run could not be finished."""
 
     kind = "failed_run"
     default_code = "failed_run"
@@ -341,9 +341,9 @@ class NotWritten(StatejumpError):
 
 
 class TolerancesMissed(StatejumpError):
-    """The comparison ran and tolerances of the case are missed.
+    """The comparison ran, and tolerances of the case are missed.
 
-    :param quantities: names of the rows that miss theirs
+    :param quantities: names of the rows that miss their tolerance
     """
 
     exit_status = 1
@@ -358,8 +358,8 @@ class TolerancesMissed(StatejumpError):
 class Interrupted(StatejumpError):
     """The user stopped a run.
 
-    :param what: what was kept
-    :param run: the run as far as it came; None: nothing of it is left
+    :param what: the results that were stored
+    :param run: the samples so far; None: there are none
     """
 
     exit_status = 130
@@ -372,14 +372,14 @@ class Interrupted(StatejumpError):
 
 
 def fields(kind: str, message: str, exit_status: int, **details: Any) -> dict[str, Any]:
-    """Return a failure that is no StatejumpError in the same form, in the order of ``FIELDS``; its code is its kind."""
+    """Return another exception in the same form, in the order of ``FIELDS``; its code is its kind."""
     known = {"kind": kind, "code": kind, "message": message, **details, "exit_status": exit_status}
     return {name: known[name] for name in FIELDS if known.get(name) is not None}
 
 
 def to_json(failure: dict[str, Any]) -> str:
     """Return the fields of a failure as one line."""
-    import json  # not to start the command
+    import json  # loaded here, because the start of the command does not need it
 
     line = json.dumps(failure, ensure_ascii=False, allow_nan=False)
     return _CONTROL.sub(lambda found: f"\\u{ord(found[0]):04x}", line)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Thermal expansion that follows the temperature: a table of the coefficient α.
+"""Thermal expansion that depends on temperature: a table of the coefficient α.
 
-Between the rows of the table α is straight, so the strain ε(ΔT) = ∫ α dΔT from 0 is a parabola there. All models know
-one coefficient and a temperature program of straight pieces. They get α₀, the largest |α| of the table, and the program
-of ε/α₀: the temperature change that gives the same strain where the coefficient is α₀.
+α is linear between the rows of the table, so the strain ε(ΔT) = ∫ α dΔT from 0 is a parabola there. All models have one
+coefficient and a piecewise linear temperature program. They get α₀, the largest |α| of the table, and the program of
+ε/α₀. This is the temperature change that gives the same strain with the coefficient α₀.
 """
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
     Numbers = NDArray[np.float64]
 
-# A straight piece leaves at most this share of the range of the strain: a tenth of the smallest tolerance that
-# `compare` has by default (that of the energy balance).
+# A linear piece has at most this error of the strain, as a fraction of its range: a tenth of the smallest default
+# tolerance of `compare` (that of the energy balance).
 CHORD = 1e-4
 
 
 @definition
 class Expansion(Section):
-    """A coefficient of thermal expansion that follows the temperature, straight between its rows."""
+    """A coefficient of thermal expansion that depends on temperature, linear between its rows."""
 
     temperature_change_K: list[float] = numbers(
         ..., "K", -LARGEST_CHANGE_K, LARGEST_CHANGE_K, "from the stress-free temperature; rising, 0 within"
@@ -41,14 +41,14 @@ class Expansion(Section):
 
     @property
     def zeros_K(self) -> list[float]:
-        """Temperature changes [K] at which α is 0, where the strain may turn."""
+        """Temperature changes [K] at which α is 0, where the strain may have an extremum."""
         rows, alpha = self.temperature_change_K, self.thermal_expansion_per_K
         between = [one + (other - one) * first / (first - last)
                    for one, other, first, last in zip(rows, rows[1:], alpha, alpha[1:]) if first * last < 0]
         return [*(row for row, value in zip(rows, alpha) if value == 0), *between]
 
     def strain(self, temperature_change_K: Numbers) -> Numbers:
-        """Return the free strain [-], ∫ α dΔT from 0 to temperature changes [K] within the table; of their shape."""
+        """Return the free strain [-], ∫ α dΔT from 0 to temperature changes [K] within the table; same shape."""
         rows, alpha = np.array(self.temperature_change_K), np.array(self.thermal_expansion_per_K)
         steps = np.diff(rows)
         at_rows = np.concatenate(([0.0], np.cumsum(0.5 * (alpha[1:] + alpha[:-1]) * steps)))
@@ -63,9 +63,9 @@ class Expansion(Section):
 
 
 def check(expansion: Expansion, section: str) -> None:
-    """Raise NotAllowed for what is wrong with a table as a whole.
+    """Raise NotAllowed for an invalid table.
 
-    :param section: how its keys begin, "" in a table of its own
+    :param section: prefix of its keys, "" in a table of its own
     """
     rows, alpha = expansion.temperature_change_K, expansion.thermal_expansion_per_K
     if len(rows) < 2 or any(b <= a for a, b in zip(rows, rows[1:])) or not rows[0] <= 0 <= rows[-1]:
@@ -77,15 +77,15 @@ def check(expansion: Expansion, section: str) -> None:
 def followed(
     expansion: Expansion, program: Thermal | MemberProgram, period_s: float, fraction: float = 1.0
 ) -> MemberProgram:
-    """Return the program of ε/α₀ of a part.
+    """Return the program of ε/α₀ of an item.
 
-    The strain is exact at the rows of the program. Between those of a triangle or table it is exact where a row of the
-    expansion is passed and between at as many times as keep the rest below CHORD of its range; between those of a
-    member's history it is straight.
+    The strain is exact at the rows of the program. For triangles and tables it is also exact where the program crosses
+    a row of the expansion. Further times between these keep the error below CHORD of the range. For the history of a
+    member the strain is linear between the rows.
 
     :param program: of the temperature change
     :param fraction: of its temperature change
-    :raises NotAllowed: the program leaves the table or has no straight pieces
+    :raises NotAllowed: the program leaves the table, or is not piecewise linear
     """
     times, changes = _rows(program, period_s)
     changes = fraction * changes
@@ -99,7 +99,7 @@ def followed(
 
 
 def _rows(program: Thermal | MemberProgram, period_s: float) -> tuple[Numbers, Numbers]:
-    """Return times and temperature changes between which a cycle is straight."""
+    """Return times and temperature changes between which a cycle is linear."""
     if program.shape == "table":
         return rows(program, period_s)
     assert isinstance(program, Thermal) and program.temperature_change_max_K is not None
@@ -109,7 +109,7 @@ def _rows(program: Thermal | MemberProgram, period_s: float) -> tuple[Numbers, N
 
 
 def _divided(expansion: Expansion, times: Numbers, changes: Numbers) -> tuple[Numbers, Numbers]:
-    """Return the rows of a program with further ones, so that the strain is nearly straight between them."""
+    """Return the rows of a program with further ones, so that the strain is nearly linear between them."""
     rows = np.array(expansion.temperature_change_K)
     strains = expansion.strain(np.concatenate((changes, rows[(rows > changes.min()) & (rows < changes.max())])))
     allowed = CHORD * (np.ptp(strains) or 1.0)
@@ -119,7 +119,7 @@ def _divided(expansion: Expansion, times: Numbers, changes: Numbers) -> tuple[Nu
         marks = np.concatenate(([first], between if last > first else between[::-1], [last]))
         for one, other in zip(marks, marks[1:]):
             alpha = np.interp([one, other], rows, expansion.thermal_expansion_per_K)
-            left_out = abs((alpha[1] - alpha[0]) * (other - one)) / 8  # of a parabola by its chord
+            left_out = abs((alpha[1] - alpha[0]) * (other - one)) / 8  # error of a chord of a parabola
             pieces = max(1, int(np.ceil(np.sqrt(left_out / allowed))))
             passed = np.linspace(one, other, pieces + 1)[1:]
             found.append(passed)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How figures look, how they are laid out, and how they are written; what is drawn is each kind's own.
+"""Style, layout and output of figures. Each kind draws its own content.
 
-Figures are made without pyplot, so that a caller's backend and its open figures are left alone.
+Figures are made without pyplot, so the caller's backend and open figures do not change.
 """
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from statejump.core.case import Case
     from statejump.core.run import Run
 
-# Okabe-Ito colours, far apart in lightness as well: thick light line under a thin dark dashed one.
+# Okabe-Ito colours that also differ in lightness: a thick light line under a thin dark dashed one.
 REDUCED: dict[str, Any] = dict(color="#E69F00", linewidth=4.0, solid_capstyle="round", label="reduced model (exact)")
 DEM: dict[str, Any] = dict(color="#000000", linewidth=1.2, linestyle=(0, (5, 2)), label="DEM (YADE)")
 STYLE: dict[str, Any] = {
@@ -46,21 +46,21 @@ class _Grid(Protocol):
 
 
 class Constrained(ConstrainedLayoutEngine):
-    """matplotlib's constrained layout, of which nothing is left in memory.
+    """matplotlib's constrained layout without its memory leak.
 
-    Its grids refer to their children through arrays of objects, into which the garbage collector does not look, and the
-    children refer back: two grids of each drawing would stay for ever.
+    Its grids refer to their children through object arrays, which the garbage collector does not follow, and the
+    children refer back. Without this class two grids of each drawing would stay in memory.
     """
 
     def execute(self, fig: Figure) -> None:
-        """Place the axes of a figure; the grids are taken apart."""
+        """Arrange the axes of a figure, and break the references between the grids."""
         for grid in (super().execute(fig) or {}).values():
             if isinstance(grid, _Grid):
                 grid.children.fill(None)
 
 
 class Drawing(Figure):
-    """A figure that shows itself in a notebook."""
+    """A figure that a notebook displays."""
 
     def __init__(self, *arguments: Any, **settings: Any) -> None:
         super().__init__(*arguments, **settings)
@@ -75,9 +75,9 @@ class Drawing(Figure):
 
 @dataclass(frozen=True)
 class Sheet:
-    """What a kind draws of its runs.
+    """The drawing of runs by a kind.
 
-    :param panels: what draws each panel, row by row; None: left empty
+    :param panels: functions that draw the panels, row by row; None: an empty panel
     :param columns: panels in a row
     :param size: of the figure [inch]
     :param title: above all panels
@@ -91,21 +91,21 @@ class Sheet:
 
 @contextmanager
 def style() -> Iterator[None]:
-    """Draw in the project's style inside of this."""
+    """Use the project's style within this context."""
     with rc_context(STYLE):
         yield
 
 
 def panels(rows: int, columns: int, size: tuple[float, float], **settings: Any) -> tuple[Figure, Any]:
-    """Return a new figure and its axes; as ``pyplot.subplots``, without pyplot."""
+    """Return a new figure and its axes, as ``pyplot.subplots``, without pyplot."""
     figure = Drawing(figsize=size, layout=Constrained())
     return figure, figure.subplots(rows, columns, **settings)
 
 
 def drawn(case: Case, runs: Sequence[Run], axes: Axes | Sequence[Axes] | None = None) -> Figure:
-    """Draw runs of a case on top of each other.
+    """Draw runs of a case in one figure.
 
-    :param axes: axes to draw into: they get the panels in their order; None: a new figure
+    :param axes: axes for the panels, in their order; None: a new figure
     :return: the figure
     """
     sheet: Sheet = require(case, RunSheet).sheet(case, runs)

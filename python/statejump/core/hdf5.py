@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""HDF5 files as this project writes and reads them: built in memory, written like any other file, and checked as a
-whole before the HDF5 library sees a byte of them, which takes damaged bytes for lengths and addresses.
+"""HDF5 files of this project: built in memory, written like any other file, and checked as a whole before the HDF5
+library reads them. The library would treat damaged bytes as lengths and addresses.
 
 A file begins with a user block, ``HEAD_BYTES`` that HDF5 leaves to programs ("HDF5 File Format Specification", II.A):
-lines of text with the version of this format and the SHA-256 of everything after the block. Any HDF5 reader opens
-the file. The checksum finds damage, not malice: whoever makes a file can make its checksum.
+lines of text with the version of this format and the SHA-256 of everything after the block. Any HDF5 reader opens the
+file. The checksum finds damage, not malice, because anyone can compute it.
 """
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 HEAD_BYTES = 512
 FORMAT = "statejump HDF5"
 VERSION = 1
-MOST_PACKED = 1100  # bytes that come of one: deflate makes 258 of two bits (RFC 1951), 1032 of a byte
+MOST_PACKED = 1100  # largest ratio of compression: deflate makes 258 bytes of two bits (RFC 1951), 1032 of a byte
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 AGAIN = "run what made it again"
 
@@ -41,10 +41,10 @@ def head(digest: str) -> bytes:
 
 @contextmanager
 def made(path: Path) -> Iterator[h5py.File]:
-    """Yield an HDF5 file in memory that becomes the file of this name at the end, whole or not at all.
+    """Yield an HDF5 file in memory. At the end it is written under this name, completely or not at all.
 
-    No object keeps a time of its making and no order of creation (which would bring the times back for groups):
-    the same contents give the same bytes.
+    Objects store neither times nor a creation order (which would add times for groups). The same contents therefore
+    give the same bytes.
 
     :raises NotWritten: it cannot be written
     """
@@ -59,7 +59,7 @@ def made(path: Path) -> Iterator[h5py.File]:
 
 
 def is_ours(path: Path) -> bool:
-    """Whether a file begins like one that :func:`made` wrote, of whatever version."""
+    """Return whether a file begins like one of :func:`made`, of any version."""
     if not is_file(path):
         return False
     with path.open("rb") as stream:
@@ -68,10 +68,10 @@ def is_ours(path: Path) -> bool:
 
 @contextmanager
 def opened(path: Path) -> Iterator[h5py.File]:
-    """Yield a file that :func:`made` wrote, for reading.
+    """Yield a file of :func:`made` for reading.
 
-    :raises Unreadable: there is none, it is not ours, of a newer version, cut off or altered; or what is asked of it
-        inside of this cannot be read
+    :raises Unreadable: it does not exist, is of another kind, has a newer version, or is damaged; or a requested part
+        cannot be read
     """
     if not is_file(path):
         raise Unreadable(code="result_file_not_found", file=path)
@@ -87,7 +87,7 @@ def opened(path: Path) -> Iterator[h5py.File]:
 
 
 def _check(stream: IO[bytes], path: Path) -> None:
-    """Raise Unreadable unless the bytes are those that were written."""
+    """Raise Unreadable unless the checksum fits."""
     block = stream.read(HEAD_BYTES)
     if block.startswith(SIGNATURE):
         raise Unreadable(code="result_without_checksum", remedy=AGAIN, file=path)
@@ -104,11 +104,11 @@ def _check(stream: IO[bytes], path: Path) -> None:
 
 
 def objects(file: h5py.File, path: Path) -> dict[str, h5py.Group | h5py.Dataset]:
-    """Return the groups and data sets of a file by their places, ``/`` left out, once it is sure that reading them
-    stays in the file and takes memory in proportion to it.
+    """Return the groups and data sets of a file by path, without ``/``. Before that, check that reading them stays
+    within the file and takes memory in proportion to it.
 
-    :raises Unreadable: an object of another kind, or one that stands at two places; a link that is not to an object of
-        this file; numbers in another file; a data set that claims to hold more than its bytes can
+    :raises Unreadable: an object of another kind, or with two paths; a link to an object outside of this file; numbers
+        in another file; a data set that declares more numbers than its bytes can hold
     """
     h5py = libraries.h5py()
 
@@ -116,7 +116,7 @@ def objects(file: h5py.File, path: Path) -> dict[str, h5py.Group | h5py.Dataset]
     seen = {h5py.h5o.get_info(file.id).addr}
     size = path.stat().st_size
     groups = [("", file)]
-    unwritten = 0  # bytes of data sets that no byte of the file stands for
+    unwritten = 0  # bytes of data sets that are not in the file
     while groups:
         parent, group = groups.pop()
         for name in group:
@@ -139,7 +139,7 @@ def objects(file: h5py.File, path: Path) -> dict[str, h5py.Group | h5py.Dataset]
 
 
 def _check_texts(item: h5py.Group | h5py.Dataset, place: str, path: Path) -> None:
-    """Raise Unreadable where a name or a text among the attributes is not UTF-8: no page could be written with it."""
+    """Raise Unreadable if a name or a text among the attributes is not UTF-8, because no page could contain it."""
     texts = {place: place, **{f"{place}@{key}": value for key, value in item.attrs.items()}}
     for called, value in texts.items():
         try:
@@ -151,10 +151,10 @@ def _check_texts(item: h5py.Group | h5py.Dataset, place: str, path: Path) -> Non
 
 
 def _check_stored(item: h5py.Dataset, place: str, size: int, path: Path) -> int:
-    """Raise Unreadable where the numbers are not in the file, or more are declared than there can be. Return the bytes
-    of a data set that was made and never written in whole or in part: it is valid and has its fill value there.
+    """Raise Unreadable if the numbers are not in the file, or more are declared than its bytes can hold. Return the
+    bytes of a data set that were never written. Such a data set is valid and has its fill value there.
 
-    :param size: bytes of the file, without those that stand for data sets that were not written
+    :param size: bytes of the file, without those of unwritten data sets
     """
     h5py = libraries.h5py()
 

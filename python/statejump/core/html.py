@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cases, runs and comparisons as a notebook shows them."""
+"""HTML of cases, runs and comparisons for notebooks."""
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
@@ -26,7 +26,7 @@ def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 def _title(run: Run) -> str:
     try:
         return run.definition.title
-    except (StatejumpError, ValueError):  # of a file that this version does not understand any more
+    except (StatejumpError, ValueError):  # the case of a file that this version does not support any more
         return ""
 
 
@@ -37,7 +37,7 @@ def case_html(case: Case) -> str:
 
 
 def run_html(run: Run) -> str:
-    """Return what sums up a run, as HTML."""
+    """Return a summary of a run as HTML."""
     rows = [(name, text(value, unit_of(name))) for name, value in sorted(run.summary.items())]
     events = [
         (event.kind, event.joint, text(event.temperature_change_K, "K"), text(event.time_s, "s"))

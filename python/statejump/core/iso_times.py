@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Times as ISO 8601 has them, in seconds from the first."""
+"""ISO 8601 times, converted to seconds from the first."""
 from __future__ import annotations
 
 import re
@@ -16,7 +16,7 @@ ACCEPTED = "2026-03-01T12:00:00 or 12:00:00"
 
 
 def is_iso(cell: str) -> bool:
-    """Whether a text is a date with a time, or hours, minutes and seconds."""
+    """Return whether a text is a date with a time, or hours, minutes and seconds."""
     return bool(_CLOCK.fullmatch(cell.strip())) or _date(cell) is not None
 
 
@@ -33,7 +33,7 @@ def _date(cell: str) -> datetime | None:
 def seconds(cells: Sequence[str], place: Callable[[int], tuple[int, str]], path: Path) -> np.ndarray:
     """Return seconds from the first time.
 
-    :raises Unreadable: a cell is no time, or only some name their time zone
+    :raises Unreadable: a cell is no time, or only some have a time zone
     """
     found = []
     first = _date(cells[0])

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files of items beside a case file, named in its section ``[tables]``: one row an item, one column a key.
+"""Files of items beside a case file, listed in its section ``[tables]``: one row per item, one column per key.
 
-Text tables: a cell is what the case file would have, lists with blanks between their entries and without brackets;
-an empty cell is a key that is not given. HDF5: a data set of every key, of n numbers, n texts, or n rows of either;
-numbers that are NaN and texts that are empty are not given.
+Text tables: a cell has the same value as in the case file; lists have blanks between their entries and no brackets; an
+empty cell is a missing key. HDF5: one data set per key, with n numbers, n texts, or n rows of either; NaN and empty
+texts are missing.
 
-They are read with the case file, and their columns take the place of its lists.
+The files are read with the case file, and their columns replace its lists.
 """
 from __future__ import annotations
 
@@ -31,17 +31,17 @@ from statejump.schema.texts import Numbering, Texts
 from statejump.schema.toml import LARGEST_BYTES
 
 SUFFIXES = (*TEXT_SUFFIXES, ".h5", ".hdf5")
-MOST_IN_LIST = 16  # entries of a cell or row: what items list are ends, directions and components
-TEXTS_AT_ONCE = 1 << 14  # of a data set: as objects they take ten times the memory of the file
+MOST_IN_LIST = 16  # largest number of entries of a cell or row: items list ends, directions and components
+TEXTS_AT_ONCE = 1 << 14  # block of a data set: as objects they take ten times the memory of the file
 SWITCHES = {"true": True, "false": False}
 
 
 def with_tables(data: Mapping[str, Any], folder: Path, case: type[Section]) -> Mapping[str, Any]:
-    """Return a parsed case file with an :class:`ItemTable` in place of every file that its section [tables] names;
-    itself, where it has none.
+    """Return a parsed case file with an :class:`ItemTable` for every file in its section [tables]. Without this
+    section, return the document itself.
 
-    :param folder: where a relative path begins
-    :raises StatejumpError: a file cannot be read or is not what it should be: one sentence with its name
+    :param folder: base of relative paths
+    :raises StatejumpError: a file cannot be read or is invalid: one sentence with its name
     """
     named, known = data.get(TABLES_BESIDE), fields_of(case)
     if not isinstance(named, Mapping) or TABLES_BESIDE not in known:
@@ -70,8 +70,8 @@ def _declared(known: Mapping[str, attrs.Attribute[Any]]) -> type[Section]:
 def read_items(path: Path, key: str, model: type[Section], words: Numbering) -> ItemTable:
     """Return the columns of a file.
 
-    :param model: what an item is
-    :param words: texts of files that were read before; those of this file are added
+    :param model: class of the items
+    :param words: texts of the files that were read before; those of this file are added
     :raises StatejumpError: one sentence with the file, and line or column
     """
     if path.suffix.lower() not in SUFFIXES:
@@ -100,18 +100,18 @@ def _text(path: Path, model: type[Section], words: Numbering) -> dict[str, np.nd
                 blocks.setdefault(column.key, []).append(_column(table, column, rule, cells, lines, words))
     if not blocks:
         raise Unreadable(code="no_row", file=path)
-    joined = {name: _joined(blocks.pop(name)) for name in list(blocks)}  # no longer in memory than as blocks
+    joined = {name: _joined(blocks.pop(name)) for name in list(blocks)}  # frees each block when it has been joined
     return {column.key: _texts(joined[column.key], words) if rule.form in (TEXT, TEXTS) else joined[column.key]
             for column, rule in keys}
 
 
 def _texts(numbers: np.ndarray, words: Numbering) -> Texts:
-    """Return a column of texts, its numbers of no more bytes than they need."""
+    """Return a column of texts; their codes use as few bytes as possible."""
     return Texts(once(numbers.astype(np.min_scalar_type(numbers.max(initial=0)))), words.words)
 
 
 def _joined(parts: list[np.ndarray]) -> np.ndarray:
-    """Return blocks of rows as one column; rows of lists are as long as the longest."""
+    """Return blocks of rows as one column; all rows of lists are as long as the longest."""
     if parts[0].ndim == 1:
         return np.concatenate(parts)
     width = max(part.shape[1] for part in parts)
@@ -124,7 +124,7 @@ def _joined(parts: list[np.ndarray]) -> np.ndarray:
 def _column(
     table: Table, column: Column, rule: Rule, cells: Sequence[str], lines: Sequence[int], words: Numbering
 ) -> np.ndarray:
-    """Return the values of some cells, of texts their numbers."""
+    """Return the values of some cells; texts are returned as their codes."""
     def place(index: int) -> tuple[int, str]:
         return lines[index], column.name
 
@@ -162,7 +162,7 @@ def _column(
 
 
 def _lists(table: Table, split: Sequence[Sequence[str]], width: int, place: Place) -> np.ndarray:
-    """Return numbers by rows, NaN in a row whose cell is empty."""
+    """Return numbers by rows; a row with an empty cell is NaN."""
     given = [index for index, entries in enumerate(split) if entries]
     found = np.full((len(split), width), np.nan)
     found[given] = table.numbers([entry for index in given for entry in split[index]],
@@ -215,7 +215,7 @@ def _of_data_set(path: Path, column: Column, rule: Rule, data: Any, words: Numbe
 
 
 def to_cells(value: Any) -> str:
-    """Return a value of a document as the cell of a table."""
+    """Return a value of a document as a cell of a table."""
     if isinstance(value, (list, tuple)):
         return " ".join(map(to_cells, value))
     return str(value).lower() if isinstance(value, bool) else str(value)
@@ -224,7 +224,7 @@ def to_cells(value: Any) -> str:
 def write_items(items: Sequence[Mapping[str, Any]], path: Path) -> None:
     """Write items of a document as a CSV table.
 
-    :raises StatejumpError: the file cannot be written, or a text of a list holds a blank
+    :raises StatejumpError: the file cannot be written, or a text of a list contains a blank
     """
     keys = list(dict.fromkeys(key for item in items for key in item))
     with write_atomically(path) as stream:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Functions of later layers behind methods of convenience: ``run.plot()`` is a figure, and a run imports no figures.
+"""Functions of later layers, for convenience methods: ``run.plot()`` returns a figure, but a run imports no figures.
 
-The module of such a function is imported at the first call. ``tests/lint/layers.py`` checks that every place exists.
+The module of such a function is imported at the first call. ``tests/lint/layers.py`` checks that every function exists.
 """
 from __future__ import annotations
 

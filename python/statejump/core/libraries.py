@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Libraries that take long to load and that few calls need: each is imported at its first use, here alone.
+"""Libraries that load slowly and that few calls need. Only this module imports them, at their first use.
 
-Seconds are those of the import on a warm machine.
+The seconds are import times on a warm machine.
 """
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from typing import Any
 
 
 def pandas() -> Any:
-    """Return pandas, for methods that make a table of it."""
+    """Return pandas, for methods that return tables."""
     import pandas  # 0.4 s
 
     return pandas
 
 
 def h5py() -> Any:
-    """Return h5py, for what reads and writes HDF5."""
+    """Return h5py, for reading and writing HDF5."""
     import h5py  # 0.1 s
 
     return h5py

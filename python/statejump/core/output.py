@@ -26,12 +26,12 @@ def unique() -> str:
 
 
 def not_written(path: Path, error: OSError) -> NotWritten:
-    """Return the error for a file that cannot be written, with the reason of the system."""
+    """Return the error for a file that cannot be written, with the system's reason."""
     return NotWritten(code="write_failed", file=path, cause=error.strerror or str(error))
 
 
 def synced(path: Path) -> None:
-    """Sync a file, or the list of a folder, to disk. :raises OSError: it cannot be synced"""
+    """Sync a file, or the entries of a folder, to disk. :raises OSError: it cannot be synced"""
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)
@@ -54,7 +54,7 @@ def check_suffix(option: str, path: Path, *allowed: str) -> None:
     """Raise NotAllowed for a file name with the suffix of another format. A name without suffix is allowed.
 
     :param option: the option that names the file
-    :param allowed: suffixes, as ``.html``
+    :param allowed: suffixes, for example ``.html``
     """
     if path.suffix and path.suffix.lower() not in allowed:
         raise NotAllowed(option, str(path), code="wrong_suffix", suffixes=" or ".join(allowed))
@@ -80,7 +80,7 @@ def _opened(path: Path) -> tuple[int, Path]:
         descriptor = os.open(aside, os.O_CREAT | os.O_EXCL | os.O_WRONLY | os.O_CLOEXEC, 0o666)
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX)
-            if os.fstat(descriptor).st_nlink:  # not swept by another run before it was locked
+            if os.fstat(descriptor).st_nlink:  # another run did not remove it before it was locked
                 return descriptor, aside
         except BaseException:
             with suppress(OSError):
@@ -94,7 +94,7 @@ def _opened(path: Path) -> tuple[int, Path]:
 def write_atomically(path: Path) -> Iterator[IO[str]]:
     """Open a text file that appears under its name when it is complete and on disk.
 
-    :raises NotWritten: it cannot be written; an earlier file stays
+    :raises NotWritten: it cannot be written; an earlier file remains
     """
     with _replacing(path) as descriptor:
         with open(descriptor, "w", encoding="utf-8", newline="", closefd=False) as stream:
@@ -104,7 +104,7 @@ def write_atomically(path: Path) -> Iterator[IO[str]]:
 def write_bytes(path: Path, content: bytes) -> Path:
     """Write a file that appears under its name when it is complete and on disk; return the path.
 
-    :raises NotWritten: it cannot be written; an earlier file stays
+    :raises NotWritten: it cannot be written; an earlier file remains
     """
     with _replacing(path) as descriptor:
         with open(descriptor, "wb", buffering=0, closefd=False) as stream:

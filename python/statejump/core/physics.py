@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Formulas that checks, drawings and time steps need in Python, each written once. All take numbers and arrays
-alike, in SI units. The models themselves are the engine's and the plugin's.
-"""
+"""Formulas that checks, drawings and time steps need in Python, each written once. All accept numbers and arrays, in SI
+units. The models themselves are in the engine and the plugin."""
 from __future__ import annotations
 
 from typing import TypeVar
@@ -61,7 +60,8 @@ def axial_stiffness_N_per_m(young_modulus_Pa: Value, cross_section_area_m2: Valu
 
 
 def apex_m(left_m: Value, right_m: Value, base_m: Value) -> tuple[Value, Value]:
-    """Return where two links meet above a base from (0, 0) to (base, 0): x and y [m]; y is 0 if they do not.
+    """Return the point at which two links meet above a base from (0, 0) to (base, 0): x and y [m]; y is 0 if they do
+    not meet.
 
     :param left_m: length of the link from (0, 0)
     :param right_m: length of the link from (base, 0)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Values that are allowed and hardly meant: wrong units as a rule. Each is a warning of the run, one sentence per kind,
-of the worst item."""
+"""Values that are allowed but implausible, mostly because of wrong units. Each kind gives one warning of the run, about
+the worst item."""
 from __future__ import annotations
 
 import warnings
@@ -8,9 +8,9 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-LEAST_MODULUS_PA = 1e6  # of soft rubber; foams are no links
-LARGEST_STRAIN = 0.1  # the models are of linear elastic links
-# Colder than any structure in space is assembled; 20 degrees Celsius, written as kelvin, are colder.
+LEAST_MODULUS_PA = 1e6  # modulus of soft rubber; foams are no links
+LARGEST_STRAIN = 0.1  # limit of the linear elastic models
+# No structure in space is assembled at a lower temperature. 20 °C, written as kelvin, is lower.
 LEAST_REFERENCE_K = 100.0
 
 
@@ -19,9 +19,9 @@ def _others(count: int) -> str:
 
 
 def clearances(what: str, names: Sequence[str], clearance_m: np.ndarray, radius_m: np.ndarray) -> Iterable[str]:
-    """Yield a sentence on joints whose clearance is above the radius of the part that plays in it.
+    """Yield a sentence on joints whose clearance exceeds the radius of the part inside.
 
-    :param what: which joints, as ``revolute``
+    :param what: type of the joints, for example ``revolute``
     """
     found = np.flatnonzero(clearance_m > radius_m)
     if len(found):
@@ -31,7 +31,7 @@ def clearances(what: str, names: Sequence[str], clearance_m: np.ndarray, radius_
 
 
 def moduli(what: str, names: Sequence[str], young_modulus_Pa: np.ndarray) -> Iterable[str]:
-    """Yield a sentence on items that are softer than rubber."""
+    """Yield a sentence on items softer than rubber."""
     found = np.flatnonzero(young_modulus_Pa < LEAST_MODULUS_PA)
     if len(found):
         worst = found[np.argmin(young_modulus_Pa[found])]
@@ -40,10 +40,10 @@ def moduli(what: str, names: Sequence[str], young_modulus_Pa: np.ndarray) -> Ite
 
 
 def strains(what: str, names: Sequence[str], strain: np.ndarray, cause: str) -> Iterable[str]:
-    """Yield a sentence on items that are strained by more than a tenth.
+    """Yield a sentence on items with a strain above 10 %.
 
-    :param strain: largest one of each item, without its sign
-    :param cause: as ``thermal``
+    :param strain: largest absolute strain of each item
+    :param cause: for example ``thermal``
     """
     found = np.flatnonzero(strain > LARGEST_STRAIN)
     if len(found):
@@ -61,7 +61,7 @@ def warn_of_reference(key: str, reference_temperature_K: float) -> None:
 
 
 def axial_strains(names: Sequence[str], axial_force_N: np.ndarray, rigidity_N: np.ndarray) -> Iterable[str]:
-    """Yield a sentence on links that forces strain by more than a tenth.
+    """Yield a sentence on links that forces strain by more than 10 %.
 
     :param axial_force_N: (samples, links)
     :param rigidity_N: E A of every link

@@ -21,9 +21,9 @@ def silent(share: float) -> None:
 
 @contextmanager
 def shown(progress: bool | Tell, label: str) -> Iterator[Tell]:
-    """Yield what is called with the finished share, 0 to 1.
+    """Yield a function of the finished fraction, 0 to 1.
 
-    :param progress: False: nothing is told; True: shown on standard error; else what is called
+    :param progress: False: it does nothing; True: it shows the fraction on standard error; else the function to call
     """
     if callable(progress):
         yield progress
@@ -35,7 +35,7 @@ def shown(progress: bool | Tell, label: str) -> Iterator[Tell]:
 
 
 def console(**settings: Any) -> Console:
-    """Return a console of rich on which a text is nothing but text: no style, no control character of a title."""
+    """Return a console of rich that prints plain text, without styles and control characters."""
     from rich.console import Console  # 0.1 s; a run in Python prints nothing
     from rich.text import Text  # as Console
 
@@ -43,20 +43,21 @@ def console(**settings: Any) -> Console:
         def render_str(self, text: str, *arguments: Any, **more: Any) -> Text:
             return super().render_str(printable(text), *arguments, **more)
 
-    # Units stand in square brackets, which rich would take for styles.
+    # Units are in square brackets, which rich would interpret as styles.
     return Plain(highlight=False, soft_wrap=True, markup=False, **settings)
 
 
 @contextmanager
 def bar(label: str) -> Iterator[Tell]:
-    """Yield what moves a bar on a terminal, and prints a line every tenth elsewhere; on standard error."""
+    """Yield a function that moves a bar on a terminal, and prints a line every 10 % elsewhere; on standard error."""
     with on_console(console(stderr=True), label) as tell:
         yield tell
 
 
 @contextmanager
 def on_console(console: Console, label: str) -> Iterator[Tell]:
-    """Yield what shows the finished share on a console of rich: a bar on a terminal, else a line every tenth."""
+    """Yield a function that shows the finished fraction on a console of rich: a bar on a terminal, else a line every 10
+    %."""
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn  # as Console
 
     if console.is_terminal:
@@ -70,7 +71,7 @@ def on_console(console: Console, label: str) -> Iterator[Tell]:
 
     def line(share: float) -> None:
         if share >= 1 and told[0] < 0:
-            return  # what is over at once needs no progress
+            return  # a run that ends at once needs no progress
         if int(10 * share) > told[0]:
             told[0] = int(10 * share)
             console.print(f"{label}: {100 * share:.0f} %")

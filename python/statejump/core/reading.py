@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is asked of a path before it is read."""
+"""Checks of a path before it is read."""
 from __future__ import annotations
 
 import csv
@@ -14,9 +14,9 @@ from statejump.core.errors import Unreadable, size
 
 
 def is_file(path: Path) -> bool:
-    """Whether there is a file: no folder, device or pipe.
+    """Return whether there is a file that is no folder, device or pipe.
 
-    :raises Unreadable: the system does not say: a folder that may not be searched, a name that is too long
+    :raises Unreadable: the system does not report it: a folder without search permission, or a name that is too long
     """
     try:
         return stat.S_ISREG(path.stat().st_mode)
@@ -27,13 +27,14 @@ def is_file(path: Path) -> bool:
 
 
 def check_size(path: Path, largest_bytes: int, beside: str = "") -> None:
-    """Raise Unreadable for a file that is larger than what is read as a whole; ``beside`` says what else there is."""
+    """Raise Unreadable for a file that is too large to be read as a whole; ``beside`` adds a hint."""
     if path.stat().st_size > largest_bytes:
         raise Unreadable(code="file_too_large_to_read", file=path, largest=size(largest_bytes), why=beside)
 
 
 def finite_number(text: str) -> float | None:
-    """Return the finite number that a text is; None: it is none. Python takes 1_000 for a number, files do not."""
+    """Return the finite number of a text; None if it has none. Python accepts 1_000 as a number, files must not contain
+    it."""
     try:
         value = float(text)
     except ValueError:
@@ -43,7 +44,7 @@ def finite_number(text: str) -> float | None:
 
 @contextmanager
 def open_csv(path: Path, encoding: str = "utf-8-sig") -> Iterator[TextIO]:
-    """Open a CSV file for one of the readers of ``csv``; what is wrong with it while it is read is one sentence.
+    """Open a CSV file for one of the readers of ``csv``. A fault found during reading becomes one sentence.
 
     :raises Unreadable: it may not be read, is not UTF-8 text or not CSV
     """

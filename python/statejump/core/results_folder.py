@@ -2,8 +2,8 @@
 """Results folder of a run: one run at a time, and all of its files or none.
 
 A run locks the folder and writes into its subfolder ``.ID.partial``. When all files are complete and on disk, the run
-renames the subfolder to ``.ID.ready``, and moves the files to their places. After a kill, the next run in the folder
-moves the remaining files of ``.ID.ready`` and removes ``.ID.partial``.
+renames the subfolder to ``.ID.ready``, and moves the files to their final paths. After a kill, the next run in the
+folder moves the remaining files of ``.ID.ready`` and removes ``.ID.partial``.
 """
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ OTHER = "choose another with --results"
 class Results:
     """Root and options of results folders.
 
-    :param root: gets one folder per case
+    :param root: contains one folder per case
     :param wait: wait for another run in the same folder instead of being refused
     :param force: replace results of another case
     """
@@ -43,11 +43,11 @@ class Results:
 
     @contextmanager
     def folder(self, name: str, case: Case | None = None) -> Iterator[ResultsFolder]:
-        """Make (if needed), lock and yield ``root/name``. At the end, unpublished files and empty new folders are
+        """Create (if needed), lock and yield ``root/name``. At the end, unpublished files and empty new folders are
         removed.
 
-        :param case: the case of the results; None: a file gives the folder its name
-        :raises NotWritten: it cannot be written to, another run is at work in it, or it holds results of another case
+        :param case: the case of the results; None: the folder has the name of a file
+        :raises NotWritten: it is not writable, another run uses it, or it contains results of another case
         """
         path = self.root / name
         missing = [folder for folder in (path, *path.parents) if not os.path.exists(folder)]
@@ -61,7 +61,7 @@ class Results:
 
     @contextmanager
     def _held(self, path: Path, case: Case | None, made: bool) -> Iterator[ResultsFolder]:
-        """As :meth:`folder`.
+        """The implementation of :meth:`folder`.
 
         :param made: the folder did not exist: it is removed if it stays empty
         """
@@ -85,7 +85,7 @@ class Results:
             finally:
                 _remove(found.staged, ignore_errors=True)
         finally:
-            if made:  # while the lock is held: another run may be about to write into it
+            if made:  # while the lock is held, because another run may be about to write into it
                 with suppress(OSError):
                     os.rmdir(path)
             os.close(descriptor)
@@ -109,7 +109,7 @@ class Results:
             except BaseException:
                 os.close(descriptor)
                 raise
-            os.close(descriptor)  # the folder was deleted while we waited
+            os.close(descriptor)  # the folder was deleted while this run waited
 
 
 @dataclass
@@ -117,7 +117,7 @@ class ResultsFolder:
     """A locked results folder.
 
     :param path: the folder for readers
-    :param staged: folder of files that are not published yet
+    :param staged: folder of unpublished files
     :param case: the case of the results; None: no case
     """
 
@@ -137,7 +137,7 @@ class ResultsFolder:
 
         Further files can be staged and published afterwards.
 
-        :raises NotWritten: it could not be brought to disk, nothing appears; or a file could not be moved to its place
+        :raises NotWritten: the files could not be synced to disk, and none appears; or a file could not be moved
         """
         ready = self.path / f"{self.staged.name.removesuffix(PARTIAL)}{READY}"
         if self.case is not None:
@@ -165,7 +165,7 @@ class ResultsFolder:
 
 
 def _sync(paths: Sequence[Path]) -> None:
-    """Sync files and folders to disk; many of them in parallel, which a file system combines."""
+    """Sync files and folders to disk; many of them in parallel, because file systems combine these calls."""
     if len(paths) < SIDE_BY_SIDE:  # the threads cost more than they save
         for path in paths:
             synced(path)
@@ -177,7 +177,7 @@ def _sync(paths: Sequence[Path]) -> None:
 
 
 def _move(ready: Path, path: Path) -> None:
-    """Move complete files to their places and replace earlier ones."""
+    """Move complete files to their final paths and replace earlier ones."""
     for folder, _, files in os.walk(ready, topdown=False):
         place = path / Path(folder).relative_to(ready)
         place.mkdir(parents=True, exist_ok=True)
@@ -188,16 +188,16 @@ def _move(ready: Path, path: Path) -> None:
 
 
 def _remove(folder: Path, ignore_errors: bool = False) -> None:
-    """Remove a folder with what is in it."""
+    """Remove a folder with its contents."""
     with suppress(OSError):
-        return os.rmdir(folder)  # as a rule there is nothing left in it
+        return os.rmdir(folder)  # the folder is usually empty
     from shutil import rmtree  # loads what packs archives
 
     rmtree(folder, ignore_errors=ignore_errors)
 
 
 def _recover(path: Path) -> None:
-    """Move the published files of a killed run to their places, and remove its unpublished ones."""
+    """Move the published files of a killed run to their final paths, and remove its unpublished ones."""
     for ready in sorted(path.glob(f".*{READY}")):
         _move(ready, path)
     for left in path.glob(f".*{PARTIAL}"):

@@ -54,5 +54,5 @@ def check(folder: Path, case: Case) -> None:
 
 
 def write(staged: Path, folder: Path, case: Case) -> None:
-    """Write the file for a folder among the files that are staged for it."""
+    """Write the owner's file of a folder among its staged files."""
     write_json(staged / NAME, {"file": _file(folder, case), "sha256": _checksum(case)})

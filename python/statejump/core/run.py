@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A run of a model: columns over its samples, events, summary. All kinds of case and both models share the class."""
+"""A run of a model: columns over its samples, events, summary. All kinds of case and both models use this class."""
 from __future__ import annotations
 
 import re
@@ -93,7 +93,7 @@ class Column:
 
     @property
     def shown(self) -> np.ndarray:
-        """The values; the texts, if the column has labels."""
+        """The values, or the texts if the column has labels."""
         found: np.ndarray = np.array(self.labels)[self.values] if self.labels else self.values
         return found
 
@@ -140,7 +140,7 @@ class Events(Sequence[Event]):
         return next((event for event in self._events if event.kind == kind and event.time_s <= until_s), None)
 
     def frame(self) -> pandas.DataFrame:
-        """Return a row per event, units in the names of the columns."""
+        """Return one row per event, with units in the column names."""
         pandas = libraries.pandas()
 
         return pandas.DataFrame([vars(event) for event in self._events], columns=list(Event.__dataclass_fields__))
@@ -280,9 +280,9 @@ class Run:
                 return replace(column, values=column.values[before])
             shape = (-1,) + (1,) * (column.values.ndim - 1)
             here, there, way = column.values[before], column.values[after], np.clip(weight, 0, 1).reshape(shape)
-            with np.errstate(invalid="ignore"):  # of two that are infinite
+            with np.errstate(invalid="ignore"):  # of two infinite values
                 between = here + way * (there - here)
-            # At its own time a sample keeps its value, even beside a NaN.
+            # At the time of a sample, the sample keeps its value, even beside a NaN.
             return replace(column, values=np.where(way > 0, between, here))
 
         groups: dict[str, Any] = {}
@@ -293,8 +293,8 @@ class Run:
         return replace(self, **groups, native=None)
 
     def flat(self, groups: Sequence[str] = ("history", "energy")) -> dict[str, np.ndarray]:
-        """Return columns of one value a sample, in the order of the CSV files: ``name``, ``name[item]``,
-        ``name[item].x``; those of links and contacts begin with ``links/`` and ``contacts/``."""
+        """Return columns with one value per sample, in the order of the CSV files: ``name``, ``name[item]``,
+        ``name[item].x``. Those of links and contacts begin with ``links/`` and ``contacts/``."""
         for group in groups:
             if group not in GROUPS:
                 raise UnknownKey(f"group {group!r}", **suggestion(group, GROUPS))
@@ -325,7 +325,7 @@ class Run:
                     yield f"{name}[{item}].{letter}", values[:, place, axis]
 
     def frame(self, groups: Sequence[str] = ("history", "energy")) -> pandas.DataFrame:
-        """Return the samples as a table, units in the names of the columns.
+        """Return the samples as a table, with units in the column names.
 
         :param groups: any of ``history``, ``energy``, ``links``, ``contacts``; see :meth:`flat`
         """
@@ -350,7 +350,7 @@ class Run:
         """Draw the run.
 
         :param axes: axes to draw into, one or several: the figure's panels in their order; None: a new figure
-        :return: the figure; matplotlib's backend is left alone
+        :return: the figure; matplotlib's backend does not change
         """
         return _DRAWN(self.definition, [self], axes)
 
@@ -404,13 +404,13 @@ def energy_residue_J(
     """Return supplied minus stored minus dissipated energy over a whole run [J].
 
     :param columns: columns by name; a missing one counts as 0
-    :param supplied: names of the columns, ``thermal_work_J`` and the like; so the others
+    :param supplied: names of the columns of supplied energy, such as ``thermal_work_J``; the other parameters likewise
     """
     total = [sum(change(columns, name) for name in names) for names in (supplied, stored, dissipated)]
     return total[0] - total[1] - total[2]
 
 
-# Two models find one limit at slightly different loads: a number and its unit.
+# Two models may find one limit at slightly different loads. This pattern matches a number and its unit.
 _AMOUNT = re.compile(r"[-+]?\d\S*( \S+)?")
 
 

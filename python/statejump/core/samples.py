@@ -28,7 +28,7 @@ def read_samples(path: Path, whole: bool = True) -> dict[str, np.ndarray]:
     """Return the columns of a file.
 
     :param whole: raise an error if the last row is incomplete; else omit this row
-    :raises Unreadable: the file holds no samples, or not these
+    :raises Unreadable: the file contains no samples, or other ones
     """
     with path.open("rb") as stream:
         names = json.loads(stream.readline() or b"[]")

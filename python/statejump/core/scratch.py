@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-PREFIX = "statejump-run-"  # used for nothing else: unlocked folders with this prefix are removed
+PREFIX = "statejump-run-"  # reserved prefix: unlocked folders with it are removed
 YOUNG_S = 60.0  # a younger folder may not be locked yet
 
 
@@ -20,7 +20,7 @@ YOUNG_S = 60.0  # a younger folder may not be locked yet
 def scratch() -> Iterator[Path]:
     """Yield a new folder below ``$TMPDIR``, removed at the end.
 
-    :raises OSError: there is no place for it
+    :raises OSError: it cannot be created
     """
     _sweep(Path(tempfile.gettempdir()))
     folder = Path(tempfile.mkdtemp(prefix=PREFIX))

@@ -12,7 +12,7 @@ STUCK, FRICTIONLESS = "stuck", "frictionless"
 
 
 def start_friction() -> Any:
-    """Return the key. A structure is assembled before it is loaded: stuck is the default."""
+    """Return the key. The default is stuck, because a structure is assembled before it is loaded."""
     return choice(STUCK, (STUCK, FRICTIONLESS),
                   "joints hold where they were assembled; frictionless: friction begins after loads and preloads act")
 

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The reader of text tables, as spreadsheets and test rigs write them.
+"""Reader of text tables of spreadsheets and test rigs.
 
-Separator is ``,``, ``;``, a tab or blanks; the decimal mark a point or, where no cell has a point, a comma. The file is
-UTF-8 or UTF-16, with or without a byte order mark, or in Excel's code page 1252. Blank rows and blank columns at the
-end are left out, and comments (``#``, ``%``) at the head, the last of which may be the header. Units may stand in a
-row of their own below the header. A first column without a name that counts the rows, as pandas has it, is left out.
-Groups of thousands are read where a cell has both marks, durations of MATLAB (``0.05 sec``), LabVIEW's measurements.
+The separator is ``,``, ``;``, a tab or blanks. The decimal mark is a point or, if no cell has a point, a comma. The
+file is UTF-8 or UTF-16, with or without a byte order mark, or in Excel's code page 1252. The reader ignores blank rows,
+blank columns at the end, and a first column without a name that numbers the rows, as pandas writes it. Comments (``#``,
+``%``) may precede the table; the last one may be the header. Units may be in a row of their own below the header. The
+reader also accepts groups of thousands if a cell has both marks, durations of MATLAB (``0.05 sec``), and measurements
+of LabVIEW.
 """
 from __future__ import annotations
 
@@ -27,15 +28,15 @@ from statejump.core.reading import check_size, finite_number, is_file, open_csv
 from statejump.core.units import split_unit
 
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".lvm")
-BLOCK = 4096  # rows that are converted at once
-SEPARATORS = ("\t", ";", ",")  # where a header has several, the first one
+BLOCK = 4096  # rows that are converted at a time
+SEPARATORS = ("\t", ";", ",")  # in order of preference, if a header has several
 BLANKS = " "
 _WORD = re.compile(r'"((?:[^"]|"")*)"(?=\s|$)|(\S+)')
 _QUOTED = re.compile(r'"(?:[^"]|"")*"')
 _DECIMAL_COMMA = re.compile(r"[+-]?(\d+,\d*|,\d+)([eE][+-]?\d+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
-# What texts have in Excel's older code page beyond ASCII: ° ² ³ µ · and letters of western Europe. Those at 0x80 to
-# 0x9f are umlauts in the code pages of DOS and of old Macintoshes.
+# Characters beyond ASCII that Excel's older code page has in usual texts: ° ² ³ µ · and letters of western Europe.
+# Bytes 0x80 to 0x9f are umlauts in the code pages of DOS and of old Macintoshes.
 _BYTES_1252 = b"\xb0\xb2\xb3\xb5\xb7" + bytes({*range(0xC0, 0x100)} - {0xD7, 0xF7})
 _GROUPS = (re.compile(r"[+-]?\d{1,3}(?:,\d{3})+\.\d*"), re.compile(r"[+-]?\d{1,3}(?:\.\d{3})+,\d*"))
 _DURATION = re.compile(r"\s*([+-]?[\d.]+(?:[eE][+-]?\d+)?)\s+(sec|min|hr|s|h)\s*")
@@ -48,13 +49,13 @@ Place = Callable[[int], tuple[int, str]]
 
 
 def quoted(text: object) -> str:
-    """Return a part of a file as a sentence quotes it."""
+    """Return a part of a file, quoted for a sentence."""
     shown = repr(printable(str(text)))
     return shown if len(shown) <= 40 else shown[:36] + "...'"
 
 
 class Table:
-    """A table that is being read.
+    """A table while it is read.
 
     :param path: the file
     :param separator: of its cells
@@ -84,7 +85,8 @@ class Table:
                 raise Unreadable(code="column_without_name", file=path, line=self.line, column=place + self._counts)
         self._first = list(self._taken())
         self.header = tuple(self._with_units(cells))
-        self._decided = self.separator == ";"  # that a comma is a decimal mark: German Excel separates so
+        # Whether a comma is known to be a decimal mark: German Excel uses semicolons for this reason.
+        self._decided = self.separator == ";"
         self._comma: tuple[int, str, str] | None = None
         self._point: tuple[int, str, str] | None = None
 
@@ -96,7 +98,7 @@ class Table:
                 return
 
     def _with_units(self, names: Sequence[str]) -> Sequence[str]:
-        """Return the names of the columns with the units of a row of its own, which is then no row of the table."""
+        """Return the names of the columns with the units of a units row, which is then removed from the table."""
         row = self._first[0][self._counts:] if self._first else []
         units = [cell.strip().strip("[]()").strip() for cell in row[:len(names)]]
         if len(units) < len(names) or any(_NUMERIC.search(unit) for unit in units) or not any(units):
@@ -106,7 +108,7 @@ class Table:
         if not all(unit in NO_UNIT or is_unit(unit) for unit in units):
             return names
         if any(unit not in NO_UNIT and split_unit(name)[1] not in ("-", unit) for name, unit in zip(names, units)):
-            return names  # a key that ends in another unit
+            return names  # a key with another unit
         self._first.clear()
         return [name if unit in NO_UNIT or split_unit(name)[1] == unit else f"{name} [{unit}]"
                 for name, unit in zip(names, units)]
@@ -133,8 +135,8 @@ class Table:
         return ",", iter(())
 
     def _labview(self, stream: TextIO) -> tuple[str, Iterator[str]]:
-        """Return the separator of a measurement of LabVIEW, and its lines from the names of the columns on. What a
-        column counts in is in the lines above; comments behind the last column are left out."""
+        """Return the separator of a measurement of LabVIEW, and its lines from the column names on. The lines above
+        contain the units of the columns. Comments behind the last column are omitted."""
         separator = "\t"
         labels: dict[str, list[str]] = {}
         self._skipped += 1
@@ -158,13 +160,13 @@ class Table:
 
     @property
     def line(self) -> int:
-        """Number of the line that was read last."""
+        """Number of the last line read."""
         return self._skipped + int(self._reader.line_num)
 
     def rows(self) -> Iterator[tuple[int, list[str]]]:
-        """Return the rows below the header, with their lines.
+        """Return the rows below the header, with their line numbers.
 
-        :raises Unreadable: a row has not as many cells as the header
+        :raises Unreadable: a row and the header differ in their number of cells
         """
         width, counted = len(self.header), None
         for row in chain(self._first, self._reader):
@@ -184,7 +186,7 @@ class Table:
             yield self.line, row
 
     def _counted_on(self, before: int | None, cell: str) -> int | None:
-        """Return the number in a first column without a name. :raises Unreadable: it does not count the rows"""
+        """Return the number in a first column without a name. :raises Unreadable: it does not number the rows"""
         if not cell and before is None:
             return None
         if not cell.isdecimal() or (before is not None and int(cell) != before + 1):
@@ -192,7 +194,7 @@ class Table:
         return int(cell)
 
     def blocks(self) -> Iterator[tuple[list[int], list[list[str]]]]:
-        """Return rows with their lines, some at a time."""
+        """Yield blocks of rows with their line numbers."""
         lines: list[int] = []
         rows: list[list[str]] = []
         for line, row in self.rows():
@@ -209,7 +211,7 @@ class Table:
 
         :param place: line and column of the i-th cell
         :param empty: whether a cell may be empty; it is NaN
-        :raises Unreadable: one of them is none, with line and column
+        :raises Unreadable: one of them is no finite number; the message has line and column
         """
         joined = "".join(cells)
         if "," in joined and "." in joined:
@@ -220,7 +222,7 @@ class Table:
         if "." in joined and self._point is None:
             self._point = next((*place(i), cell) for i, cell in enumerate(cells) if "." in cell)
         self._check_marks()
-        if "_" not in joined:  # Python takes 1_000 for a number
+        if "_" not in joined:  # Python accepts 1_000 as a number
             try:
                 found = np.fromiter(map(float, cells), float, len(cells))
                 if np.isfinite(found).all():
@@ -240,7 +242,7 @@ class Table:
         return value
 
     def _without_groups(self, cells: Sequence[str], place: Place) -> list[str]:
-        """Return cells without the marks between thousands, of those that have a decimal mark as well."""
+        """Return cells without marks between thousands, if they also have a decimal mark."""
         found = []
         for index, cell in enumerate(cells):
             if _GROUPS[0].fullmatch(cell.strip()):
@@ -272,7 +274,7 @@ class Table:
                              cell=quoted(cell.strip()), other=quoted(self._point[2].strip()), other_line=self._point[0])
 
     def check_commas(self) -> None:
-        """Refuse commas that may be decimal marks or part thousands, once all rows are read."""
+        """Raise an error, after all rows are read, if commas may be either decimal marks or thousands separators."""
         if self._comma and not self._decided:
             line, column, cell = self._comma
             raise Unreadable(code="decimal_comma_or_thousands", file=self.path, line=line, column=quoted(column),
@@ -280,7 +282,7 @@ class Table:
 
 
 def _cells(line: str) -> list[str]:
-    """Return the cells of a line, whatever separates them."""
+    """Return the cells of a line, for any separator."""
     separator = _separator(line)
     return line.split() if separator == BLANKS else [cell.strip() for cell in line.split(separator)] or [""]
 
@@ -298,7 +300,7 @@ def _words(line: str) -> list[str]:
 
 
 def _joined(words: Iterable[str]) -> list[str]:
-    """Return names of columns from the words of a header: a unit in brackets belongs to the word before it."""
+    """Return names of columns from the words of a header; a unit in brackets belongs to the word before it."""
     found: list[str] = []
     depth = 0
     for word in words:
@@ -311,7 +313,7 @@ def _joined(words: Iterable[str]) -> list[str]:
 
 
 class _BlankSeparated:
-    """Rows of cells between blanks, as a reader of ``csv`` has them."""
+    """Rows of cells between blanks, with the interface of a reader of ``csv``."""
 
     def __init__(self, lines: Iterable[str]) -> None:
         self._lines = iter(lines)
@@ -327,7 +329,7 @@ class _BlankSeparated:
 
 
 def _encoding(path: Path) -> str:
-    """Return how the text of a file is encoded; what is none of them is refused while it is read."""
+    """Return the encoding of a text file. A file in another encoding is refused while it is read."""
     with path.open("rb") as stream:
         content = stream.read(1 << 16)
         if content.startswith((b"\xff\xfe", b"\xfe\xff")):
@@ -350,8 +352,8 @@ def _encoding(path: Path) -> str:
 def open_table(path: Path, largest_bytes: int | None = None, beside: str = "") -> Iterator[Table]:
     """Open a table.
 
-    :param largest_bytes: more are refused; ``beside`` says what else there is
-    :raises Unreadable: it may not be read, is no text table, or has commas that may be one or the other mark
+    :param largest_bytes: larger files are refused; ``beside`` adds a hint
+    :raises Unreadable: it may not be read, is no text table, or has ambiguous commas
     """
     try:
         encoding = _encoding(path)
@@ -366,10 +368,10 @@ def open_table(path: Path, largest_bytes: int | None = None, beside: str = "") -
 
 
 def read_columns(path: Path) -> dict[str, np.ndarray]:
-    """Return the columns of a table as they are called; numbers where all cells are, NaN too.
+    """Return the columns of a table by their names; as numbers if all cells are numbers or NaN.
 
-    :raises Unreadable: the file may not be read, is no table with as many cells in each row as in the header, holds
-        no samples
+    :raises Unreadable: the file may not be read, has a row with another number of cells than the header, or has no
+        samples
     """
     with open_table(path) as table:
         lines, cells = _all(table)
@@ -386,7 +388,7 @@ def read_columns(path: Path) -> dict[str, np.ndarray]:
 
 
 def _all(table: Table) -> tuple[list[int], list[tuple[str, ...]]]:
-    """Return the lines of all rows, and their cells by column."""
+    """Return the line numbers of all rows, and their cells by column."""
     lines, rows = [], []
     for line, row in table.rows():
         lines.append(line)
@@ -400,12 +402,12 @@ def read_known(
     path: Path, known: Sequence[str], words: Mapping[str, Sequence[str]] | None = None, texts: Collection[str] = (),
     ignored: Collection[str] = (),
 ) -> dict[str, np.ndarray]:
-    """Return the columns of a table by keys that end in their units, in these units.
+    """Return the columns of a table by key. The end of a key is the unit of its values.
 
     :param known: keys
-    :param words: by key: what else its quantity is called
+    :param words: other names of the quantity, by key
     :param texts: keys whose cells are texts
-    :param ignored: names of columns that are left out
+    :param ignored: names of columns to omit
     :raises StatejumpError: one sentence with the file, and line or column
     """
     with open_table(path) as table:

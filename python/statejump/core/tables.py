@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The one writer of tables: CSV with units in the headers, Markdown, JSON."""
+"""Writer of all tables: CSV with units in the headers, Markdown, JSON."""
 from __future__ import annotations
 
 import csv
@@ -17,7 +17,7 @@ from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.core.output import write_atomically
 
 
-BLOCK = 4096  # rows that are written at once
+BLOCK = 4096  # rows that are written at a time
 _SPECIAL = re.compile('[,"\r\n]')  # within a cell
 
 
@@ -58,7 +58,7 @@ def write_columns(columns: Mapping[str, np.ndarray], path: Path) -> None:
     length = max((len(values) for values in columns.values()), default=0)
     with write_atomically(path) as stream:
         csv.writer(stream).writerow(columns)
-        for start in range(0, length, BLOCK):  # as numbers of Python a column takes four times the memory
+        for start in range(0, length, BLOCK):  # as Python numbers, a column takes four times the memory
             cells = [_cells(values[start:start + BLOCK]) for values in columns.values()]
             stream.writelines((",".join(row) or '""') + "\r\n" for row in zip(*cells))
 
@@ -84,7 +84,7 @@ def finite(value: Any) -> Any:
 
 
 def write_json(path: Path, document: Any, indent: int = 2) -> Path:
-    """Write a document as JSON and return the path; numbers that are none become null."""
+    """Write a document as JSON and return the path; numbers that are not finite become null."""
     with write_atomically(path) as stream:
         stream.write(json.dumps(finite(document), indent=indent, ensure_ascii=False) + "\n")
     return path
@@ -93,7 +93,7 @@ def write_json(path: Path, document: Any, indent: int = 2) -> Path:
 def markdown(header: Sequence[str], rows: Iterable[Sequence[Any]], right: Iterable[int] = ()) -> list[str]:
     """Return a table as lines of Markdown.
 
-    :param right: places of the columns that are aligned to the right
+    :param right: indices of the columns that are aligned to the right
     """
     places = set(right)
     lines = ["| " + " | ".join(header) + " |",
@@ -102,7 +102,8 @@ def markdown(header: Sequence[str], rows: Iterable[Sequence[Any]], right: Iterab
 
 
 def write_markdown(path: Path, lines: Sequence[str]) -> Path:
-    """Write lines of Markdown and return the path. Markdown hands HTML on: what would begin an element becomes text."""
+    """Write lines of Markdown and return the path. Markdown passes HTML through, so the beginning of an element is
+    escaped."""
     return write_text(path, [re.sub("<(?=[A-Za-z/!?])", "&lt;", line) for line in lines])
 
 
@@ -130,9 +131,9 @@ class Shown:
 
 
 def check_columns(columns: Mapping[str, np.ndarray]) -> None:
-    """Refuse columns that are not numbers, one for every row, in the words of a table.
+    """Raise an error unless all columns contain finite numbers, one for every row.
 
-    :raises StatejumpError: they differ in length, hold no number in a row or one that is not finite
+    :raises StatejumpError: they differ in length, or have a missing or infinite number
     """
     if len({len(values) for values in columns.values()}) > 1:
         raise StatejumpError(code="columns_of_other_length",

@@ -27,17 +27,17 @@ if TYPE_CHECKING:
 ZERO_CELSIUS_K = 273.15
 ENDINGS = {"_K": 0.0, "_degC": ZERO_CELSIUS_K}
 SUFFIXES = (*TEXT_SUFFIXES, ".h5", ".hdf5")
-TIMES = ("t", "timestamp", "datetime", "date", "date/time", "Zeit", "Datum/Zeit")  # what a first column may be called
+TIMES = ("t", "timestamp", "datetime", "date", "date/time", "Zeit", "Datum/Zeit")  # accepted names of a first column
 ACCEPTED = "NAME_K, NAME_degC, NAME [K] or NAME [°C]"
 HDF5_TEMPERATURES = {"temperature_K": 0.0, "temperature_degC": ZERO_CELSIUS_K}
-ENDS = ("@a", "@b")  # of the names of columns: first and second node of a link
+ENDS = ("@a", "@b")  # endings of names of columns: first and second node of a link
 
 
 @dataclass(frozen=True)
 class Read:
-    """What a file holds.
+    """The content of a file.
 
-    :param offset_K: what a column's numbers lack to be kelvin (m)
+    :param offset_K: offset of each column's numbers to kelvin (m)
     """
 
     path: Path
@@ -53,13 +53,13 @@ class Read:
 
 
 def of_means(read: Read) -> Read:
-    """Return the columns with one in place of two that are of both ends of a link: their mean, which is what a straight
-    rod's length follows.
+    """Return the columns. Two columns for both ends of a link are replaced by their mean, which determines the length
+    of a straight rod.
 
-    :raises Unreadable: the other end is missing, has another unit, or the link has a column of its own too
+    :raises Unreadable: the other end is missing or has another unit, or the link has its own column too
     """
     place = {name: index for index, name in enumerate(read.names)}
-    pairs: dict[str, tuple[int, int]] = {}  # a column alone is both
+    pairs: dict[str, tuple[int, int]] = {}  # a single column is used for both
     for name, index in place.items():
         link, end = name[:-len(ENDS[0])], name[-len(ENDS[0]):]
         if end not in ENDS or not link:
@@ -81,7 +81,7 @@ def of_means(read: Read) -> Read:
 
 
 def refuse(read: Read, wrong: NDArray[np.bool_], what: str) -> None:
-    """Raise Unreadable for the first value that is wrong."""
+    """Raise Unreadable for the first invalid value."""
     if wrong.any():
         row, column = np.unravel_index(int(np.argmax(wrong)), wrong.shape)
         raise Unreadable(code="bad_temperature", cause=f"{read.values[row, column]:g} {what}", file=read.path,
@@ -93,7 +93,7 @@ def listed(names: tuple[str, ...]) -> str:
 
 
 def read_columns(path: Path, key: str) -> Read:
-    """Return what a file of temperatures holds.
+    """Return the content of a file of temperatures.
 
     :raises StatejumpError: one sentence with the file, and line or column
     """
@@ -138,7 +138,7 @@ def _text(path: Path) -> Read:
 
 
 def _time(table: Table) -> tuple[int, Column]:
-    """Return which column is the time: the first one, else the only one that is called so."""
+    """Return the column of times: the first column, or the only one with such a name."""
     try:
         return 0, matched(table.header[:1], ("time_s",), {"time_s": TIMES})[0]
     except StatejumpError as refused:
@@ -154,7 +154,7 @@ def _time(table: Table) -> tuple[int, Column]:
 
 
 def _temperature(path: Path, cell: str) -> tuple[str, Conversion]:
-    """Return the name of a column of temperatures, and how its numbers become kelvin."""
+    """Return the name of a column of temperatures, and the conversion of its numbers to kelvin."""
     for ending, offset in ENDINGS.items():
         if cell.endswith(ending) and cell.removesuffix(ending).isprintable() and cell != ending:
             return cell.removesuffix(ending), Conversion(offset=offset)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Temperatures from files: ``table_file`` of a program, ``members_file`` of a truss.
 
-They are read with the case file, and what they say takes their place: a program becomes a table, the histories of
-members an object of arrays. So a result file and the samples of a campaign need none of these files any more.
+Loading a case reads these files and replaces their names by their contents: a program becomes a table, the histories of
+members become an object of arrays. Result files and samples of a campaign therefore need none of the files.
 """
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ if TYPE_CHECKING:
 
 
 class Histories(Attached):
-    """Temperature changes of members over time, straight between the times; immutable.
+    """Temperature changes of members over time, linear between the times; immutable.
 
     :param names: of the members (m)
     :param time_s: from 0, rising (n)
     :param temperature_change_K: from the reference temperature (n, m); the first row is 0
-    :param source: how sentences call them; "": not known
+    :param source: name in sentences; "": unknown
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class Histories(Attached):
 
     @cached_property
     def sha256(self) -> str:
-        """SHA-256 of names and numbers: two histories are equal where theirs is."""
+        """SHA-256 of names and numbers, which decides the equality of two histories."""
         digest = hashlib.sha256("\n".join(self.names).encode())
         for values in (self.time_s, self.temperature_change_K):
             digest.update(np.ascontiguousarray(values).data)
@@ -87,12 +87,12 @@ class Histories(Attached):
 
 
 def with_files(data: Mapping[str, Any], folder: Path, section: type[Section] | None) -> Mapping[str, Any]:
-    """Return a parsed case file with what its temperature files say in place of their names; itself, where it
-    names none. What is wrong with the keys themselves is left to the checks of the case.
+    """Return a parsed case file in which the contents of temperature files replace their names. Without such files,
+    return the document itself. The checks of the case find faults of the keys themselves.
 
-    :param folder: where a relative path begins
-    :param section: what [thermal] is in this kind of case; None: the kind has none
-    :raises StatejumpError: a file cannot be read or is not what it should be: one sentence with its name
+    :param folder: base of relative paths
+    :param section: class of [thermal] in this kind of case; None: the kind has no such section
+    :raises StatejumpError: a file cannot be read or is invalid: one sentence with its name
     """
     thermal, programs = data.get("thermal"), data.get("program")
     if section is None or not isinstance(thermal, Mapping):
@@ -114,7 +114,7 @@ def _program(item: Any, folder: Path, common: Mapping[str, Any]) -> Any:
     try:
         found = _table({**common, **item}, folder, "", item.get("name"))
     except StatejumpError as refused:
-        if refused.file is None:  # a key of the case
+        if refused.file is None:  # a key of the case itself
             refused.item = f"program {item.get('name')!r}"
         raise
     return found
@@ -129,7 +129,7 @@ def _rule(key: str, value: Any, section: str) -> None:
 
 
 def _checked(given: Mapping[str, Any], section: str, key: str) -> None:
-    """Raise NotAllowed where what stands beside the name of a file does not go with it."""
+    """Raise NotAllowed for a key that contradicts the name of a file."""
     for name in ("reference_temperature_K", "lead_in_s", "lead_out_s", "table_column"):
         if given.get(name) is not None:
             _rule(name, given[name], section)
@@ -172,7 +172,7 @@ def _table(given: Mapping[str, Any], folder: Path, section: str, name: Any) -> d
 
 
 def _members(given: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Return the common program with the histories of members; as a table it is their mean."""
+    """Return the common program with the histories of members; its table has their mean."""
     _checked(given, "thermal.", "members_file")
     if given.get("table_column") is not None:
         raise NotAllowed("thermal.table_column", code="conflicting_key", other="thermal.members_file")
@@ -183,10 +183,10 @@ def _members(given: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def _changes(read: Read, given: Mapping[str, Any], section: str) -> tuple[Numbers, Numbers]:
-    """Return times from 0 and temperature changes from 0 of a file: its own times since its first, between the lead-in
-    and the lead-out.
+    """Return times and temperature changes of a file, both from 0. Its own times, counted from the first, lie between
+    lead-in and lead-out.
 
-    :raises StatejumpError: it does not begin at the reference temperature and nothing says how to get there
+    :raises StatejumpError: the first row is not at the reference temperature, and there is no lead-in
     """
     reference, lead_in, lead_out = (given.get(key) for key in ("reference_temperature_K", "lead_in_s", "lead_out_s"))
     time_s = read.time_s - read.time_s[0]

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Temperature programs: the section of a case file, its range, the engine's program of it.
+"""Temperature programs: the section of a case file, its range, and the engine's program.
 
-A program of a shape is repeated every ``period_s``. The times of a table are the times: its cycle lasts as
-long as its last one says. A table that ends elsewhere than it begins gets a return: one more row, ΔT = 0 at
-``period_s``.
+A program with a shape repeats every ``period_s``. The cycle of a table ends at its last time. A table that does not end
+at its first temperature gets a return: one more row, ΔT = 0 at ``period_s``.
 """
 from __future__ import annotations
 
@@ -24,13 +23,13 @@ if TYPE_CHECKING:
 
 
 SHAPES = ("triangle", "half_sine", "sine", "table")
-PERIOD_s = 1.0  # where nothing says how long a cycle lasts
-SAME_TIME = 1e-9  # two durations that differ by less, relatively, are the same but for rounding
-SAME_TEMPERATURE_K = 1e-9  # below this a difference of two temperatures is the rounding of °C into kelvin
+PERIOD_s = 1.0  # default duration of a cycle
+SAME_TIME = 1e-9  # relative difference below which two durations are equal up to rounding
+SAME_TEMPERATURE_K = 1e-9  # difference below which two temperatures are equal up to the conversion from °C to kelvin
 LONGEST_TABLE_S, LARGEST_CHANGE_K = 1e12, 1e4
 LONGEST_PERIOD_S = 1e6
 MOST_SHOWN = 20  # values of a list in a sentence
-# Keys that name a file of temperatures or say what is in it; see :mod:`statejump.core.temperature_files`.
+# Keys that name a file of temperatures, or describe its content; see :mod:`statejump.core.temperature_files`.
 KEYS_OF_FILES = ("table_file", "table_column", "members_file", "reference_temperature_K", "lead_in_s",
                  "lead_out_s")
 
@@ -74,8 +73,8 @@ class Thermal(Section):
 class CaseThermal(Thermal):
     """The temperature program of a case.
 
-    ``return_to_reference`` is true by default: a state jump is a change at one temperature, so a program that ends
-    elsewhere has none. On the quasi-static path the jump does not depend on how long the return takes.
+    ``return_to_reference`` is true by default: a state jump is a change at one temperature, so a program that ends at
+    another one has none. On the quasi-static path the jump does not depend on the duration of the return.
     """
 
     return_to_reference: bool = switch(
@@ -84,7 +83,7 @@ class CaseThermal(Thermal):
 
 @dataclass(frozen=True)
 class MemberProgram:
-    """The table of one member, as a temperature program has it."""
+    """The table of one member, with the interface of a temperature program."""
 
     table_time_s: NDArray[np.float64]
     table_temperature_change_K: NDArray[np.float64]
@@ -107,8 +106,8 @@ class Ending:
 
     :param time_s: of the last row, in the last cycle
     :param temperature_change_K: there, of the program that is furthest from the reference temperature
-    :param return_s: how long the added return takes [s]; 0: none is added
-    :param remedy: what adds one
+    :param return_s: duration of the added return [s]; 0: none is added
+    :param remedy: the setting that adds one
     """
 
     time_s: float
@@ -138,17 +137,18 @@ class Ending:
 def ending(
     programs: Sequence[Thermal | MemberProgram], returns: bool, period_s: float | None, key: str = "thermal.period_s",
 ) -> Ending | None:
-    """Return where the programs of a case end, if that is not at the reference temperature.
+    """Return the ending of the programs of a case, if it is not at the reference temperature.
 
-    The return takes as long as the table that is furthest away at its mean rate, or until ``period_s``.
+    The added return ends at ``period_s``. Without this key, its rate is the mean rate of the table that is furthest
+    away.
 
     :param programs: the common one first, as given, without a return
     :param returns: whether a return is wanted
-    :param period_s: how long a cycle lasts; None: nothing says it
+    :param period_s: duration of a cycle; None: not given
     :raises NotAllowed: ``period_s`` is before the last row
     """
     tables = [one for one in programs if one.shape == "table"]
-    if not tables or not all(map(_is_sound, tables)):  # :func:`check` refuses what is not
+    if not tables or not all(map(_is_sound, tables)):  # :func:`check` refuses the others
         return None
     furthest = max(tables, key=lambda one: abs(float(_changes(one)[-1])))
     changes, lasts, cycles = _changes(furthest), float(_times(furthest)[-1]), programs[0].cycles
@@ -170,7 +170,7 @@ def ending(
 
 
 def _is_sound(program: Thermal | MemberProgram) -> bool:
-    """Whether a table has rising times and as many temperatures."""
+    """Return whether a table has rising times and equally many temperatures."""
     if program.table_time_s is None or program.table_temperature_change_K is None:
         return False
     times = _times(program)
@@ -188,7 +188,7 @@ def _changes(program: Thermal | MemberProgram) -> NDArray[np.float64]:
 def rows(
     program: Thermal | MemberProgram, period_s: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return times [s] and temperature changes [K] of a table, with the return that is added until ``period_s``."""
+    """Return times [s] and temperature changes [K] of a table, with the added return until ``period_s``."""
     times, changes = _times(program), _changes(program)
     if period_s - times[-1] <= SAME_TIME * times[-1]:
         return times, changes
@@ -196,14 +196,14 @@ def rows(
 
 
 def check(thermal: Thermal, section: str = "thermal.", returns: bool = False) -> None:
-    """Raise StatejumpError for what is wrong with a program as a whole.
+    """Raise StatejumpError for an invalid program.
 
-    :param section: how its keys begin, "" in a table of its own
-    :param returns: whether a return is added where a table ends elsewhere than at the reference temperature
+    :param section: prefix of its keys, "" in a table of its own
+    :param returns: whether a return is added to a table that does not end at the reference temperature
     """
     for key in KEYS_OF_FILES:
         if getattr(thermal, key, None) is not None:
-            # Files are read with the case file, and their names are gone then.
+            # Loading a case replaces the names of files by their contents, so a name left here comes from elsewhere.
             raise NotAllowed(f"{section}{key}", getattr(thermal, key), code="key_of_case_file")
     if thermal.shape != "table":
         if thermal.temperature_change_max_K is None:
@@ -231,26 +231,26 @@ def check(thermal: Thermal, section: str = "thermal.", returns: bool = False) ->
 
 
 def _short(values: list[float]) -> Any:
-    """Return a list as a sentence can hold it."""
+    """Return a list in a length that fits into a sentence."""
     return values if len(values) <= MOST_SHOWN else ABSENT
 
 
 def period_of(
     thermal: Thermal, given_s: float | None, key: str, default_s: float = PERIOD_s, return_s: float = 0.0
 ) -> float:
-    """Return how long a cycle lasts [s]: of a table its last time and the return, else what is given.
+    """Return the duration of a cycle [s]: for a table its last time plus the return, else the given one.
 
-    :param given_s: what the case says of it; None: nothing
-    :param key: the key that says it
-    :param default_s: where nothing says it
-    :param return_s: how long the return takes that is added to the table
-    :raises NotAllowed: a table lasts otherwise
+    :param given_s: duration in the case; None: not given
+    :param key: the key of the duration
+    :param default_s: duration if none is given
+    :param return_s: duration of the added return of the table
+    :raises NotAllowed: the table has another duration
     """
     lasts = thermal.table_time_s[-1] if thermal.shape == "table" and thermal.table_time_s else 0.0
     if not lasts > 0:  # no table, or one that :func:`check` refuses
         return default_s if given_s is None else given_s
     if return_s and given_s is not None and abs(given_s - lasts) <= SAME_TIME * lasts:
-        given_s = None  # of a further program: what its table lasts
+        given_s = None  # a further program has the duration of its table
     lasts += return_s
     if given_s is not None and abs(given_s - lasts) > SAME_TIME * lasts:
         raise NotAllowed(key, given_s, code="period_beside_table", lasts=lasts, key_to_leave_out=key)
@@ -271,9 +271,9 @@ def range_K(thermal: Thermal | MemberProgram) -> tuple[float, float]:
 
 
 def parameters(thermal: Thermal | MemberProgram, period_s: float) -> dict[str, Any]:
-    """Return a program as plain values: those that the engine's program and the YADE script take.
+    """Return a program as plain values, for the engine's program and the YADE script.
 
-    :param period_s: how long a cycle lasts [s], see :func:`period_of`
+    :param period_s: duration of a cycle [s], see :func:`period_of`
     """
     if not isinstance(thermal, Thermal):
         return {"shape": "table", "cycles": thermal.cycles, "table_time_s": thermal.table_time_s.tolist(),
@@ -287,9 +287,9 @@ def parameters(thermal: Thermal | MemberProgram, period_s: float) -> dict[str, A
 
 
 def returns_s(programs: Sequence[Thermal | MemberProgram], period_s: float) -> NDArray[np.float64]:
-    """Return the times [s] at which all parts have their first temperature again: ends of cycles, rows of a table.
+    """Return the times [s] at which all items have their first temperature again: ends of cycles, rows of a table.
 
-    :param programs: of one case, the common one first; they last equally long
+    :param programs: of one case, the common one first; all have one duration
     """
     common, own = programs[0], [period_s]
     if common.shape == "table" and common.table_time_s is not None:

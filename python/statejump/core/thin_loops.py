@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Loops that are thin beside their reversible part: what is left without it."""
+"""Thin loops: a loop with a large reversible part, drawn without this part."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
     Numbers = NDArray[np.float64]
 
-THIN = 0.05  # of its range: what a loop may be off a straight line and look like one
-ROUNDING = 1e-9  # of its range: below is no loop
+THIN = 0.05  # largest distance from a straight line, over the range, of a loop that looks like a line
+ROUNDING = 1e-9  # fraction of its range below which a loop counts as zero
 
 
 @dataclass(frozen=True)
@@ -24,18 +24,19 @@ class StraightPart:
     offset: float
 
     def taken_off(self, x: Numbers, y: Numbers) -> Numbers:
-        """Return what is left of values at x."""
+        """Return the remainder of values at x."""
         return np.asarray(y - (self.offset + self.slope * x))
 
 
 def straight_part(x: Numbers, y: Numbers) -> StraightPart | None:
-    """Return the straight line (least squares) that a loop hides behind; None: it is wide, or there is no loop."""
+    """Return the reversible part of a loop, a straight line (least squares); None: the loop is wide, or there is no
+    loop."""
     size = float(np.ptp(y))
     if not 0 < size < np.inf or not 0 < np.ptp(x) < np.inf:
         return None
     try:
         slope, offset = np.polyfit(x, y, 1)
-    except np.linalg.LinAlgError:  # numbers whose squares are beyond any
+    except np.linalg.LinAlgError:  # squares of the numbers overflow
         return None
     line = StraightPart(float(slope), float(offset))
     largest = float(np.abs(line.taken_off(x, y)).max())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Units as people write them, by pint. It is loaded when a table names a unit that its key does not have."""
+"""Units in any spelling, with pint. Loaded if a table has a unit other than that of its key."""
 from __future__ import annotations
 
 import re
@@ -13,19 +13,19 @@ from statejump.core.conversion import Conversion
 REGISTRY = pint.UnitRegistry()
 _SIGNS = str.maketrans({"²": "**2", "³": "**3", "⁴": "**4", "·": "*", "⋅": "*", "∙": "*", "•": "*", "×": "*", "−": "-",
                         "º": "°", "μ": "µ", "℃": "degC", "℉": "degF", "Δ": "delta_", "∆": "delta_"})
-# Whole spellings, without case, blanks, underscores and points.
+# Spellings as a whole, without case, blanks, underscores and points.
 _WORDS = {"celsius": "degC", "°c": "degC", "degc": "degC", "degreec": "degC", "degreecelsius": "degC",
           "degreescelsius": "degC", "degcelsius": "degC", "grad": None, "grd": None,
           "fahrenheit": "degF", "°f": "degF", "degf": "degF", "degreefahrenheit": "degF", "degreesfahrenheit": "degF",
           "kelvin": "K", "kelvins": "K", "degk": "K", "°k": "K", "%": "percent", "percent": "percent",
           "secs": "s", "mins": "min", "hr": "h", "hrs": "h", "degs": "deg"}
-LONGEST = 60  # characters of a unit
-_POWER = re.compile(r"\*\*(?!\s*-?[1-4](?![\d*.]))")  # of no unit; 9**9**9 would be computed for ever
+LONGEST = 60  # largest number of characters of a unit
+_POWER = re.compile(r"\*\*(?!\s*-?[1-4](?![\d*.]))")  # exponents that no unit has; pint would compute 9**9**9 forever
 _NEWTON_METRE = re.compile(r"(?<![A-Za-z])([kMmµud]?N)(mm|cm|m)(?![A-Za-z])")
 
 
 def conversion(unit: str, wanted: str, change: bool) -> Conversion | None:
-    """Return how numbers of a unit become those of another; see :func:`statejump.core.column_units.conversion`."""
+    """Return the conversion from one unit to another; see :func:`statejump.core.column_units.conversion`."""
     text, into = spelled(unit), spelled(wanted if wanted != "-" else "1")
     if text is None or into is None:
         return None
@@ -63,7 +63,7 @@ def is_unit(text: str) -> bool:
 
 @lru_cache(maxsize=None)
 def spelled(unit: str) -> str | None:
-    """Return a unit as pint reads it; None: it is none that is meant."""
+    """Return a unit in pint's spelling; None: it is no accepted unit."""
     plain = re.sub(r"[\s_.]+", "", unit.translate(_SIGNS)).lower()
     if plain in _WORDS:
         return _WORDS[plain]

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Units: which one a name ends in, and numbers as an engineer writes them, 23.8095 µm, not 2.38095e-05 m."""
+"""Units: the unit at the end of a name, and numbers with a prefix: 23.8095 µm, not 2.38095e-05 m."""
 from __future__ import annotations
 
 import math
 from functools import lru_cache
 
-# Unit by the ending of a name, the longest first: _N_m is not _m.
+# Units by the ending of a name, the longest first, because _N_m is not _m.
 ENDINGS = {
     "_N_m_s_per_rad": "N m s/rad", "_N_m_per_rad": "N m/rad", "_kg_per_m3": "kg/m3", "_rad_per_s": "rad/s",
     "_kg_m2": "kg m2", "_m_per_s2": "m/s2", "_N_per_m": "N/m", "_m_per_s": "m/s", "_N_per_K": "N/K", "_per_K": "1/K",
@@ -27,7 +27,7 @@ def unit_of(name: str) -> str:
 
 
 PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
-# Units that take a prefix, with the powers of ten that are usual for them.
+# Units that take a prefix, with their usual powers of ten.
 PREFIXED = {
     "m": (-9, 0), "N": (-6, 6), "J": (-9, 6), "s": (-9, 0), "rad": (-9, 0), "Pa": (0, 9), "N/m": (0, 9), "W": (-9, 6),
     "N m": (-6, 6),
@@ -38,7 +38,7 @@ WRITTEN = {"m2": "m²", "kg/m3": "kg/m³", "kg m2": "kg·m²", "m/s2": "m/s²", 
 
 
 def scale_of(unit: str, size: float) -> tuple[float, str]:
-    """Return the factor that brings values of a size into a readable range, and the unit then."""
+    """Return the factor that brings values of a size into a readable range, and the resulting unit."""
     written = WRITTEN.get(unit, unit)
     if unit == "m2" and 0 < abs(size) < 1e-2:
         return 1e6, "mm²"
@@ -66,5 +66,5 @@ def text(value: float | None, unit: str = "-", digits: int = 6) -> str:
 
 
 def plain(value: float | None, unit: str = "-", digits: int = 6) -> str:
-    """Return the same for terminals and text files, where people search: common blank and minus sign."""
+    """Return the number for terminals and text files with common blank and minus sign, so that a search finds it."""
     return text(value, unit, digits).replace("\u202f", " ").replace("−", "-")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Why two models may have missed a tolerance, in sentences that say what to set."""
+"""Possible reasons why two models missed a tolerance, as sentences that name the keys to set."""
 from __future__ import annotations
 
 from math import ceil, floor, inf, isinf, log10, pi, sqrt
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
     from statejump import _engine
     from statejump.core.run import Run
 
-LOOKED_AT = 4000  # places of a cycle at which the rate of the temperature is asked for
-# Of what a tolerance allows: an oscillation above it is told. The other causes have the rest.
+LOOKED_AT = 4000  # positions of a cycle at which the rate of the temperature is evaluated
+# Fraction of a tolerance above which an oscillation is reported. The other causes have the remainder.
 SHARE_TOLD = 0.1
 
 
 def kink(program: _engine.ThermalProgram) -> float:
-    """Return the largest change at once of dΔT/dt over the range of ΔT and the length of a cycle [-]: 4 of a triangle,
-    π of half a sine. It is the speed, in ranges a cycle, that a part would have to have at once."""
+    """Return the largest jump of dΔT/dt, divided by the range of ΔT and multiplied by the duration of a cycle [-]: 4
+    for a triangle, π for half a sine. A part would have to change its speed by this value, in ranges per cycle."""
     times = np.linspace(-1.5 / LOOKED_AT, 1, LOOKED_AT) * program.period_s
     rates = program.temperature_rate(times) * (times >= 0)
     size = float(np.ptp(program.temperature_change(times)))
@@ -31,13 +31,13 @@ def kink(program: _engine.ThermalProgram) -> float:
 def heated_too_fast(
     natural_period_s: float, thermal: Thermal, program: _engine.ThermalProgram, moved_m: float, allowed_m: float
 ) -> list[str]:
-    """Return the sentence about oscillations that corners of the temperature leave, where they are worth one.
+    """Return the sentence about oscillations after corners of the temperature, if they matter.
 
-    A part that follows the temperature quasi-statically would change its speed at once; an oscillator of the period T
-    swings by speed · T/2π instead.
+    A part that follows the temperature quasi-statically would change its speed at once. Instead, an oscillator of
+    period T swings by speed · T/2π.
 
-    :param moved_m: how far parts move over the range of the temperature [m]
-    :param allowed_m: what the tolerances allow [m]
+    :param moved_m: motion of parts over the range of the temperature [m]
+    :param allowed_m: allowed difference [m]
     """
     if isinf(natural_period_s):
         return ["a motion that only friction holds has no natural period; the reduced model has no inertia: "
@@ -58,7 +58,7 @@ def heated_too_fast(
 
 
 def still_moving(dem: Run, mass_kg: float, natural_period_s: float, allowed_m: float) -> list[str]:
-    """Return the sentence about the kinetic energy that a run of the DEM has at its end, where it is worth one."""
+    """Return the sentence about the kinetic energy at the end of a DEM run, if it matters."""
     kinetic = float(dem["kinetic_energy_J"][-1])
     swing = inf if isinf(natural_period_s) else sqrt(2 * max(kinetic, 0.0) / mass_kg) * natural_period_s / (2 * pi)
     if not kinetic > 0 or not swing > SHARE_TOLD * allowed_m:
@@ -69,6 +69,6 @@ def still_moving(dem: Run, mass_kg: float, natural_period_s: float, allowed_m: f
 
 
 def rounded_up(value: float) -> float:
-    """Return the next larger number of one digit."""
+    """Return the next larger number with one digit."""
     power = 10.0 ** floor(log10(value))
     return float(f"{ceil(value / power * (1 - 1e-9)) * power:.1g}")

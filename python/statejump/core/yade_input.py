@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Script and data of a DEM run in a folder of the user, to repeat, change or view the run by hand."""
+"""Script and data of a DEM run in a folder of the user, who can repeat, change or view the run by hand."""
 from __future__ import annotations
 
 import json
@@ -47,7 +47,7 @@ def keep_input(values: Mapping[str, Any], folder: Path) -> str:
 
 
 def check_display() -> None:
-    """Raise FailedRun where YADE has no display to open its 3-D view on."""
+    """Raise FailedRun if YADE has no display for its 3-D view."""
     if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise _no_display("there is no display")
 

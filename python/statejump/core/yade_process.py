@@ -26,7 +26,7 @@ from statejump.core.thermal import parameters
 from statejump.schema.fields import choice
 
 MARK = "STATEJUMP "
-RUNNER, DATA, SAMPLES = "run_case.py", "case.json", "dem.samples"  # names that the script has by default, too
+RUNNER, DATA, SAMPLES = "run_case.py", "case.json", "dem.samples"  # default names in the script, too
 PR_SET_PDEATHSIG = 1  # prctl(2)
 Columns = Mapping[str, np.ndarray]
 MakeRun = Callable[[Case, Columns, Mapping[str, Any]], Run]
@@ -84,11 +84,12 @@ def python_path() -> str:
 
 
 def _dying_with_us() -> Callable[[], None]:
-    """Return a function for a new process, by which the kernel kills it with the thread that waits for it. Otherwise
-    YADE would continue after its caller was killed."""
+    """Return a function that a new process calls at its start. The kernel then kills the process together with the
+    thread that waits for it. Otherwise YADE would continue after its caller was killed."""
     import ctypes  # as which
 
-    prctl = ctypes.PyDLL(None).prctl  # looked up before the fork, after which the process does as little as possible
+    # Looked up before the fork, because afterwards the process does as little as possible.
+    prctl = ctypes.PyDLL(None).prctl
 
     def ask() -> None:
         prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
@@ -112,7 +113,7 @@ def run(case: Case, values: Mapping[str, Any], make_run: MakeRun, tell: Tell) ->
             samples: Samples = stopped.run
             try:
                 stopped.run = replace(make_run(case, samples.columns, samples.about), complete=False)
-            except (KeyError, IndexError, ValueError):  # interrupted before a run can be made
+            except (KeyError, IndexError, ValueError):  # interrupted before there are samples
                 stopped = Interrupted(code="interrupted_before_sample")
         raise stopped from None
     return make_run(case, done.columns, done.about)
@@ -166,7 +167,7 @@ def _watch(command: list[str], environment: dict[str, str], tell: Tell) -> None:
         text=True,
         errors="replace",
         preexec_fn=_dying_with_us(),
-        start_new_session=True,  # Ctrl-C reaches this process alone, which ends YADE
+        start_new_session=True,  # Ctrl-C reaches only this process, which ends YADE
     ) as process:
         try:
             for line in process.stdout or []:
@@ -202,11 +203,11 @@ def _message(line: str) -> dict[str, Any]:
 
 
 class RunFailed(FailedRun):
-    """A failure that the script in YADE tells: ``the DEM run failed: CAUSE (PLACE, time T s, temperature change
-    T K)[; REMEDY]``.
+    """A failure that the script in YADE reports: ``the DEM run failed: CAUSE (PLACE, time T s, temperature change T
+    K)[; REMEDY]``.
 
-    :param cause: what went wrong
-    :param place: words for the joint, as ``slider S1``
+    :param cause: the problem
+    :param place: name of the joint in the sentence, for example ``slider S1``
     """
 
     def __init__(self, cause: str, *, place: str = "", **more: Any) -> None:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Files of FCLIB: the group ``fclib_local`` with its problem, ``solution`` and ``guesses`` with reactions.
 
-The layout is that of fclib.h. A matrix is a group of ``m``, ``n``, ``nz``, ``nzmax``, ``p``, ``i``, ``x``: ``nz`` = -1
-compressed columns, -2 compressed rows, else so many entries one by one. Of those ``i`` is the row and ``p`` the column,
-as CSparse has it and as the library itself computes and writes, though its header says the opposite.
+The layout is that of fclib.h. A matrix is a group of ``m``, ``n``, ``nz``, ``nzmax``, ``p``, ``i``, ``x``. ``nz`` = -1
+means compressed columns, -2 compressed rows, another value the number of single entries. In single entries ``i`` is the
+row and ``p`` the column, as in CSparse and in the code of FCLIB. The header of FCLIB states the opposite.
 """
 from __future__ import annotations
 
@@ -24,17 +24,18 @@ if TYPE_CHECKING:
     import scipy.sparse
 
 LOCAL = "fclib_local"
-# Which other problems FCLIB knows, and what they are.
+# The other problems of FCLIB, with a description.
 OTHERS = {"fclib_global": "global", "fclib_global_rolling": "rolling", "fclib_local_rolling": "rolling"}
 COLUMNS, ROWS = -1, -2
 
 
 def read(path: str | Path) -> Problem:
-    """Return the problem of a file, with the solutions and guesses that it holds.
+    """Return the problem of a file, with its stored solutions and guesses.
 
-    Equations of the file (V, R, s) are eliminated where R is regular.
+    Equations of the file (V, R, s) are eliminated if R is regular.
 
-    :raises Unreadable: no such file, not HDF5, another problem than a local one, a part is missing or damaged
+    :raises Unreadable: the file does not exist, is not HDF5, or contains no local problem; or a part is missing or
+        damaged
     """
     h5py = libraries.h5py()
 
@@ -181,9 +182,9 @@ def _text(parent: Any, name: str) -> str:
 
 
 def write(path: str | Path, problem: Problem, solution: Solution | Stored | None = None) -> None:
-    """Write a problem, and with it a solution, as FCLIB reads them.
+    """Write a problem, and optionally a solution, in the layout of FCLIB.
 
-    :param solution: what :func:`statejump.fclib.solve` found, or reactions that are known
+    :param solution: result of :func:`statejump.fclib.solve`, or known reactions
 
     :raises NotWritten: the file cannot be written
     """

@@ -23,9 +23,9 @@ METHODS: tuple[str, ...] = _engine.FRICTION_METHODS
 
 
 class NotSolved(StatejumpError):
-    """No method came to the tolerance; whether there is a solution is not known.
+    """No method reached the tolerance. A solution may still exist.
 
-    :param solution: the best that was found
+    :param solution: the best result
     """
 
     exit_status = 1
@@ -39,7 +39,7 @@ class NotSolved(StatejumpError):
 
 @dataclass(frozen=True)
 class Merit:
-    """How far reactions are from a solution; 0 for an exact one.
+    """Error of reactions as a solution; 0 for an exact one.
 
     :param natural_map: norm of r - P_K(r - û) over the largest of |q|, |r| and |u|, in the problem's units
     :param scaled: the same over |q|, with W divided by its mean diagonal and r multiplied by it
@@ -56,9 +56,9 @@ class Merit:
 
 @dataclass(frozen=True, eq=False)
 class Stored:
-    """Reactions that a file holds.
+    """Reactions stored in a file.
 
-    :param name: where in the file: ``solution``, ``guesses/1``
+    :param name: their path in the file: ``solution``, ``guesses/1``
     :param reactions: one number for each row of W
     """
 
@@ -68,7 +68,7 @@ class Stored:
 
 @runtime_checkable
 class _Sparse(Protocol):
-    """A sparse matrix, asked without SciPy, which a dense problem does not load."""
+    """A sparse matrix, detected without SciPy, which a dense problem does not load."""
 
     def tocsc(self) -> Any: ...
 
@@ -131,12 +131,12 @@ class Problem:
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """What :func:`solve` found.
+    """Result of :func:`solve`.
 
-    :param reactions: r, the best that was found
+    :param reactions: r, the best result
     :param velocities: u = W r + q
     :param solved: whether the merit is within the tolerance
-    :param method: what found the reactions
+    :param method: the method that found the reactions
     :param iterations: sweeps of Gauss-Seidel, linear systems of Newton and of the interior point, pivots of Lemke
     :param seconds: wall time [s]
     """
@@ -159,9 +159,9 @@ class Solution:
 
 
 def merit(problem: Problem, reactions: ArrayLike) -> Merit:
-    """Return how far reactions are from a solution.
+    """Return the merit of reactions.
 
-    :raises StatejumpError: their number is not that of W's rows
+    :raises StatejumpError: their number differs from the number of rows of W
     """
     with engine():
         return Merit(**problem._problem.merit(reactions))
@@ -174,12 +174,12 @@ def solve(
     """Solve a problem.
 
     :param tolerance: on both merits
-    :param method: one of METHODS; ``automatic`` takes them in turn
-    :param most_sweeps: of Gauss-Seidel, after which it is given up
-    :param guess: reactions to begin with
-    :param strict: raise where it is not solved, instead of a solution that says so
-    :param progress: called with the best merit so far, now and then
-    :raises NotSolved: with ``strict``: no method came to the tolerance
+    :param method: one of METHODS; ``automatic`` tries them in turn
+    :param most_sweeps: largest number of sweeps of Gauss-Seidel
+    :param guess: initial reactions
+    :param strict: raise an error without solution, instead of returning a result with ``solved`` false
+    :param progress: called with the best merit so far, from time to time
+    :raises NotSolved: with ``strict``: no method reached the tolerance
     :raises StatejumpError: an argument is out of its range
     """
     start = time.perf_counter()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a measured loop says of a joint. Not ``identify``, which is the function of the package."""
+"""Identification of a joint from a measured loop. The function ``statejump.identify`` is in :mod:`statejump.api`."""
 from __future__ import annotations
 
 from statejump.identification.result import Identification, identified

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Least squares of a joint for a loop, intervals by profile likelihood, choice by BIC.
 
-Noise of the force is Gaussian, of one unknown scale σ, and may be correlated from row to row: n rows count as
-m = n/τ independent ones. With RSS the sum of squares of the residuals, ln L = -m/2 (ln(2π RSS/n) + 1). The profile
-of a parameter may rise by κ F/(n - p) of RSS, F the quantile of F(1, m - p) and κ the growth of its variance.
+Noise of the force is Gaussian, of one unknown scale σ, and may be correlated from row to row: n rows count as m = n/τ
+independent ones. With the sum of squared residuals RSS, ln L = -m/2 (ln(2π RSS/n) + 1). The interval of a parameter
+ends where its profile exceeds RSS by κ F/(n - p) of RSS. F is the quantile of F(1, m - p), and κ the growth of its
+variance by the correlation.
 """
 from __future__ import annotations
 
@@ -21,18 +22,18 @@ from statejump.identification.models import (
     MODELS, PARAMETERS, POSITIVE, START, Model, containing, with_part)
 from statejump.identification.noise import Noise, noise_of
 
-STARTS = 4  # best of the grid of starts that are followed
-STARTS_FROM_PART = 2  # likewise, the parameters of a part being those of its optimum
-CLOSE = 1e-3  # of an interval's half width: to this its ends are found
-NEAREST = 1e-12  # of what is sought: no end is nearer
-AT_END = 0.01  # of what is sought: nearer to its end a parameter is at it
-DEPENDS = 0.25  # of an interval's half width: a parameter that moves further as another one nears its end depends on it
-ROUNDING = 1e-9  # of half of the loop's force: noise below is that of the arithmetic
+STARTS = 4  # number of grid points from which searches start
+STARTS_FROM_PART = 2  # the same for a search that starts from the optimum of a part
+CLOSE = 1e-3  # accuracy of an interval's ends, as a fraction of its half width
+NEAREST = 1e-12  # smallest distance of an end, as a fraction of the search range
+AT_END = 0.01  # distance from an end of the search range, below which a parameter counts as at the end
+DEPENDS = 0.25  # motion of a parameter, over its half width, from which it depends on another one near its end
+ROUNDING = 1e-9  # fraction of half of the loop's force: smaller noise is rounding
 
 
 @dataclass(frozen=True)
 class Interval:
-    """Where a parameter is, at a level of confidence; an end that the loop does not bound is infinite."""
+    """Interval of a parameter at a level of confidence; an end that the loop does not bound is infinite."""
 
     low: float
     high: float
@@ -51,7 +52,7 @@ ENDLESS = dict.fromkeys(("friction", "stop_stiffness", *STOPS), inf)
 class Problem:
     """A joint and a loop. Points of the search are in units of the loop's size, positive parameters as logarithms.
 
-    At an end of what is sought a parameter of a slide has the value that does nothing, 0 or infinite: so a joint
+    At an end of the search range a parameter of a slide has the value without effect, 0 or infinity. A joint therefore
     contains its parts.
     """
 
@@ -73,7 +74,7 @@ class Problem:
         self.low, self.high = (self._sought([getattr(PARAMETERS[name], end) for name in self.names])
                                for end in ("low", "high"))
         for place, name in enumerate(self.names):
-            if name in STOPS:  # no clearance is negative
+            if name in STOPS:  # clearances are not negative
                 self.low[place] = max(self.low[place], -self.offsets[place] / half)
         slides = model.answer is MODELS["coulomb"].answer
         self.limits = [(place, end, limit) for place, name in enumerate(self.names)
@@ -83,7 +84,7 @@ class Problem:
 
     def _sought(self, relative: Sequence[float]) -> np.ndarray:
         found = np.array(relative, dtype=float)
-        with np.errstate(divide="ignore"):  # nothing, of a part that lacks it
+        with np.errstate(divide="ignore"):  # the value without effect, for a part that lacks the parameter
             found[self.logarithmic] = np.log(found[self.logarithmic])
         return found
 
@@ -103,7 +104,7 @@ class Problem:
         return np.asarray(np.clip(found, self.low, self.high))
 
     def value(self, place: int, coordinate: float) -> float:
-        """Return one parameter of a coordinate of the search; infinite at an end of what is sought."""
+        """Return one parameter for a coordinate of the search; infinite at an end of the search range."""
         if coordinate <= self.low[place]:
             return -inf
         if coordinate >= self.high[place]:
@@ -112,20 +113,20 @@ class Problem:
         return float(relative * self.units[place] + self.offsets[place])
 
     def residual(self, point: np.ndarray) -> np.ndarray:
-        """Return measured minus answered force, in units of half of the loop's force."""
+        """Return measured minus computed force, in units of half of the loop's force."""
         answered = self.model.answer(self.values(point), self.displacement, self.memory)
         found: np.ndarray = (self.force - answered) / self.half_force
         return found
 
     def squares(self, point: np.ndarray) -> float:
-        """Return the sum of squares of the residuals, at least that of rounding."""
+        """Return the sum of squared residuals, at least that of rounding."""
         rest = self.residual(point)
         return max(float(rest @ rest), len(rest) * ROUNDING**2)
 
     def best(self, start: np.ndarray, held: int | None = None) -> tuple[np.ndarray, float]:
-        """Return the point of the least sum of squares near a start, and that sum.
+        """Return the point with the smallest sum of squares near a start, and that sum.
 
-        :param held: place of a coordinate that does not move
+        :param held: index of a fixed coordinate
         """
         free = [place for place in range(len(start)) if place != held]
         point = np.array(start)
@@ -143,7 +144,7 @@ class Problem:
         first[free] = np.clip(first[free], self.low[free], self.high[free])
         point[free] = found.x
         ends = self.squares(first), self.squares(point)
-        # The search begins inside of its bounds, which may be worse than on one.
+        # The search begins inside of its bounds; that point may be worse than one on a bound.
         return (first, ends[0]) if ends[0] <= ends[1] else (point, ends[1])
 
     def starts(self) -> list[np.ndarray]:
@@ -152,7 +153,7 @@ class Problem:
         return self._lowest(grid, STARTS)
 
     def starts_of(self, part: Fit) -> list[np.ndarray]:
-        """Return the optimum of a part, and the best starts of what the part lacks."""
+        """Return the optimum of a part, combined with the best starts of the parameters that the part lacks."""
         values = {**dict.fromkeys((START,), 0.0), **part.values}
         there = self.point(with_part(self.model, part.model, values, self.memory, self.displacement))
         more = [name for name in self.names if name not in part.values]
@@ -183,13 +184,13 @@ class Problem:
 
 @dataclass(frozen=True)
 class Fit:
-    """A joint that fits a loop best.
+    """The best fit of a joint to a loop.
 
     :param model: the joint
     :param values: its parameters by name, SI units
     :param noise: σ of the force
-    :param rows: how many were fitted
-    :param rows_each: how many rows count as one
+    :param rows: number of fitted rows
+    :param rows_each: number of rows that count as one
     """
 
     model: Model
@@ -202,7 +203,7 @@ class Fit:
 
     @property
     def independent_rows(self) -> float:
-        """How many independent rows would say as much."""
+        """Equivalent number of independent rows."""
         return self.rows / self.rows_each
 
     @property
@@ -212,7 +213,7 @@ class Fit:
 
     @property
     def bic(self) -> float:
-        """Schwarz's criterion, the less the better; σ is a parameter too."""
+        """Schwarz's criterion, smaller is better; σ counts as a parameter."""
         return (len(self.values) + 1) * log(self.independent_rows) - 2 * self.log_likelihood
 
 
@@ -223,14 +224,14 @@ def _fit(problem: Problem, point: np.ndarray, squares: float) -> Fit:
 
 
 class Fits:
-    """The joints that were fitted to a loop, none worse than a joint that it contains."""
+    """The fits of all joints to a loop. None is worse than the fit of a joint that it contains."""
 
     def __init__(self, loop: Loop) -> None:
         self.loop = loop
         self._found: dict[str, Fit] = {}
 
     def fit(self, name: str) -> Fit:
-        """Return a joint of the least sum of squares, of its parts too."""
+        """Return the fit of a joint with the smallest sum of squares, also over the fits of its parts."""
         if name not in self._found:
             model = MODELS[name]
             problem = Problem(model, self.loop)
@@ -241,7 +242,7 @@ class Fits:
         return self._found[name]
 
     def improve(self, better: Fit) -> None:
-        """Take a better point of a joint, for the joints that contain it too."""
+        """Replace the fit of a joint by a better point, also in the joints that contain it."""
         self._found[better.model.name] = better
         for name in containing(better.model.name):
             before = self._found.get(name)
@@ -252,20 +253,21 @@ class Fits:
                     self._found[name] = _fit(problem, point, squares)
 
     def ranked(self, names: Sequence[str]) -> list[Fit]:
-        """Return the fits of joints, the best by BIC first. The rows count as the residuals of the best fit say."""
+        """Return the fits of joints, the best by BIC first. The residuals of the best fit determine the number of
+        independent rows."""
         found = [self.fit(name) for name in names]
         rows_each = noise_at(min(found, key=lambda each: each.squares), self.loop).rows_each
         return sorted((replace(each, rows_each=rows_each) for each in found), key=lambda each: each.bic)
 
 
 def noise_at(best: Fit, loop: Loop) -> Noise:
-    """Return how the noise of a loop is correlated, by the residuals of a fit."""
+    """Return the correlation of a loop's noise, from the residuals of a fit."""
     problem = Problem(best.model, loop)
     return noise_of(problem.residual(best.point), problem.jacobian(best.point), problem.displacement)
 
 
 class _Better(Exception):
-    """A profile found a better point than the one that was the best."""
+    """A profile found a point that is better than the fit."""
 
     def __init__(self, point: np.ndarray, squares: float) -> None:
         super().__init__()
@@ -273,14 +275,14 @@ class _Better(Exception):
 
 
 class Profile:
-    """Sum of squares of one parameter, with the best of all others."""
+    """Sum of squares over one parameter, minimised over all others."""
 
     def __init__(self, problem: Problem, best: Fit, name: str) -> None:
         self.problem, self.best, self.place = problem, best, problem.names.index(name)
         self.known = {float(best.point[self.place]): (best.point, 0.0)}
 
     def rise(self, coordinate: float) -> float:
-        """Return by which fraction the sum of squares rises."""
+        """Return the relative increase of the sum of squares."""
         near = min(self.known, key=lambda each: abs(each - coordinate))
         if near == coordinate:
             return self.known[near][1]
@@ -294,7 +296,8 @@ class Profile:
         return risen
 
     def end(self, direction: int, step: float, most: float) -> float:
-        """Return where the sum of squares has risen by ``most``; the bound of the search where it does not."""
+        """Return the value at which the sum of squares has increased by ``most``; the bound of the search if it does
+        not."""
         bound = float((self.problem.high if direction > 0 else self.problem.low)[self.place])
         nearest = NEAREST * float(self.problem.high[self.place] - self.problem.low[self.place])
         centre = float(self.best.point[self.place])
@@ -320,8 +323,8 @@ class Profile:
 
     @cached_property
     def movements(self) -> dict[int, np.ndarray]:
-        """Return, by end, how all parameters move on the last of the way there; of ends that bound the parameter
-        none."""
+        """Return, for each end, the changes of all parameters in the last part of the path there; empty for ends that
+        bound the parameter."""
         found = {}
         for direction, ends in ((-1, self.problem.low), (1, self.problem.high)):
             bound, widest = ends[self.place], AT_END * (self.problem.high - self.problem.low)[self.place]
@@ -338,7 +341,7 @@ class Intervals:
     """Intervals of a fit.
 
     :param of: by parameter
-    :param because: parameters that have no end because another one, which is named, has none
+    :param because: parameters without an end, because another one, which is named, has none
     """
 
     of: dict[str, Interval]
@@ -346,10 +349,10 @@ class Intervals:
 
 
 def intervals(fits: Fits, model: str, confidence: float, names: Sequence[str] | None = None) -> tuple[Fit, Intervals]:
-    """Return the interval of each parameter, and the fit, which a profile may have made better.
+    """Return the interval of each parameter, and the fit, which a profile may have improved.
 
-    :param confidence: as 0.95
-    :param names: of which parameters; None: of all
+    :param confidence: for example 0.95
+    :param names: parameters; None: all
     """
     while True:
         best = fits.fit(model)
@@ -391,8 +394,8 @@ def _intervals(problem: Problem, best: Fit, confidence: float, names: Sequence[s
 def _dependence(problem: Problem, profile: Profile, ends: Sequence[float], profiles: dict[str, Profile]) -> dict[
     int, str
 ]:
-    """Return which ends of an interval are where they are only because another parameter is at the end of what is
-    sought, and which parameter that is."""
+    """Return the ends of an interval that exist only because another parameter is at the end of its search range, and
+    that parameter."""
     found = {}
     half = (ends[1] - ends[0]) / 2
     for way, end in zip((-1, 1), ends):

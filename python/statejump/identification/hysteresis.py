@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Friction with memory along a path of displacements: Masing's rule with return points.
 
-Whatever the backbone B (force of a first loading), the force of friction is a sum of B at half distances between
-turning points that are still remembered. Which ones those are depends on the path alone: they are found once, and every
-set of parameters is then one matrix product. (G. Masing, Proc. 2nd Int. Congr. Applied Mechanics, 1926.)
+Let the backbone B be the force of a first loading. The friction force is a sum of B at half distances between those
+turning points that the memory still contains. The path alone determines them. They are computed once, and the force for
+any parameters is then one matrix product. (G. Masing, Proc. 2nd Int. Congr. Applied Mechanics, 1926.)
 """
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ Backbone = Callable[[np.ndarray], np.ndarray]
 
 @dataclass(frozen=True)
 class Memory:
-    """What friction remembers in every row of a path.
+    """Memory of friction in every row of a path.
 
-    :param half_distance: at which the backbone is needed [m or rad]
+    :param half_distance: distances at which the backbone is needed [m or rad]
     :param weights: rows of the path × half distances
     :param loaded: the same path after sliding downwards and upwards; None: the first row is known
-    :param path: displacements, where ``loaded`` is given
+    :param path: displacements, if ``loaded`` is given
     """
 
     half_distance: np.ndarray
@@ -32,11 +32,11 @@ class Memory:
     path: np.ndarray | None = None
 
     def force(self, backbone: Backbone, start: float = 0.0) -> np.ndarray:
-        """Return the force of friction in every row.
+        """Return the friction force in every row.
 
-        :param backbone: force of a first loading from rest, of displacements from 0
-        :param start: fraction of the limit that friction carries in the first row, if that is not known. Sliders of
-            several limits have more than one such state; the force is interpolated between rest and full slip
+        :param backbone: force of a first loading from rest, for displacements from 0
+        :param start: friction in the first row as a fraction of its limit, if it is unknown. Several sliders with
+            different limits have more than one such state; the force is interpolated between rest and full slip
         """
         found: np.ndarray = self.weights @ backbone(self.half_distance)
         if self.loaded is None or start == 0:
@@ -44,10 +44,10 @@ class Memory:
         return (1 - abs(start)) * found + abs(start) * self.loaded[start > 0].force(backbone)
 
     def stretch(self, width: float, start: float = 0.0) -> np.ndarray:
-        """Return the displacement of a spring in front of one slider, which slides at ±width.
+        """Return the deflection of a spring in front of one slider that slides at ±width.
 
-        :param start: as in :meth:`force`. A slider between two paths stays where it is until one of them takes it
-            along: x = min(max(x0, x_low), x_high), exactly
+        :param start: as in :meth:`force`. A slider between two paths rests until one of them moves it: x = min(max(x0,
+            x_low), x_high), exactly
         """
         def clipped(half: np.ndarray) -> np.ndarray:
             return np.minimum(half, width)
@@ -59,18 +59,18 @@ class Memory:
         return np.asarray(np.minimum(np.maximum(self.path - self.path[0] + first, low), high))
 
 
-# A slider that is moved further than this, in ranges of the path, has slid.
+# Distance, in ranges of the path, after which every slider has slid.
 FAR_AWAY = 10.0
 # Terms of the sum: half distance and weight of each.
 Terms = tuple[tuple[float, float], ...]
 
 
 def remembered(path: np.ndarray, fresh: bool) -> Memory:
-    """Return what friction remembers along a path.
+    """Return the memory of friction along a path.
 
-    :param path: displacements, one a row
-    :param fresh: friction carries nothing in the first row and remembers nothing; otherwise the same path was gone
-        before, and friction carries as much at one end of it as at the other
+    :param path: displacements, one per row
+    :param fresh: friction is zero in the first row and has no memory. Otherwise the same path was traversed before, and
+        friction is equal at both ends of it
     """
     if fresh:
         order = np.arange(len(path))
@@ -87,7 +87,7 @@ def remembered(path: np.ndarray, fresh: bool) -> Memory:
             if direction and heading != direction:
                 stack.append((now, _terms(stack, now, fresh)))
             direction = heading
-            # A branch that comes back to where an older one was left goes on as that one.
+            # A branch that returns to the end of an older one continues that one.
             while len(stack) > 1 and _closes(stack, new, fresh):
                 del stack[-2 if len(stack) > 2 else -1:]
             now = new
@@ -96,7 +96,7 @@ def remembered(path: np.ndarray, fresh: bool) -> Memory:
 
 
 def from_any_start(path: np.ndarray) -> Memory:
-    """Return what friction remembers along a path whose first row may carry any friction."""
+    """Return the memory of friction along a path whose first row may have any friction."""
     away = FAR_AWAY * float(np.ptp(path))
     rest = remembered(path, fresh=True)
     down, up = (_without_first(remembered(np.append(path[0] - sign * away, path), fresh=True)) for sign in (-1, 1))

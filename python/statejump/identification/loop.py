@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A measured loop: force over displacement, or moment over rotation, row by row as it was measured."""
+"""A measured loop: force over displacement, or moment over rotation, row by row as measured."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -31,11 +31,12 @@ STARTS = ("unknown", "fresh", "cycled")
 UNITS = {"displacement": ("m", "rad"), "force": ("N", "N m"), "stiffness": ("N/m", "N m/rad"), "-": ("-", "-")}
 FORCES, DISPLACEMENTS = ("force", "moment"), ("displacement", "rotation")
 FEWEST_ROWS = 20
-# Fraction of the work of the largest force along the path that a loop may give out: sensors that are not in phase.
+# Energy that a loop may generate, as a fraction of the work of the largest force along the path. The cause are sensors
+# that are not in phase.
 PHASE = 0.01
-# Standard deviations of the energy by the noise of the force that pass for chance.
+# Standard deviations of the energy, by the noise of the force, that count as chance.
 CHANCE = 6.0
-# Correlation of force and displacement from which a force pushes instead of resisting.
+# Correlation of force and displacement below which a force pushes instead of resisting.
 PUSHES = -0.5
 
 
@@ -45,10 +46,10 @@ class Loop:
 
     :param name: for tables and figures: the file
     :param displacement: of every row [m], or the rotation [rad]
-    :param force: likewise [N], or the moment [N m]
+    :param force: of every row [N], or the moment [N m]
     :param angular: whether it is moment over rotation
-    :param start: what is known of the joint before the first row: ``fresh``, friction carries nothing; ``cycled``,
-        the joint has gone the same path before; ``unknown``: friction carries what fits best
+    :param start: state of the joint before the first row: ``fresh``: friction is zero; ``cycled``: the joint traversed
+        the same path before; ``unknown``: friction is fitted
     """
 
     name: str
@@ -65,9 +66,9 @@ class Loop:
         return remembered(self.displacement, self.start == "fresh")
 
     def check_sign(self) -> None:
-        """Refuse a force that does not resist: a reaction, as solvers and load cells give it.
+        """Refuse a force with the sign of a reaction, as solvers and load cells report it.
 
-        :raises NotAllowed: the path gets energy out of the joint, or the force falls as the displacement rises
+        :raises NotAllowed: the joint generates energy along the path, or the force falls as the displacement rises
         """
         energy, doubt = self._energy()
         largest = float(np.ptp(self.force)) / 2 * float(np.abs(np.diff(self.displacement)).sum())
@@ -79,8 +80,8 @@ class Loop:
             raise StatejumpError(code="loop_falls", remedy=remedy, force=force, displacement=displacement)
 
     def _energy(self) -> tuple[float, float]:
-        """Return the energy that the joint takes up, and its standard deviation by the noise of the force: between the
-        first and the last row at the middle of the path, so that springs give nothing."""
+        """Return the energy that the joint dissipates, and its standard deviation by the noise of the force. The range
+        lies between the first and the last row at the middle of the path, so that springs contribute nothing."""
         middle = float(np.min(self.displacement) + np.max(self.displacement)) / 2
         above = self.displacement > middle
         crossings = np.flatnonzero(above[1:] != above[:-1])
@@ -92,7 +93,7 @@ class Loop:
         weights = np.zeros(len(force))
         weights[1:] += np.diff(displacement) / 2
         weights[:-1] += np.diff(displacement) / 2
-        # Second differences of a smooth force are noise; its corners are few.
+        # Second differences of a smooth force are noise, because the force has few corners.
         noise = 1.4826 * float(np.median(np.abs(np.diff(force, 2)))) / 6**0.5
         return float(weights @ force), noise * float(np.linalg.norm(weights))
 
@@ -102,13 +103,13 @@ class Loop:
 
 
 def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown", ignored: Sequence[str] = ()) -> Loop:
-    """Return a loop of a table, or of columns.
+    """Return the loop of a table or of columns.
 
-    :param source: columns ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``; ``time_s`` may be
-        there and is not used
-    :param ignored: names of columns of a table that are left out
-    :raises StatejumpError: no such file, a column that is missing or unknown, a value that is no finite number, a path
-        that does not move or has too few rows
+    :param source: columns ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``; ``time_s`` is
+        allowed and not used
+    :param ignored: names of columns of a table to omit
+    :raises StatejumpError: the file does not exist, a column is missing or unknown, a value is not finite, or the path
+        does not move or has too few rows
     """
     if start not in STARTS:
         raise NotAllowed("start", start, code="not_one_of", allowed=STARTS, known=", ".join(STARTS))
@@ -123,7 +124,7 @@ def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown", ig
 
 
 def _named(source: Mapping[str, Any]) -> dict[str, np.ndarray]:
-    """Return columns by keys that end in their units, in these units; ISO times are left out."""
+    """Return columns by keys that end with their units, in these units; ISO times are omitted."""
     given = {str(name): np.atleast_1d(np.asarray(values)) for name, values in source.items()}
     columns = [column for column in matched(list(given), COLUMNS, WORDS) if not column.iso]
     return {column.key: column.converted(given[column.name]) if given[column.name].dtype.kind in "iuf"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Joints that a loop can be of: their parameters, the force they answer, where a search for them begins.
+"""Joints that can be identified: their parameters, their force, and the start of a search.
 
-Force and displacement stand for moment and rotation as well. All answer to the displacement alone, however fast.
+Force and displacement also stand for moment and rotation. The force depends on the displacement path, not on its speed.
 """
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ class Parameter:
 
     :param name: without unit
     :param dimension: ``force``, ``displacement``, ``stiffness``, or ``-``
-    :param scale: ``positive`` is sought by its logarithm
-    :param low: bound of the search, in units of the loop's size: half of its force, half of its displacement; those
-        with a sign are counted from its middle
+    :param scale: ``positive``: the search uses its logarithm
+    :param low: bound of the search, in units of the loop's size: half of its force, half of its displacement; signed
+        ones are counted from its middle
     :param high: likewise
-    :param starts: where the search begins, likewise
+    :param starts: starts of the search, likewise
     :param meaning: in words
     """
 
@@ -40,9 +40,9 @@ class Parameter:
     meaning: str
 
 
-# A loop cannot tell a joint a million times stiffer than itself from a rigid one.
+# A loop cannot distinguish a joint a million times stiffer than itself from a rigid one.
 FAR = 1e6
-# Fraction of the limit that friction carries in the first row, sought where it is not known.
+# Friction in the first row as a fraction of its limit; a parameter if it is unknown.
 START = "initial_friction"
 PARAMETERS = {each.name: each for each in (
     Parameter("stiffness", "stiffness", POSITIVE, 1 / FAR, FAR, (1.0, 2.0, 5.0, 20.0),
@@ -68,11 +68,11 @@ Answer = Callable[[Values, np.ndarray, Memory], np.ndarray]
 class Model:
     """A joint.
 
-    :param name: as it is asked for
+    :param name: the name with which a user selects it
     :param parameters: names in PARAMETERS
-    :param answer: force of parameters, displacements and what friction remembers
+    :param answer: force for parameters, displacements and the memory of friction
     :param formula: for tables
-    :param parts: joints that it contains: what they lack has a value that does nothing
+    :param parts: joints that it contains: the parameters that they lack then have values without effect
     """
 
     name: str
@@ -82,7 +82,7 @@ class Model:
     parts: tuple[str, ...] = ()
 
     def starts(self, names: Sequence[str]) -> list[dict[str, float]]:
-        """Return where a search of some parameters begins, in units of the loop's size."""
+        """Return the starts of a search of some parameters, in units of the loop's size."""
         lists = [PARAMETERS[name].starts for name in names]
         return [dict(zip(names, values)) for values in product(*lists)]
 
@@ -90,9 +90,9 @@ class Model:
 def _coulomb(values: Values, displacement: np.ndarray, memory: Memory) -> np.ndarray:
     """A slide with friction f, preload P, spring k_p and play p behind a spring k, between stops of stiffness k_s.
 
-    Its block rests at x while |k (u - x) - g(x)| <= f, g the force of preload, spring and stops: g(x) is a play of
-    half width f in k u, and g rises with x. The play p widens the play in u, and within it the spring k is slack, or
-    has the fraction r of its stiffness.
+    Its block rests at x while |k (u - x) - g(x)| <= f. g is the force of preload, spring and stops, and rises with x.
+    So g(x) is a play of half width f in k u. The play p widens the play in u. Within p the spring k is slack, or has
+    the fraction r of its stiffness.
     """
     stiffness, friction = values["stiffness"], values.get("friction", 0.0)
     preload, spring = values.get("preload", 0.0), values.get("preload_stiffness", 0.0)
@@ -100,7 +100,7 @@ def _coulomb(values: Values, displacement: np.ndarray, memory: Memory) -> np.nda
     pulled: np.ndarray = stiffness * displacement
     if friction > 0 or gap > 0:
         width = friction / stiffness + (1 - ratio) * gap
-        if friction < ratio * stiffness * gap:  # it slides before the play is used up
+        if friction < ratio * stiffness * gap:  # it slides before the play closes
             width = friction / (ratio * stiffness)
         stretch = memory.stretch(width, values.get(START, 0.0))
         if gap > 0:
@@ -207,18 +207,18 @@ def parts_of(name: str) -> set[str]:
 
 
 def with_part(model: Model, part: Model, values: Values, memory: Memory, displacement: np.ndarray) -> dict[str, float]:
-    """Return the parameters with which a joint gives the force of a joint that it contains.
+    """Return the parameters with which a joint has the force of a joint that it contains.
 
     :param values: of the part
     """
     limits = {"friction": 0.0, "preload": 0.0, "preload_stiffness": 0.0, "play": 0.0, "stop_stiffness": inf,
               "clearance_minus": inf, "clearance_plus": inf, "iwan_exponent": -0.5, "iwan_ratio": inf, START: 0.0}
     found = {**{name: limits.get(name, 0.0) for name in (*model.parameters, START)}, **values}
-    if part.name == "linear":  # a slide that never slides: its spring is stretched from where it is without force
+    if part.name == "linear":  # a slide that never slides: its spring is measured from its position without force
         rest = float(np.mean(displacement - memory.stretch(inf)))
         found.update(friction=inf, preload=values["preload"] + values["stiffness"] * rest)
     if model.answer is _iwan and part.answer is _coulomb and values.get("preload_stiffness"):
-        # The spring of a slide is behind k, that of an Iwan joint beside it.
+        # The spring of a slide is behind k, that of an Iwan joint is parallel to it.
         stiffness, spring = values["stiffness"], values["preload_stiffness"]
         share = stiffness / (stiffness + spring)
         found.update(stiffness=share * stiffness, friction=share * values["friction"],

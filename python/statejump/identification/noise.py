@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Correlation of the noise from row to row: how many rows count as independent, and how much wider intervals are.
+"""Correlation of the noise from row to row: the equivalent number of independent rows, and the growth of intervals.
 
 Least squares stay unbiased if the noise is correlated, but their variance grows. Let h be the part of a parameter's
-derivative that no other parameter explains. Independent noise of variance s² gives the estimate the variance s²/(h·h),
-noise of the correlations ρ gives κ s²/(h·h) with κ = Σ ρ(i-j) h(i) h(j)/(h·h). The correlations are those of an
-autoregression of the residuals (Burg), whose order BIC chooses.
+derivative that no other parameter explains. Independent noise of variance s² gives the estimate the variance s²/(h·h).
+Noise with correlations ρ gives κ s²/(h·h) with κ = Σ ρ(i-j) h(i) h(j)/(h·h). An autoregression of the residuals (Burg)
+estimates the correlations; BIC chooses its order.
 
-What a joint's formula leaves out comes back in every cycle, so that cycles do not average it. With the correlation c of
-the residuals a cycle apart, C cycles multiply κ by 1 + (C - 1) c.
+The misfit of a joint's formula repeats in every cycle, so more cycles do not average it. With the correlation c of
+residuals one cycle apart, C cycles multiply κ by 1 + (C - 1) c.
 """
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ from math import log
 import numpy as np
 from scipy.signal import fftconvolve, lfilter
 
-MOST_LAGS = 12  # of the autoregression
+MOST_LAGS = 12  # largest order of the autoregression
 ROWS_A_LAG = 10
-SAME_PLACE = 0.5  # correlation of the displacement some rows apart from which those are whole cycles
-CHANCE = 5.0  # standard deviations of a correlation that pass for chance: the largest of hundreds is looked for
-FORGOTTEN = 1e-4  # correlation below which the rest is left out
-REFINEMENTS = 5  # of the correction for fitted parameters; it settles within a percent
+SAME_PLACE = 0.5  # correlation of the displacement at a lag above which the lag is a whole number of cycles
+CHANCE = 5.0  # standard deviations of a correlation that count as chance: the largest of hundreds is tested
+FORGOTTEN = 1e-4  # correlations below this are omitted
+REFINEMENTS = 5  # iterations of the correction for fitted parameters; it converges within a percent
 
 
 @dataclass(frozen=True)
 class Noise:
     """Correlations of the noise.
 
-    :param correlations: of rows 0, 1, 2, … apart
-    :param repeated: correlation of rows a cycle apart
-    :param cycles: how many there are
+    :param correlations: between rows with distances 0, 1, 2, …
+    :param repeated: correlation between rows one cycle apart
+    :param cycles: number of cycles
     """
 
     correlations: np.ndarray
@@ -45,14 +45,14 @@ class Noise:
 
     @cached_property
     def rows_each(self) -> float:
-        """Rows that count as one: 1 + 2 Σ ρ up to the first correlation that is not positive, by the factor of the
-        cycles."""
+        """Number of rows that count as one: 1 + 2 Σ ρ up to the first correlation that is not positive, times the
+        factor of the cycles."""
         positive = self.correlations > 0
         last = len(positive) if positive.all() else int(np.argmin(positive))
         return max(1.0, 2 * float(self.correlations[:last].sum()) - 1) * self._by_cycles
 
     def inflation(self, derivative: np.ndarray) -> float:
-        """Return κ, by which the variance of an estimate grows.
+        """Return κ, the factor by which the variance of an estimate grows.
 
         :param derivative: h, of every row
         """
@@ -67,7 +67,7 @@ INDEPENDENT = Noise(np.ones(1))
 
 
 def noise_of(residual: np.ndarray, jacobian: np.ndarray, path: np.ndarray) -> Noise:
-    """Return the noise whose residuals would be correlated as these are.
+    """Return the noise whose residuals have the correlation of the given ones.
 
     :param residual: of every row
     :param jacobian: its derivatives by the parameters (rows, parameters)
@@ -78,7 +78,7 @@ def noise_of(residual: np.ndarray, jacobian: np.ndarray, path: np.ndarray) -> No
 
 
 def _repeated(residual: np.ndarray, path: np.ndarray, rows_each: float) -> dict[str, float]:
-    """Return how the residuals of a cycle are correlated with those of the next, and how many cycles there are."""
+    """Return the correlation between the residuals of successive cycles, and the number of cycles."""
     rows = len(path)
     lags = np.arange(rows // 2)
     left = rows - lags
@@ -98,10 +98,10 @@ def _repeated(residual: np.ndarray, path: np.ndarray, rows_each: float) -> dict[
 
 
 def _near(residual: np.ndarray, jacobian: np.ndarray) -> Noise:
-    """Return the correlations of rows that follow each other.
+    """Return the correlations of successive rows.
 
-    A fit takes up slow noise: its residuals are less correlated than the noise. With Q an orthonormal basis of the
-    Jacobian, R the correlations of the noise, residuals have those of (1 - Q Qᵀ) R (1 - Q Qᵀ).
+    A fit absorbs slow noise: its residuals are less correlated than the noise. With an orthonormal basis Q of the
+    Jacobian and the correlations R of the noise, residuals have those of (1 - Q Qᵀ) R (1 - Q Qᵀ).
     """
     most = min(MOST_LAGS, len(residual) // ROWS_A_LAG)
     seen = _products(residual, most + 1)
@@ -131,7 +131,7 @@ def _products(values: np.ndarray, lags: int) -> np.ndarray:
 
 
 def _basis(jacobian: np.ndarray) -> np.ndarray:
-    """Return an orthonormal basis of the columns, without those that are not independent."""
+    """Return an orthonormal basis of the columns, without dependent ones."""
     scale = np.linalg.norm(jacobian, axis=0)
     columns = jacobian[:, scale > 0] / scale[scale > 0]
     if not columns.shape[1]:
@@ -141,7 +141,7 @@ def _basis(jacobian: np.ndarray) -> np.ndarray:
 
 
 def _lost(basis: np.ndarray, correlations: np.ndarray, order: int) -> np.ndarray:
-    """Return by how much the mean products of residuals 0 to ``order`` rows apart are less than those of the noise."""
+    """Return the loss of the mean products of residuals 0 to ``order`` rows apart, compared with those of the noise."""
     rows = len(basis)
     both = np.concatenate((correlations[:0:-1], correlations))
     turned = np.array([fftconvolve(column, both)[len(correlations) - 1:len(correlations) - 1 + rows]
@@ -156,7 +156,7 @@ def _lost(basis: np.ndarray, correlations: np.ndarray, order: int) -> np.ndarray
 
 
 def _burg(values: np.ndarray, order: int) -> tuple[np.ndarray, list[float]]:
-    """Return the coefficients of an autoregression, and the variance that each order leaves (J. P. Burg, 1967)."""
+    """Return the coefficients of an autoregression, and the remaining variance of each order (J. P. Burg, 1967)."""
     forward, backward = values[1:], values[:-1]
     coefficients, left = np.zeros(0), [float(values @ values) / len(values)]
     for _ in range(order):
@@ -175,7 +175,7 @@ def _order(values: np.ndarray, most: int) -> int:
 
 
 def _autoregression(products: np.ndarray) -> np.ndarray | None:
-    """Return the coefficients of the autoregression of some products (Levinson); None: it is none that settles."""
+    """Return the coefficients of the autoregression of some products (Levinson); None: it is not stable."""
     coefficients, left = np.zeros(0), float(products[0])
     for lag in range(1, len(products)):
         if not left > 0:
@@ -189,7 +189,7 @@ def _autoregression(products: np.ndarray) -> np.ndarray | None:
 
 
 def _correlations(coefficients: np.ndarray, rows: int) -> np.ndarray:
-    """Return the correlations of an autoregression, as far as they matter."""
+    """Return the correlations of an autoregression, up to the last that matters."""
     impulse = np.zeros(4 * rows)
     impulse[0] = 1.0
     answer = lfilter([1.0], np.append(1.0, -coefficients), impulse)

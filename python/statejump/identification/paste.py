@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a case file takes of an identified joint: keys, values, distributions."""
+"""The section of a case file for an identified joint: keys, values, distributions."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -11,7 +11,7 @@ from scipy.special import ndtri
 from statejump.core.errors import NotAllowed
 from statejump.identification.fit import Interval
 
-# Where a joint goes, and what a loop of it is.
+# Targets of an identified joint, and the kind of loop that each needs.
 TARGETS = {
     "spring_slider": ("[joint]", "joint", False),
     "slider": ("[[slider]]", "slider.*", False),
@@ -28,9 +28,9 @@ class Entry:
     """A key of a case.
 
     :param key: as in its section
-    :param value: None: the loop does not give it
+    :param value: None: the loop does not determine it
     :param deviation: standard deviation of the estimate; None: the loop does not bound it
-    :param why: why there is no value
+    :param why: the reason why there is no value
     """
 
     key: str
@@ -40,7 +40,7 @@ class Entry:
 
 
 def check(target: str, angular: bool) -> None:
-    """Raise NotAllowed where a loop says nothing of such a joint."""
+    """Raise NotAllowed if a loop cannot determine such a joint."""
     if target not in TARGETS:
         raise NotAllowed("target", target, code="not_one_of", allowed=tuple(TARGETS), known=", ".join(TARGETS))
     if TARGETS[target][2] not in (None, angular):
@@ -48,7 +48,8 @@ def check(target: str, angular: bool) -> None:
 
 
 def deviation(interval: Interval, confidence: float) -> float | None:
-    """Return the standard deviation whose normal interval is as wide; None: the loop does not bound it."""
+    """Return the standard deviation of a normal distribution with an interval of this width; None: the loop does not
+    bound it."""
     if not interval.bounded:
         return None
     return (interval.high - interval.low) / (2 * float(ndtri(0.5 + confidence / 2)))
@@ -98,7 +99,7 @@ def entries(
         if "stop_stiffness" in values:
             stops.append(known("stop_stiffness_N_per_m", "stop_stiffness", ""))
         if "play" in values:
-            # The play of a case carries no force: as long a path lies between sliding forth and back.
+            # The play of a case carries no force. Its length keeps the path between sliding forth and back.
             stops.append(known("play_m", "play", "", 1 - values.get("play_ratio", 0.0)))
         return friction() + stops + (spring if target == "spring_slider" else [])
     if target == "iwan_joint":
@@ -113,13 +114,13 @@ def entries(
         wide = spread.get("preload")
         if stiffness.value is None or wide is None:
             return [stiffness, Entry("bias_rad", None, why="not identifiable from this loop")]
-        # M = K (angle - bias) is P at the angle 0.
+        # M = K (angle - bias) equals P at the angle 0.
         return [stiffness, Entry("bias_rad", -values["preload"] / stiffness.value, wide / stiffness.value)]
     return [*friction()[1:], play()]
 
 
 def section(target: str, found: list[Entry], source: str) -> list[str]:
-    """Return the lines of a section of a case file; what the loop does not give is a comment."""
+    """Return the lines of a section of a case file; parameters that the loop does not determine are comments."""
     lines = [f"# identified from {source}", TARGETS[target][0]]
     for entry in found:
         if entry.value is None:
@@ -131,7 +132,8 @@ def section(target: str, found: list[Entry], source: str) -> list[str]:
 
 
 def distributions(target: str, found: list[Entry]) -> dict[str, dict[str, float | str]]:
-    """Return what a campaign varies: key to what a ``[[vary]]`` table says. Positive parameters are lognormal."""
+    """Return the varied keys of a campaign with the fields of a ``[[vary]]`` table. Positive parameters are
+    lognormal."""
     return {
         f"{TARGETS[target][1]}.{entry.key}": {
             "distribution": "lognormal" if entry.value > 0 and entry.key not in OF_EITHER_SIGN else "normal",

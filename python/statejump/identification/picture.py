@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Picture of an identified joint: the loop, the fit on it, and what is left."""
+"""Picture of an identified joint: the loop, the fit, and the residual."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING

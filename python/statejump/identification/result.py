@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a loop says of a joint: parameters with intervals, which joint it is, and what it does not say."""
+"""Result of an identification: the joint, its parameters with intervals, and the parameters that the loop does not
+determine."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -31,7 +32,7 @@ AUTO = "auto"
 CONFIDENCE = Range(0.5, 0.999)
 # A difference of BIC below this is "not worth more than a bare mention" (Kass and Raftery, JASA 90, 1995).
 BARE_MENTION = 2.0
-# Standard deviations of the correlation of independent residuals, 1/sqrt(n), that pass for chance.
+# Standard deviations of the correlation of independent residuals, 1/sqrt(n), that count as chance.
 CHANCE = 3.0
 PARAMETER_COLUMNS = ("parameter", "unit", "estimate", "low", "high")
 MODEL_COLUMNS = ("model", "parameters", "noise", "log_likelihood", "bic", "bic_difference")
@@ -39,19 +40,19 @@ MODEL_COLUMNS = ("model", "parameters", "noise", "log_likelihood", "bic", "bic_d
 
 @dataclass(frozen=True)
 class Identification:
-    """A joint that was identified from a loop.
+    """A joint identified from a loop.
 
-    :param loop: as it was measured
-    :param candidates: the joints that were tried, the best by BIC first
-    :param fit: the joint that was chosen or asked for
+    :param loop: as measured
+    :param candidates: the fitted joints, the best by BIC first
+    :param fit: the chosen or requested joint
     :param intervals: of its parameters
-    :param because: parameters that are not identified because another one, which is named, is at the end of what is
-        sought
-    :param limits: of parameters that it does not have: the larger joint that was asked, and the interval there
+    :param because: parameters that are not identified because another one, which is named, is at the end of its search
+        range
+    :param limits: for parameters that the joint lacks: the larger joint that has them, and their interval there
     :param confidence: of the intervals
-    :param target: where the joint goes, one of paste.TARGETS
-    :param normal_force_N: in the test; None: not known
-    :param journal_radius_m: of a joint that turns; None: not known
+    :param target: item of a case that the joint becomes, one of paste.TARGETS
+    :param normal_force_N: in the test; None: unknown
+    :param journal_radius_m: of a joint that rotates; None: unknown
     """
 
     loop: Loop
@@ -76,7 +77,7 @@ class Identification:
         return dict(self.fit.values)
 
     def answer(self) -> np.ndarray:
-        """Return the force of the fit in every row."""
+        """Return the fitted force in every row."""
         return self.fit.model.answer(self.fit.values, self.loop.displacement, self.loop.memory)
 
     @property
@@ -86,22 +87,22 @@ class Identification:
                              self.journal_radius_m, self.loop.angular)
 
     def joint(self) -> str:
-        """Return the section of a case file; what the loop does not give is a comment."""
+        """Return the section of a case file; parameters that the loop does not determine are comments."""
         return "\n".join(paste.section(self.target, self.entries, self.loop.name))
 
     def changes(self) -> dict[str, float]:
-        """Return what ``case.changed`` takes: values by key, of what the loop gives."""
+        """Return the argument of ``case.changed``: values by key, for the determined parameters."""
         before = paste.TARGETS[self.target][1]
         return {f"{before}.{entry.key}": entry.value for entry in self.entries if entry.value is not None}
 
     def distributions(self) -> dict[str, dict[str, float | str]]:
-        """Return what ``sj.montecarlo`` takes: how well this loop knows the parameters of this one joint; parameters
-        are drawn apart from each other, and how joints differ among themselves another joint's loop would say."""
+        """Return the argument of ``sj.montecarlo``: how well this loop determines the parameters of this joint.
+        Parameters are drawn independently. Scatter between joints needs tests of several joints."""
         return paste.distributions(self.target, self.entries)
 
     @cached_property
     def notes(self) -> list[str]:
-        """What the loop does not say, and what is doubtful."""
+        """Parameters that the loop does not determine, and doubtful results."""
         return [*self._choice(), *self._unbounded(), *self._absent(), *self._laws(), *self._extrapolated(),
                 *self._residuals()]
 
@@ -144,7 +145,7 @@ class Identification:
         return told
 
     def _extrapolated(self) -> list[str]:
-        """Partial slip says where gross slip will be before it is reached."""
+        """For partial slip, gross slip is extrapolated before it is reached."""
         if self.fit.model.answer is MODELS["coulomb"].answer or "friction" not in self.fit.values:
             return []
         alone = {**self.fit.values, "preload": 0.0, "preload_stiffness": 0.0}
@@ -163,7 +164,7 @@ class Identification:
 
     @property
     def correlation(self) -> float:
-        """Correlation of the residual of a row with that of the next."""
+        """Correlation of the residuals of successive rows."""
         left = self.loop.force - self.answer()
         total = float(left @ left)
         return float(left[1:] @ left[:-1]) / total if total else 0.0
@@ -184,7 +185,7 @@ class Identification:
                  each.bic - self.candidates[0].bic) for each in self.candidates]
 
     def frame(self, table: str = "parameters") -> pandas.DataFrame:
-        """Return a table: ``parameters``, ``models``, or ``rows`` of the fit."""
+        """Return a table: ``parameters``, ``models``, or the ``rows`` of the fit."""
         pandas = libraries.pandas()
 
         if table == "parameters":
@@ -286,7 +287,7 @@ def identified(
 
 
 def _larger(name_of_best: str, name: str) -> str | None:
-    """Return the smallest joint that has the parameters of a joint and another one; None: none says more of it."""
+    """Return the smallest joint that has the parameters of a joint and another one; None: there is none."""
     model = MODELS[name_of_best]
     have = set(model.parameters)
     if name in have or model.name == "linear" and name != "friction":

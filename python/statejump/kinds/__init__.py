@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The registry of kinds of cases. A kind is a folder here, or a module of anybody's, and one entry.
+"""The registry of kinds of cases. A kind is a subfolder or a user's module, and one entry.
 
-Kinds of one's own are registered by :func:`register`, or for every command by the environment variable
-``STATEJUMP_KINDS``: a list of ``module:OBJECT`` separated by commas.
+:func:`register` adds a user's kind. The environment variable ``STATEJUMP_KINDS`` does so for every command: a list of
+``module:OBJECT``, separated by commas.
 """
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from statejump.kinds.protocol import Capability, Kind, needed, supports
 from statejump.schema.rules import check_name
 
 VARIABLE = "STATEJUMP_KINDS"
-# Where each kind's object is; its module is loaded when it is first asked for.
+# Module and object of each kind; the module is loaded at the first use.
 KINDS: dict[str, str] = {
     name: f"statejump.kinds.{name}:KIND" for name in ("spring_slider", "umbrella", "statics", "truss")
 }
@@ -34,10 +34,10 @@ def _object(place: str) -> Kind[Any]:
 
 
 def register(place: str) -> Kind[Any]:
-    """Add a kind of one's own, or replace it, and return it.
+    """Add or replace a user's kind, and return it.
 
-    :param place: ``module:OBJECT``, which workers of a campaign import as well
-    :raises StatejumpError: there is no such object
+    :param place: ``module:OBJECT``; workers of a campaign import it too
+    :raises StatejumpError: the object does not exist
     """
     found = _object(place)
     KINDS[found.name], _loaded[found.name] = place, found
@@ -45,7 +45,7 @@ def register(place: str) -> Kind[Any]:
 
 
 def registered() -> list[str]:
-    """Return the places of the kinds that are not the project's own."""
+    """Return the modules of the kinds outside the project."""
     return [place for place in KINDS.values() if not place.startswith("statejump.kinds.")]
 
 
@@ -58,7 +58,7 @@ def _from_environment() -> None:
                 register(place.strip())
             except StatejumpError as failure:
                 _read_from.clear()
-                failure.place = VARIABLE  # it is no fault of the file that is being read
+                failure.place = VARIABLE  # the environment causes the failure, not the file
                 raise
 
 
@@ -88,7 +88,7 @@ def has(case: Case, protocol: type) -> bool:
 
 
 def require(case: Case, protocol: type[Capability]) -> Capability:
-    """Return the kind of a case as what has a capability.
+    """Return the kind of a case, typed as a capability.
 
     :raises NotAllowed: it lacks the capability; the sentence names the kinds that have it
     """
@@ -101,5 +101,5 @@ def names_of_kinds_with(protocol: type) -> list[str]:
 
 
 def columns_of(name: str) -> tuple[str, ...]:
-    """Return the columns of a kind in the order of its CSV files; of a kind that is not known the common ones."""
+    """Return the columns of a kind in the order of its CSV files; for an unknown kind the common ones."""
     return kind(name).COLUMNS if name in names() else ("time_s", "temperature_change_K")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a run needs is known before it begins: what the machine has not got is refused in one sentence."""
+"""Check, before a run begins, that the machine has the memory and disk that the run needs."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -13,14 +13,16 @@ from statejump.kinds.protocol import ItemNames
 if TYPE_CHECKING:
     from statejump.core.case import Case
 
-# Samples beyond which nobody reads a whole history: a model that can tell its path at any time leaves some out.
+# Number of samples above which a history is too long to read: a model that can compute its path at any time then omits
+# some.
 WHOLE_HISTORY = 200_000
-# Bytes at the peak for each value of a history: what the model returns, the columns, the image of the result file; of
-# the DEM also the cells of its table as texts.
+# Peak memory for each value of a history [bytes]: the model's result, the columns, and the image of the result file;
+# for the DEM also the cells of its table as texts.
 PEAK_BYTES = {"reduced": 24, "dem": 160}
-# Bytes on disk: eight in the result file, up to 24 in the table, twice while the results are brought to their place.
+# Bytes on disk: eight in the result file and up to 24 in the table, twice while the files are moved to their final
+# paths.
 DISK_BYTES = 40
-# Values of an item, by the list that names it: of a node two vectors, of a contact three, its state, gap and heat.
+# Number of values of an item, by its list: two vectors for a node; three vectors, state, gap and heat for a contact.
 WIDTHS = {"nodes": 6, "links": 3, "contacts": 12}
 WIDTH = 6
 
@@ -39,7 +41,7 @@ class History:
 
 
 def history_of(case: Case, model: str) -> History:
-    """Return how large the history of a run will be.
+    """Return the size of the history of a future run.
 
     :param model: ``reduced`` or ``dem``
     """
@@ -50,7 +52,7 @@ def history_of(case: Case, model: str) -> History:
 
 
 def free_memory() -> int | None:
-    """Return the memory that a new process can have [bytes]; None: the system does not say."""
+    """Return the memory that a new process can use [bytes]; None: the system does not report it."""
     try:
         lines = Path("/proc/meminfo").read_text(encoding="utf-8").splitlines()
         return next(1024 * int(line.split()[1]) for line in lines if line.startswith("MemAvailable:"))
@@ -59,7 +61,7 @@ def free_memory() -> int | None:
 
 
 def check_memory(case: Case, model: str) -> None:
-    """Raise NotAllowed where the history of a run does not fit into the memory that is free."""
+    """Raise NotAllowed if the history of a run does not fit into the free memory."""
     history = history_of(case, model)
     needed, free = PEAK_BYTES[model] * history.samples * history.values, free_memory()
     if free is not None and needed > free:

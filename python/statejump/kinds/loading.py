@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cases from files, from the names of shipped ones, from dicts: checked as a whole, or refused with one failure."""
+"""Loading of cases from files, names of shipped cases, and dicts. A case is checked as a whole, or refused with one
+failure."""
 from __future__ import annotations
 
 import difflib
@@ -28,11 +29,11 @@ class _HeaderOnly(Section):
 
 
 def _kind_name(data: Mapping[str, Any]) -> str:
-    """Return what ``case.kind`` names; everything else depends on it."""
+    """Return the value of ``case.kind``, on which everything else depends."""
     header = data.get("case")
     wanted = header.get("kind") if isinstance(header, Mapping) else None
     if not isinstance(wanted, str):
-        # Without a kind only the header can be judged: [caes] and knid are named as such.
+        # Without a kind only the header can be checked, so that [caes] and knid are reported.
         structure(_HeaderOnly, {key: data[key] for key in data if difflib.get_close_matches(str(key), ["case"])})
     return check_name("case.kind", wanted, names())
 
@@ -40,12 +41,12 @@ def _kind_name(data: Mapping[str, Any]) -> str:
 def parse_case(
     data: Mapping[str, Any], file: Path | None = None, text: str = "", files_from: Path | None = None
 ) -> Case:
-    """Return the case in a parsed document.
+    """Return the case of a parsed document.
 
     :param data: sections and keys, as tomllib returns them
-    :param file: where it comes from, for messages and for files that it names
+    :param file: its file, for messages and for paths in the case
     :param text: the file as read
-    :param files_from: folder in which the files of temperatures and tables are that it names; None: it may name none
+    :param files_from: folder of the files of temperatures and tables that the case names; None: it may name none
     :raises StatejumpError: one failure; of several the first
     """
     try:
@@ -61,13 +62,13 @@ def parse_case(
 
 
 def found_case(path: str | Path) -> Path:
-    """Return the case file that is meant: as given, or, where there is none, that of the cases that come with the
-    program. ``table1``, ``table1.toml`` and ``cases/table1.toml`` find it from every folder."""
+    """Return the path of a case file: the given path or, if it does not exist, a shipped case. So ``table1``,
+    ``table1.toml`` and ``cases/table1.toml`` are found from every folder."""
     path = Path(path)
     try:
         if path.exists() or path.is_absolute():
             return path
-    except OSError:  # a name too long, a folder that may not be searched: whoever reads it says so
+    except OSError:  # a name too long, a folder without search permission: reading it reports the reason
         return path
     named = path if path.suffix else path.with_suffix(".toml")
     for place in (_paths.SHARE / named, _paths.SHARE / SHIPPED / named, _paths.SHARE / SHIPPED / "trusses" / named):
@@ -79,9 +80,8 @@ def found_case(path: str | Path) -> Path:
 def load_case(source: str | Path | Mapping[str, Any]) -> Case:
     """Return a case.
 
-    :param source: path of a case file; name of a case that comes with the program, as ``table1``; or sections and
-        keys as a dict
-    :raises StatejumpError: there is no such file, or the case is not allowed: file, key, value, range
+    :param source: path of a case file; name of a shipped case, for example ``table1``; or sections and keys as a dict
+    :raises StatejumpError: the file does not exist, or the case is invalid: file, key, value, range
     """
     if isinstance(source, Mapping):
         return parse_case(plain(source), files_from=Path())

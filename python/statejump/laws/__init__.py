@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Contact laws: what each says of itself, what it does along a path, curves, laws of one's own."""
+"""Contact laws: their descriptions, their response along a path, curves, and user laws."""
 from __future__ import annotations
 
 from statejump.laws.drive import drive

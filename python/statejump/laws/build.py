@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A law of one's own: one header, compiled against the kernel into a shared object that programs find by name."""
+"""User laws: one header, compiled against the kernel into a shared object that programs find by name."""
 from __future__ import annotations
 
 import hashlib
@@ -16,8 +16,8 @@ from statejump.core.output import write_bytes
 from statejump.core.reading import is_file
 
 COMPILERS = ("c++", "g++", "clang++")
-# As the project is compiled: results repeat bit for bit. Hidden, so that no function of this object stands in
-# for one of the program's.
+# The flags of the project, so that results repeat bit for bit. Symbols are hidden, so that no function of this object
+# replaces one of the program.
 FLAGS = ("-std=c++17", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-fvisibility=hidden")
 SOURCE = """\
 #include {header}
@@ -32,22 +32,22 @@ statejump_user_law() {{
 
 
 def default_folder() -> Path:
-    """Return the user's folder of laws, the last that programs search: ``~/.local/share/statejump/laws``."""
+    """Return the user's folder of laws, which programs search last: ``~/.local/share/statejump/laws``."""
     return Path(_engine.user_law_folders()[-1])
 
 
 def build(header: Path, folder: Path | None = None) -> Path:
-    """Compile the law of a header and put it where programs find it.
+    """Compile the law of a header, and write it to a folder that programs search.
 
-    The header defines a type like those of the catalogue and says ``using UserLaw = ...;`` of it. Whatever it
-    includes is found beside it and in the kernel.
+    The header defines a type like those of the catalogue, and names it by ``using UserLaw = ...;``. Its includes are
+    found beside it and in the kernel.
 
-    :param header: file that holds the law
-    :param folder: where the shared object goes; None: :func:`default_folder`. Another folder is searched if
+    :param header: file of the law
+    :param folder: folder of the shared object; None: :func:`default_folder`. Another folder is searched if
         ``$STATEJUMP_LAWS`` lists it.
-    :return: the shared object, ``<kind>_<name>.so``; an older one of that name is replaced
-    :raises StatejumpError: no such header, no compiler, other kernel headers than those of this build, a header
-        that does not compile (with the compiler's first error), or a law that cannot be used
+    :return: the shared object, ``<kind>_<name>.so``; it replaces an older one of that name
+    :raises StatejumpError: the header does not exist, there is no compiler, the kernel headers differ from those of
+        this build, the header does not compile (with the compiler's first error), or the law is unusable
     """
     header = Path(header)
     if not is_file(header):
@@ -73,7 +73,7 @@ def build(header: Path, folder: Path | None = None) -> Path:
 
 
 def find_compiler() -> str:
-    """Return the C++ compiler, ``$CXX`` before any other. :raises StatejumpError: there is none"""
+    """Return the C++ compiler, preferably ``$CXX``. :raises StatejumpError: there is none"""
     wanted = os.environ.get("CXX")
     for name in (wanted,) if wanted else COMPILERS:
         found = shutil.which(name)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the contact laws do: forces of a joint, one impact, and a figure of both."""
+"""Curves of the contact laws: forces of a joint, one impact, and a figure of both."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ from statejump.laws.traits import law, names
 IMPACT_LAW = "hertz_internal"
 RESTITUTION = 0.8
 IMPACT_SPEED_m_per_s = 0.1
-# Okabe-Ito colours, each with a line of its own: a curve is known without its colour.
+# Okabe-Ito colours, each with its own line style, so that curves differ without colour.
 STYLES = (
     {"color": "#000000", "linestyle": "-", "linewidth": 1.3},
     {"color": "#E69F00", "linestyle": "-", "linewidth": 3.2},
@@ -33,7 +33,7 @@ STYLES = (
 
 @dataclass(frozen=True)
 class Joint:
-    """A revolute joint with clearance, as the normal laws see it, and the mass that meets in it."""
+    """A revolute joint with clearance, as the normal laws use it, and its effective mass."""
 
     title: str
     journal_radius_m: float
@@ -50,7 +50,7 @@ def paper_joint() -> Joint:
 
 
 def reduced_mass_kg(mass_ab_kg: float, mass_bc_kg: float) -> float:
-    """Of two links that meet at their tips; a third of each mass is at its tip."""
+    """Reduced mass of two links that meet at their tips; each tip has a third of the mass of its link."""
     return 1 / (3 / mass_ab_kg + 3 / mass_bc_kg)
 
 
@@ -63,9 +63,9 @@ def normal_force(name: str, joint: Joint, depth_m: np.ndarray) -> dict[str, np.n
 
 
 def range_end_m(name: str, joint: Joint) -> tuple[float, bool]:
-    """Depth [m] at which a normal law ends, and whether the law itself refuses to go on.
+    """Return the depth [m] at which a normal law ends, and whether the law itself rejects larger depths.
 
-    A law without an end of its own is trusted until its contact is as wide as the journal.
+    A law without such a limit is drawn until its contact is as wide as the journal.
     """
     end = _engine.largest_depth_m(name, joint.journal_radius_m, joint.bearing_radius_m)
     if end < inf:
@@ -80,7 +80,7 @@ def range_end_m(name: str, joint: Joint) -> tuple[float, bool]:
 
 @dataclass(frozen=True)
 class Impact:
-    """A free impact of the joint's reduced mass, from touch to parting."""
+    """A free impact of the joint's reduced mass, from the beginning to the end of contact."""
 
     depth_m: np.ndarray
     force_N: np.ndarray
@@ -91,7 +91,7 @@ def impact(dissipation: str, joint: Joint, restitution: float = RESTITUTION,
            speed_m_per_s: float = IMPACT_SPEED_m_per_s, steps: int = 1000) -> Impact:
     """Integrate one impact on ``IMPACT_LAW`` by Runge-Kutta steps.
 
-    :param restitution: what the dissipation law is asked for
+    :param restitution: given to the dissipation law
     :param steps: steps over about a third of the impact
     """
     mass = joint.reduced_mass_kg
@@ -114,7 +114,7 @@ def impact(dissipation: str, joint: Joint, restitution: float = RESTITUTION,
         k3 = rates(*(y + step / 2 * k2))
         k4 = rates(*(y + step * k3))
         states.append(y + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4))
-    states[-1][0] = 0.0  # a step beyond; the force there is zero and the speed final
+    states[-1][0] = 0.0  # one step later the force is zero and the speed is final
     depth, rate = np.array(states).T
     return Impact(depth, np.array([force(*state) for state in states]), float(-rate[-1] / speed_m_per_s))
 
@@ -134,7 +134,7 @@ def _draw_normal(panel: Axes, joint: Joint) -> None:
     ends = {name: range_end_m(name, joint) for name in names("normal")}
     first = 1e-4 * min(clearance, *(end for end, _ in ends.values()))
     for style, (name, (end, refuses)) in zip(cycle(STYLES), ends.items()):
-        # Dense towards the end, where the curve of some laws turns upwards.
+        # Dense towards the end, where the curves of some laws bend upwards.
         depth = np.geomspace(first, end, 400)[:-1]
         depth = np.append(depth, end * (1 - np.geomspace(1e-2, 1e-9, 60)))
         depth.sort()

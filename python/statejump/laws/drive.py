@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One contact led along a given path, by any law of the catalogue: what a law does, and how one tests it."""
+"""One contact driven along a given path, with any law of the catalogue: the response of the law, for tests."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -16,12 +16,12 @@ from statejump.core.table_files import read_known
 from statejump.core.tables import check_columns, write_columns
 from statejump.laws.traits import Law, catalogue
 
-# Kinds whose laws answer a path; the first that knows a name has it.
+# Kinds of laws that can be driven; the first kind that has the name is used.
 DRIVEN = ("friction", "normal", "dissipation")
 NORMAL = ("penetration_depth_m", "normal_force_N")
 ALONG = ("slide_m", "slide_x_m", "tangential_force_N")
 COLUMNS = ("time_s", *NORMAL, *ALONG, "slide_y_m")
-# A refined path stays in memory as a whole.
+# A refined path is kept in memory as a whole.
 MOST_STEPS = 10_000_000
 
 
@@ -41,11 +41,11 @@ def drive(
     v0_m_per_s: float | None = None,
     v1_m_per_s: float | None = None,
 ) -> dict[str, np.ndarray]:
-    """Lead one contact along a path and return what a law of the catalogue answers.
+    """Drive one contact along a path, and return the response of a law of the catalogue.
 
-    The contact is made at the first row, without slide. A row is a turning point of the path, or a point of a
-    straight part. A negative penetration depth is an open contact: no force, and friction forgets what it carried;
-    where the depth is positive again a new contact begins.
+    The contact begins at the first row, without slide. A row is a reversal of the path, or a point of a straight part.
+    A negative penetration depth is an open contact: it has no force, and friction loses its memory. When the depth is
+    positive again, a new contact begins.
 
     Columns of the history: ``penetration_depth_m`` or ``normal_force_N``; ``slide_m``, or ``slide_x_m`` with
     ``slide_y_m``, or ``tangential_force_N``; ``time_s`` for a law that depends on velocity. Slides are those of body 1
@@ -58,22 +58,22 @@ def drive(
     :param effective_shear_modulus_Pa: G* [Pa], 1/G* = (2 - ν1)/G1 + (2 - ν2)/G2
     :param effective_radius_m: R [m]; of a journal in a bore R1 R2/(R2 - R1)
     :param friction_coefficient: μ [-]
-    :param steps_per_row: equal steps from one row to the next
-    :param radial_clearance_m: R2 - R1 [m], by default of a flat wall; a law of a line contact needs it
-    :param contact_length_m: of a line contact [m]; the default of the catalogue
-    :param restitution: what a dissipation law is asked for [-], likewise
-    :param smallest_impact_speed_m_per_s: likewise
-    :param v0_m_per_s: of the friction law that reads it, likewise
+    :param steps_per_row: number of equal steps between two rows
+    :param radial_clearance_m: R2 - R1 [m]; default: that of a flat wall. A law of a line contact needs it
+    :param contact_length_m: of a line contact [m]; default: that of the catalogue
+    :param restitution: for a dissipation law [-]; default: that of the catalogue
+    :param smallest_impact_speed_m_per_s: for a dissipation law; default: that of the catalogue
+    :param v0_m_per_s: for the friction law that reads it; default: that of the catalogue
     :param v1_m_per_s: likewise
-    :return: arrays by column, a value for each step: the columns of the history, ``row`` (counted from 1, with
-        fractions between), and where they are not there yet ``penetration_depth_m``, the slides,
-        ``normal_force_N``, ``tangential_force_N`` (or ``tangential_force_x_N``, ``tangential_force_y_N``); energies
+    :return: arrays by column, with one value per step: the columns of the history; ``row`` (counted from 1, with
+        fractions between); the missing ones of ``penetration_depth_m``, the slides, ``normal_force_N``,
+        ``tangential_force_N`` (or ``tangential_force_x_N``, ``tangential_force_y_N``); energies
         ``normal_elastic_energy_J`` and ``tangential_elastic_energy_J``; ``friction_dissipation_J`` and
-        ``damping_dissipation_J`` since the first row; ``slipping``, 1 where friction is at its limit;
-        ``memory_points`` and ``merged_force_N`` of a law with partial slip
+        ``damping_dissipation_J`` since the first row; ``slipping``, 1 where friction is at its limit; ``memory_points``
+        and ``merged_force_N`` of a law with partial slip
     :raises StatejumpError: an unknown law, a column that is missing or has no meaning here, a value that is no number
-        or out of range; :class:`~statejump.core.errors.FailedRun`, with the row: a depth that the normal law does not
-        cover, a force that friction does not reach
+        or out of range; :class:`~statejump.core.errors.FailedRun`, with the row: a depth outside the range of the
+        normal law, or a force that friction cannot reach
     """
     kind, known = _driven(law)
     file, columns = _columns(history)
@@ -124,7 +124,7 @@ def drive_file(law: str, history: Path, written: Path, **options: Any) -> Path:
 
 
 def _driven(name: str) -> tuple[str, Law]:
-    """Return the kind of a law and what it says of itself."""
+    """Return the kind of a law and its description."""
     names: list[str] = []
     for kind in DRIVEN:
         for law in catalogue(kind):
@@ -138,7 +138,7 @@ def _driven(name: str) -> tuple[str, Law]:
 
 
 def _columns(history: Mapping[str, Any] | str | Path) -> tuple[Path | None, dict[str, np.ndarray]]:
-    """Return the file that a history is from, and its columns as they are there."""
+    """Return the file of a history, and its columns as given."""
     if isinstance(history, Mapping):
         return None, {str(name): np.atleast_1d(np.asarray(values)) for name, values in history.items()}
     file = Path(history)
@@ -146,7 +146,7 @@ def _columns(history: Mapping[str, Any] | str | Path) -> tuple[Path | None, dict
 
 
 def _check(columns: Mapping[str, np.ndarray], kind: str, law: Law) -> None:
-    """Refuse columns that do not make a path for the law. :raises StatejumpError: the first thing that is wrong"""
+    """Refuse columns that do not define a path for the law. :raises StatejumpError: the first fault"""
     for name in columns:
         if name not in COLUMNS:
             near = get_close_matches(name, COLUMNS, 1)
@@ -188,7 +188,7 @@ def _one_of(columns: Mapping[str, np.ndarray], names: tuple[str, ...], told: str
 
 
 def _refined(columns: Mapping[str, np.ndarray], steps: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Return the number of the row and the columns, with equal steps from row to row."""
+    """Return the number of the row and the columns, with equal steps between rows."""
     rows = len(next(iter(columns.values())))
     row = np.arange((rows - 1) * steps + 1) / steps
     return row + 1, {name: np.interp(row, np.arange(rows), values) for name, values in columns.items()}
@@ -202,7 +202,8 @@ def _or_default(parameter: str, value: float | None) -> float:
 
 
 def _named(path: dict[str, np.ndarray], answer: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return the path and what it does not have yet of the answer; of a path in one direction without the other."""
+    """Return the columns of the path, and those of the response that the path lacks. A path in one direction has no
+    second direction."""
     if "slide_y_m" not in path:
         for name in ("slide_y_m", "tangential_force_y_N"):
             del answer[name]

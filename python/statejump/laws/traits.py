@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the laws of the catalogue say of themselves: the traits on their types in C++, as data."""
+"""Descriptions of the laws of the catalogue: the traits of their types in C++, as data."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -31,19 +31,19 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Law:
-    """What a law says of itself. Who has to know what a law can do asks this, never its name."""
+    """Description of a law. Code that depends on the capabilities of a law reads its traits, never its name."""
 
     name: str
     formula: str
     source: str
-    range: str  # where it is valid; what is an error outside
+    range: str  # range of validity, and the errors outside
     holds_static_load: bool
     frictionless: bool
     has_memory: bool  # keeps a history; else a smooth function of the velocity
     needs_axis: bool  # neither in a socket nor on a flat face
     accepts_bulging_wall: bool
     point_contact: bool  # Hertz's
-    needs_point_contact: bool  # has a meaning only under a normal law that is one
+    needs_point_contact: bool  # valid only under a normal law that is a point contact
     parameters: tuple[Parameter, ...]
 
 
@@ -61,7 +61,7 @@ def names(kind: str) -> list[str]:
 
 
 def law(kind: str, name: str) -> Law:
-    """Return the law of a kind with that name. :raises ValueError: there is none, with the names that there are"""
+    """Return the law of a kind with that name. :raises ValueError: it does not exist; the message lists the names"""
     for each in catalogue(kind):
         if each.name == name:
             return each

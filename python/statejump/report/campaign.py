@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a page says of a campaign: distributions of its outcomes, or their curves over a grid, and
-which of the varied parameters they follow. Knows the campaign's table of samples and the page."""
+"""Page of a campaign: distributions of its outcomes, or their curves over a grid, and their correlation with the varied
+parameters. Uses the campaign's table of samples."""
 from __future__ import annotations
 
 import json
@@ -19,11 +19,11 @@ from statejump.report import words
 
 BARS = 60  # of a histogram, as in the figures of the commands
 QUANTILES = ("quantile_5", "median", "quantile_95")
-FEWEST_MANY_POINTS = 2000  # points of a sweep beyond which a page shows every n-th
+FEWEST_MANY_POINTS = 2000  # number of points of a sweep above which a page shows every n-th
 
 
 def _one(place: str, value: Any) -> Any:
-    """Return the value of an attribute: one text or number. :raises ValueError: it is something else"""
+    """Return the value of an attribute: one text or number. :raises ValueError: it has another type"""
     if not isinstance(value, (str, int, float, np.integer, np.floating)):
         raise ValueError(f"{place} is not one text or number")
     return value
@@ -60,7 +60,7 @@ def is_campaign(path: Path) -> bool:
 
 
 class CampaignDocument:
-    """A campaign as it stands on a page; arguments as of :class:`~.document.Document`.
+    """A campaign for a page; arguments as for :class:`~.document.Document`.
 
     :raises Unreadable: the table is damaged
     """
@@ -68,7 +68,7 @@ class CampaignDocument:
     template = "campaign.html"
 
     def __init__(self, path: Path, identifier: str, source: str) -> None:
-        from statejump.campaign import outputs, plan, summary  # Dask and SciPy, 0.3 s; a page of runs does without
+        from statejump.campaign import outputs, plan, summary  # Dask and SciPy, 0.3 s; not needed for a page of runs
 
         self.source, self.identifier = source, identifier
         try:
@@ -125,7 +125,7 @@ class CampaignDocument:
 
     @property
     def kind(self) -> str:
-        """What the page's list of runs calls it."""
+        """Name of the campaign's type in the page's list of runs."""
         return "campaign"
 
     @property
@@ -149,10 +149,10 @@ class CampaignDocument:
         ]
 
     def cards(self) -> list[dict[str, Any]]:
-        """The numbers at the top: the first outcomes' middle and spread."""
+        """Numbers at the top: median and spread of the first outcomes."""
         shown = {"median": "median", "quantile_5": "5 % are below", "quantile_95": "5 % are above",
                  "quantile_99": "1 % are above", "minimum": "smallest", "maximum": "largest"}
-        if self.command == "sweep":  # a grid has no frequencies
+        if self.command == "sweep":  # a grid has no frequency distribution
             shown = {"minimum": "smallest", "maximum": "largest"}
         return [
             {"label": outcome.title, "values": [(label, self._text(outcome, key)) for key, label in shown.items()]}
@@ -160,7 +160,7 @@ class CampaignDocument:
         ]
 
     def _text(self, outcome: Variable, key: str) -> str:
-        """Return a number of the statistics; an extreme with its sample."""
+        """Return a number of the statistics as text; an extreme with its sample."""
         found = self.statistics[outcome.name]
         said = text(found[key], outcome.unit, 4)
         sample = found.get(f"{key}_sample")
@@ -209,7 +209,7 @@ class CampaignDocument:
         }
 
     def _ranks(self, outcome: Variable) -> dict[str, Any]:
-        """How closely an outcome follows each parameter: rank correlation, strongest first."""
+        """Rank correlation of an outcome with each parameter, the strongest first."""
         from statejump.campaign.summary import spearman  # as outputs
 
         bars = [

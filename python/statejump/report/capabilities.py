@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Capabilities of kinds to be shown: text, figures, parts of the page; see :mod:`statejump.kinds.protocol`."""
+"""Capabilities of kinds for presentation: text, figures, parts of the page; see :mod:`statejump.kinds.protocol`."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
 @capability("plot")
 class RunSheet(Protocol):
-    """Figure of one run, or of two on top of each other."""
+    """Figure of one run, or of two in one figure."""
 
     def sheet(self, case: Any, runs: Sequence[Run]) -> Sheet: ...
 
 
 @capability("told")
 class RunText(Protocol):
-    """What a command prints of runs, tables and lines."""
+    """Printed tables and lines of runs."""
 
     def told(self, case: Any, runs: Mapping[str, Run]) -> list[Shown | str]: ...
 
@@ -48,20 +48,20 @@ class PageCharts(Protocol):
 
 @capability("event reason")
 class EventReasons(Protocol):
-    """Why only one model has an event; "": it is not known."""
+    """Reasons why only one model has an event; "": unknown."""
 
     def event_reason(self, case: Any, event: Event, model: str, runs: Mapping[str, Run]) -> str: ...
 
 
 @capability("page")
 class PagePart(Protocol):
-    """A part of the page of ``statejump report`` that only this kind has; None: this result has none."""
+    """The part of the page of ``statejump report`` that only this kind has; None: not for this result."""
 
     def page(self, result: Result, case: Any) -> Any: ...
 
 
 @capability("truss draw")
 class CaseDrawing(Protocol):
-    """What the case says, drawn before anything is solved."""
+    """Drawing of a case before anything is solved."""
 
     def draw(self, case: Any, axes: Axes | None = None, names: bool = False) -> Figure: ...

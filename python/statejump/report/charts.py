@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Charts of a page: which ones it has, and how their axes are called and scaled."""
+"""Charts of a page, with the names and scales of their axes."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -17,16 +17,16 @@ from statejump.kinds import has, require
 from statejump.report.capabilities import PageCharts
 from statejump.report.words import Words
 
-# What tells of a model, not of the structure.
+# Columns about the model itself, not about the structure.
 NOT_SHOWN = {"time_s", "temperature_change_K", "slipping", "stop_contact", "stage"}
 MOST_OTHER_LOOPS = 4
-STATE_UNITS = {"m", "rad"}  # of places: forces have no state jump
+STATE_UNITS = {"m", "rad"}  # units of displacements: forces have no state jump
 
 
 def charts_of(case: Case | None, run: Run, words: Words) -> list[Chart]:
     """Return the charts of a run: those of its kind, or loops of its first plain columns.
 
-    :param case: None: this version does not understand the case of the file
+    :param case: None: this version does not support the case of the file
     """
     if case is not None and has(case, PageCharts):
         found: list[Chart] = require(case, PageCharts).charts(case)
@@ -45,14 +45,14 @@ def _plain_columns(run: Run) -> list[str]:
 
 
 Columns = Mapping[str, Mapping[str, np.ndarray]]
-LEFT = " less its straight part"  # ends the name of a column
+LEFT = " less its straight part"  # suffix of the name of a column
 
 
 def with_thin_loops(
     given: Sequence[Chart], columns: Mapping[str, dict[str, np.ndarray]], units_of: dict[str, str], words: Words
 ) -> list[Chart]:
-    """Return charts, behind each loop that is thin beside its straight part one without it. Its column is put into
-    ``columns`` and ``units_of``; the line is that of the first model."""
+    """Return the charts, each followed by one without the reversible part if its loop is thin. The new column is added
+    to ``columns`` and ``units_of``. The subtracted line is that of the first model."""
     found = []
     for chart in given:
         found.append(chart)
@@ -66,7 +66,7 @@ def with_thin_loops(
         units_of[y + LEFT] = unit = units_of.get(y, "-")
         scale, written = units.scale_of(unit, abs(line.slope))
         slope = f"{line.slope * scale:.5g} {written}/K".replace("-", "−", 1)
-        # The label of the axis is short: it is as long as the chart is high.
+        # The label is short, because its length is limited by the height of the chart.
         found.append(replace(chart, y=Axis(y + LEFT, chart.y.label or words.plain(y)),
                              title=f"{chart.title},{LEFT} of {slope}"))
     return found
@@ -90,8 +90,8 @@ def shown(
 
     :param columns: by model and name
     :param unit_of: unit of every column
-    :param marks: events to mark: ``time_s``, ``label``, ``value``, ``role``; the value of a ``jump`` is
-        that of the chart's own quantity
+    :param marks: events to mark: ``time_s``, ``label``, ``value``, ``role``; the value of a ``jump`` is that of the
+        chart's own quantity
     """
     models = [model for model, values in columns.items() if {chart.x.column, chart.y.column} <= set(values)]
     if not models:

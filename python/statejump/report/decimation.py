@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fewer samples with a known error: the page says how many are left and what that costs."""
+"""Selection of fewer samples with a known error; the page states their number and the error."""
 from __future__ import annotations
 
 import heapq
@@ -11,14 +11,14 @@ import numpy as np
 def kept_samples(
     time_s: np.ndarray, columns: np.ndarray, most: int, tolerance: float, always: Iterable[int] = ()
 ) -> np.ndarray:
-    """Choose samples so that straight lines between them follow all columns.
+    """Select samples so that linear interpolation between them follows all columns.
 
-    Greedy splitting (Ramer 1972, Douglas and Peucker 1973) with the error of linear interpolation
-    in time: the sample that is worst off is taken next, until none is worse than the tolerance.
+    Greedy splitting (Ramer 1972, Douglas and Peucker 1973) with the error of linear interpolation in time: the sample
+    with the largest error is selected next, until no error exceeds the tolerance.
 
     :param time_s: rising (samples)
     :param columns: (samples, columns); only finite values count
-    :param most: number of samples at which to stop
+    :param most: largest number of samples
     :param tolerance: allowed error, as a fraction of the range of each column
     :param always: samples to keep in any case
     :returns: indices in order
@@ -52,8 +52,8 @@ def kept_samples(
 
 
 def errors(time_s: np.ndarray, columns: Iterable[np.ndarray], kept: np.ndarray) -> np.ndarray:
-    """Return by how much straight lines between kept samples miss each column, as a fraction of its
-    range; only finite values count."""
+    """Return the error of linear interpolation between kept samples for each column, as a fraction of its range; only
+    finite values count."""
     found = []
     for column in columns:
         values = np.where(np.isfinite(column), column, 0.0)

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a page says of one result: texts and tables ready to print, and data for charts and replay.
+"""Page of one result: texts and tables, and data for charts and replay.
 
-This is the only module that knows both the result file (through its reader) and the page. The data
-for the page's script is plain JSON, :func:`Document.payload`; columns are numbers, or base64 of little-endian
-float32 (``f``) or uint8 (``u``).
+Only this module knows both the result file (through its reader) and the page. The data for the page's script are plain
+JSON, :func:`Document.payload`; columns are numbers, or base64 of little-endian float32 (``f``) or uint8 (``u``).
 """
 from __future__ import annotations
 
@@ -32,13 +31,13 @@ from statejump.report.inputs import sections_of
 from statejump.results.contents import Result
 from statejump.results.read import read
 
-TOLERANCE = 2e-4  # of a column's range, what decimation may cost
-MOST_SAMPLES = 4000  # of a model on a page
+TOLERANCE = 2e-4  # allowed error of decimation, as a fraction of a column's range
+MOST_SAMPLES = 4000  # samples of a model on a page
 FEWEST_SAMPLES = 200
 BYTES_PER_VALUE = 16 / 3  # float32 as base64
-MOST_GUIDES = 200  # columns that decide which samples are kept; the error is of all
+MOST_GUIDES = 200  # columns that determine the kept samples; the error is that of all columns
 MOST_EVENTS = 60  # rows of the table
-SAME_EVENT = 0.05  # of a cycle: how far apart the models may have what is one event
+SAME_EVENT = 0.05  # fraction of a cycle within which two events of the models are one
 MARKED_EVENTS = ("first_contact", "first_slip", "stop_reached", "stop_left")
 
 
@@ -53,12 +52,12 @@ class Kept:
 
 
 class Document:
-    """A result as it stands on a page.
+    """A result for a page.
 
-    :param result: what the file holds
-    :param source: the file's name, as the page states it
+    :param result: content of the file
+    :param source: the file's name on the page
     :param identifier: prefix of the page's anchors, unique on the page
-    :param budget_bytes: size that the histories may have on the page
+    :param budget_bytes: largest size of the histories on the page
     """
 
     template = "run.html"
@@ -128,7 +127,7 @@ class Document:
         return "pass", f"Both models agree: all {len(rows)} compared quantities are within tolerance."
 
     def cards(self) -> list[dict[str, Any]]:
-        """The numbers at the top: state jumps of every model, then the first contact or slip."""
+        """Numbers at the top: state jumps of every model, then the first contact or slip."""
         models = self.result.models
         names = dict.fromkeys(name for run in models.values() for name, value in run.summary.items()
                               if ("jump" in name or "at_program_end" in name) and math.isfinite(value))
@@ -162,7 +161,7 @@ class Document:
 
     @property
     def sides(self) -> list[str]:
-        """Whose values are compared, in the order of the columns of the table."""
+        """Sources of compared values, in the order of the columns of the table."""
         return sides(self.result.rows or ())
 
     def comparison(self) -> list[dict[str, Any]]:
@@ -175,15 +174,15 @@ class Document:
             "name": self._words.plain(name) + (f", {rest}" if rest else ""),
             "values": [text(row.values[side], row.unit) if side in row.values else "" for side in self.sides],
             "difference": text(row.difference, row.unit, 3), "tolerance": text(row.tolerance, row.unit, 3),
-            # How much of the tolerance is used: a bar in the table.
+            # Used fraction of the tolerance: a bar in the table.
             "used": min(1.0, abs(row.difference) / row.tolerance) if row.difference is not None and row.tolerance
             else None,
             "passed": row.passed,
         }
 
     def events(self) -> tuple[list[dict[str, Any]], int]:
-        """Rows of the table of events in order of time, and how many rows were left off. Events of the
-        models stand in one row if they are of one kind, at one contact and nearly at one time."""
+        """Rows of the table of events in order of time, and the number of omitted rows. Events of the models share a
+        row if they are of one kind, at one contact and nearly at one time."""
         near = SAME_EVENT * self._cycle_s
         rows: list[dict[str, Any]] = []
         for model, run in self.result.models.items():
@@ -215,7 +214,7 @@ class Document:
         }
 
     def _reason(self, event: Event, having: set[str]) -> str:
-        """Return why only some of the models have an event, where the kind knows it."""
+        """Return the reason why only some of the models have an event, if the kind knows it."""
         case, models = self._case, self.result.models
         if case is None or having == set(models) or not has(case, EventReasons):
             return ""
@@ -224,12 +223,12 @@ class Document:
 
     @property
     def _cycle_s(self) -> float:
-        """Length of a cycle [s]; of the whole run if the case has none."""
+        """Duration of a cycle [s]; of the whole run if the case has none."""
         end = max((float(run.time_s[-1]) for run in self.result.models.values()), default=0.0)
         return end / self._cycles
 
     def stages(self) -> list[dict[str, Any]]:
-        """Stages of the first model that names them: name, meaning, from, to."""
+        """Stages of the first model that has any: name, meaning, begin, end."""
         for run in self.result.models.values():
             column = run.history.get("stage")
             if column is None or not column.labels:
@@ -303,13 +302,13 @@ class Document:
         affordable = int(budget_bytes / (BYTES_PER_VALUE * max(1, len(moving))))
         most = min(MOST_SAMPLES, max(FEWEST_SAMPLES, affordable))
         time_s = columns["time_s"]
-        # Straight lines cannot follow a state: both samples of its change stay, if there is room.
+        # Linear interpolation cannot follow a state, so both samples of a change are kept, if there is room.
         states = [values for values in moving if values.dtype == np.uint8]
         turned = np.any([np.diff(values) != 0 for values in states], axis=0) if states else np.zeros(0, bool)
         turns = np.flatnonzero(turned)
         always = np.unique(np.concatenate((turns, turns + 1)))
         chosen, guides = always if len(always) <= most else always[:0], moving[:: math.ceil(len(moving) / MOST_GUIDES)]
-        for _ in range(2):  # the second time by the columns that the first ones do not stand for
+        for _ in range(2):  # the second pass uses the columns that the first ones do not represent
             chosen = kept_samples(time_s, np.stack(guides, axis=1).astype(float), most, TOLERANCE, map(int, chosen))
             missed = errors(time_s, moving, chosen)
             if missed.max(initial=0.0) <= TOLERANCE or len(chosen) >= most:
@@ -338,7 +337,7 @@ class Document:
 
     @staticmethod
     def _readouts(shown: list[dict[str, Any]]) -> list[dict[str, Any]]:
-        """Numbers beside the replay: what the charts show over temperature and time."""
+        """Numbers beside the replay: the quantities of the charts over temperature and time."""
         axes = {chart["y"]["column"]: chart["y"] for chart in shown
                 if not chart["equal"] and not chart["y"]["column"].endswith(charts.LEFT)}
         return [
@@ -347,7 +346,7 @@ class Document:
 
 
 def _uncertainty(event: Event, run: Run) -> dict[str, str]:
-    """Return how far time and temperature of an event between two samples may be off; "" for one that is located."""
+    """Return the uncertainty of time and temperature of an event between two samples; "" for a located event."""
     if not event.time_uncertainty_s:
         return {"uncertainty": "", "uncertainty_K": ""}
     around = event.time_s + event.time_uncertainty_s * np.array([-1, 1])
@@ -357,7 +356,7 @@ def _uncertainty(event: Event, run: Run) -> dict[str, str]:
 
 
 def of_file(path: Path, source: str, identifier: str, budget_bytes: float) -> Document:
-    """Return what a page says of a result file. :raises Unreadable: the file or what the page needs of it"""
+    """Return the page of a result file. :raises Unreadable: the file, or a part that the page needs"""
     result = read(path)
     try:
         return Document(result, source, identifier, budget_bytes)
@@ -366,7 +365,7 @@ def of_file(path: Path, source: str, identifier: str, budget_bytes: float) -> Do
 
 
 def _case_of(result: Result) -> Case | None:
-    """Return the case of a file; None: this version does not understand it, and the page goes without its words."""
+    """Return the case of a file; None: this version does not support it, and the page omits its description."""
     try:
         return result.definition
     except StatejumpError:
@@ -374,7 +373,7 @@ def _case_of(result: Result) -> Case | None:
 
 
 def _encoded(values: np.ndarray) -> Any:
-    """Return a column for the page; a number if it is the same everywhere."""
+    """Return a column for the page; a single number if it is constant."""
     if values.dtype == np.uint8:
         return {"u": base64.b64encode(values.tobytes()).decode("ascii")}
     values = np.nan_to_num(values.astype("<f4"))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The scene of a result file as the replay wants it: points that move, parts on them, forces.
+"""The scene of a result file for the replay: moving points, parts on them, forces.
 
-A point whose part rests on or in another part's is given *relative* to that part's point, as
-difference of the full-precision columns: a clearance of 0.1 mm on a link of 100 mm is lost in
-single precision otherwise, and this is what the replay magnifies.
+The position of a part that rests on or in another part is stored *relative* to that part, as a difference of the
+full-precision columns. In single precision, a clearance of 0.1 mm on a link of 100 mm would be lost, and the replay
+magnifies this clearance.
 """
 from __future__ import annotations
 
@@ -22,11 +22,12 @@ from statejump.results.contents import Result
 from statejump.results.growth import growth
 from statejump.results.scene import resolve, resolve_point
 
-# What the default magnification gives the smallest clearance: a share of the scene's size, but of the
-# shortest link no more than can be told from the link.
+# Size of the smallest clearance at the default magnification, as a fraction of the scene. It is limited to a fraction
+# of the shortest link, so that both remain distinguishable.
 SHOWN_GAP = 0.03
 SHOWN_GAP_OF_LINK = 0.15
-# What the largest way of a point takes of the scene at most at first: expansion is far larger than a clearance.
+# Largest displacement of a point at the default magnification, as a fraction of the scene, because expansion is much
+# larger than a clearance.
 SHOWN_WAY = 0.1
 AXES = "xyz"
 
@@ -44,8 +45,8 @@ def round_down(value: float) -> float:
 class Drawing:
     """Collects points, parts, forces and the columns that move them, for every model of a result.
 
-    ``scene`` is plain JSON data; where a number may change it holds the name of a column instead.
-    ``columns`` has these by model and name.
+    ``scene`` is plain JSON data; a number that changes is replaced by the name of a column. ``columns`` has these
+    columns by model and name.
     """
 
     def __init__(self, result: Result, words: Words) -> None:
@@ -72,7 +73,7 @@ class Drawing:
                 for state, colour in result.scene["states"].items()
             ],
         }
-        with np.errstate(over="ignore", invalid="ignore"):  # it refuses what is too large
+        with np.errstate(over="ignore", invalid="ignore"):  # numbers that are too large are refused
             self._measure()
 
     def _column(self, name: str, values: Callable[[Run], np.ndarray]) -> str:
@@ -93,7 +94,7 @@ class Drawing:
         return self._points[json.dumps(part["centre"], sort_keys=True)]
 
     def _pairs(self) -> dict[int, int]:
-        """Return for points of parts that rest on another part the point of the other."""
+        """Return, for points of parts that rest on another part, the point of the other part."""
         pairs: dict[int, int] = {}
         for contact in self.result.scene["contacts"]:
             on, other = (self._parts[contact[key]] for key in ("on", "from"))
@@ -101,7 +102,7 @@ class Drawing:
                 continue
             place, base = self._place(on), self._place(other)
             step = base
-            while step in pairs and step != place:  # a ring of parts has no end to begin at
+            while step in pairs and step != place:  # a ring of parts has no beginning
                 step = pairs[step]
             if step != place:
                 pairs.setdefault(place, base)
@@ -132,7 +133,7 @@ class Drawing:
         return None
 
     def _size(self, name: str, part: dict[str, Any], key: str, other: dict[str, Any], other_key: str) -> Any:
-        """Return a dimension of a part less one of another: a number, or a column if they expand."""
+        """Return the difference of two dimensions of parts: a number, or a column if they expand."""
         if not part.get("thermal_expansion_per_K") and not other.get("thermal_expansion_per_K"):
             return part[key] - other[other_key]
         for model in self.result.models:
@@ -198,7 +199,8 @@ class Drawing:
         return {**drawn, "axis": part["axis"]} if "axis" in part else drawn
 
     def _arm(self, at: Any, centre: Any) -> list[str]:
-        """Return the columns from a part's centre to where a force acts; normal and tangential one share them."""
+        """Return the columns from a part's centre to the position of a force; normal and tangential force share
+        them."""
         key = json.dumps([at, centre], sort_keys=True)
         if key not in self._arms:
             self._arms[key] = self._vector(
@@ -224,8 +226,8 @@ class Drawing:
         return [force for force in drawn if self._largest(force) > 0]
 
     def _axial(self, place: int, link: dict[str, Any], axial: Any) -> dict[str, Any]:
-        """Return the force of a link on what its second end holds; compression pushes outward. Its direction is
-        that of the link as drawn."""
+        """Return the force of a link on the item at its second end; compression pushes outward. Its direction is that
+        of the drawn link."""
         first, second = (self._points[json.dumps(end, sort_keys=True)] for end in link["ends"])
         return {
             "label": f"Axial force of {self._words.named(link['name'])}", "kind": "axial", "point": second,
@@ -241,7 +243,7 @@ class Drawing:
             )
 
     def _measure(self) -> None:
-        """Size of the scene at the start, largest force, magnification to begin with."""
+        """Size of the scene at the start, largest force, default magnification."""
         run = next(iter(self.result.models.values()))
         corners = []
         for part in self.result.scene["parts"]:
@@ -272,14 +274,14 @@ class Drawing:
             shortest_link_m=shortest,
             magnification=magnification,
             magnification_of_deformation=min(magnification, deformation) if way > 0 else magnification,
-            # Whether anything but relative places moves: else there is no deformation to magnify.
+            # Without motion except relative positions there is no deformation to magnify.
             deforms=way > 0,
         )
         if not np.isfinite([size, way, self.scene["largest_force_N"], magnification]).all():
             raise Unreadable(code="drawing_not_finite", case=self.result.name)
 
     def _largest_way(self) -> float:
-        """Return how far [m] a point goes from its start at most; those that are relative to others left out."""
+        """Return the largest distance [m] of a point from its start, without relative points."""
         return max(
             (
                 float(np.max(np.sqrt(sum(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Energy account of a run: supplied, stored, dissipated, and what is left over."""
+"""Energy account of a run: supplied, stored, dissipated energy, and the residue."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ import numpy as np
 from statejump.core.run import Run
 from statejump.report.words import Words
 
-# The end of a column's name tells its side of the account.
+# The ending of a column's name determines its side of the account.
 ROLES = {"_work_J": "supplied", "_energy_J": "stored", "_dissipation_J": "dissipated"}
 
 
@@ -29,7 +29,7 @@ class Account:
     entries: list[Entry]
     residue_J: float  # supplied less stored less dissipated, at the end
     largest_residue_J: float  # at any sample
-    turnover_J: float  # largest of the three sums at any sample; what the residue is small against
+    turnover_J: float  # largest of the three sums at any sample, the scale of the residue
     columns: dict[str, np.ndarray]  # sums over time, [J]
 
 

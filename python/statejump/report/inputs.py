@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The values of a case as a page lists them."""
+"""The values of a case for the list on a page."""
 from __future__ import annotations
 
 from decimal import Decimal
@@ -7,7 +7,7 @@ from typing import Any
 
 
 def sections_of(values: dict[str, Any]) -> list[tuple[str, list[tuple[str, str]]]]:
-    """Return the sections of a case with all defaults: key, value; lists of items are summed up."""
+    """Return the sections of a case with all defaults: key, value; lists of items are summarised."""
     sections = []
     for section, keys in values.items():
         if isinstance(keys, list) and keys and all(isinstance(item, dict) for item in keys):
@@ -33,7 +33,7 @@ def _shown(value: Any) -> str:
 
 
 def _summed_up(items: list[dict[str, Any]]) -> list[tuple[str, str]]:
-    """Return the items of a list of a case, as nodes or links, in a few rows: where their numbers go from and to."""
+    """Summarise the items of a list, such as nodes or links, in a few rows with the ranges of their numbers."""
     rows = [("", f"{len(items)} {'entry' if len(items) == 1 else 'entries'}")]
     for key in items[0]:
         values = [item[key] for item in items if item.get(key) is not None]
@@ -44,7 +44,7 @@ def _summed_up(items: list[dict[str, Any]]) -> list[tuple[str, str]]:
 
 
 def _number(value: float) -> str:
-    """Return a number in six digits; a whole one may be larger than any float."""
+    """Format a number with six digits; an integer may exceed any float."""
     try:
         return f"{value:g}"
     except OverflowError:

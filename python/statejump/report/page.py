@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Puts documents, script and style into one HTML file that needs nothing beside it."""
+"""Combines documents, script and style into one self-contained HTML file."""
 from __future__ import annotations
 
 import json
@@ -33,13 +33,13 @@ def _asset(name: str) -> str:
 
 
 def embedded_json(data: Any) -> Markup:
-    """Return data as JSON that may stand in a script element: no text in it can end the element."""
+    """Return data as JSON that is safe in a script element: no text in it can end the element."""
     dumped = json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
     return Markup(dumped.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e"))
 
 
 def _not_finite(data: Any, place: str = "") -> Iterator[str]:
-    """Yield where numbers that are none stand in data for the page."""
+    """Yield the paths of numbers that are not finite in data for the page."""
     if isinstance(data, Mapping):
         for key, value in data.items():
             yield from _not_finite(value, f"{place}.{key}" if place else str(key))
@@ -51,7 +51,7 @@ def _not_finite(data: Any, place: str = "") -> Iterator[str]:
 
 
 def _payload(document: Document | CampaignDocument) -> dict[str, Any]:
-    """Return the data of a document. :raises Unreadable: one of its numbers is none"""
+    """Return the data of a document. :raises Unreadable: one of its numbers is not finite"""
     data = document.payload()
     wrong = next(_not_finite(data), None)
     if wrong is not None:
@@ -60,7 +60,7 @@ def _payload(document: Document | CampaignDocument) -> dict[str, Any]:
 
 
 def embedded_code(source: str, element: str) -> Markup:
-    """Return a script or style that may stand in its element; ValueError if it would end it."""
+    """Return a script or style that is safe in its element; ValueError if it would end the element."""
     if f"</{element}" in source.lower():
         raise ValueError(f"the {element} contains </{element}")
     return Markup(source)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a page says of a case before anything is solved: in words, drawn, with all its inputs."""
+"""Page of a case before anything is solved: description, drawing, all inputs."""
 from __future__ import annotations
 
 import base64
@@ -19,7 +19,7 @@ from statejump.schema.fields import attached_to_json
 
 
 class UnsolvedDocument:
-    """A case as it stands on a page; arguments as of :class:`~.document.Document`.
+    """A case for a page; arguments as for :class:`~.document.Document`.
 
     :param case: of a kind that can be drawn
     :raises NotAllowed: it is of another kind
@@ -43,7 +43,7 @@ class UnsolvedDocument:
 
     @property
     def picture(self) -> str:
-        """The drawing as an address that holds it."""
+        """The drawing as a data address."""
         stream = BytesIO()
         with style():
             require(self._case, CaseDrawing).draw(self._case).savefig(stream, format="png", dpi=160)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Words for what result files name by keys. What is common to all kinds stands here; names of columns, contacts
-and links are each kind's own (``WORDS``)."""
+"""Names for the keys of result files. This module has those of all kinds; each kind has names of its columns, contacts
+and links (``WORDS``)."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -29,21 +29,21 @@ SHAPES = {
     "half_sine": "changes by {peak} and back as half a sine",
     "sine": "swings by ± {peak} as a sine", "table": "follows a table, up to {peak} from its start",
 }
-# In front of the name of a stage, where a kind's words say what it means.
+# Prefix of the key of a stage's meaning among the texts of a kind.
 STAGE = "stage "
 
 
 def inside(words: str) -> str:
-    """Return words as they stand inside a sentence."""
+    """Return a name with the case that it has inside a sentence."""
     kept = words[:2].isupper() or words.startswith(tuple(NAMES.values()))
     return words if kept else words[:1].lower() + words[1:]
 
 
 class Words:
-    """Words for the keys of one kind.
+    """Names for the keys of one kind.
 
-    :param own: the kind's own, by key, with or without its unit
-    :param given: users name the parts of such cases
+    :param own: the kind's own names, by key, with or without its unit
+    :param given: whether users name the parts of such cases
     """
 
     def __init__(self, own: Mapping[str, str] | None = None, given: bool = False) -> None:
@@ -51,7 +51,7 @@ class Words:
         self._given = given
 
     def named(self, name: str, in_sentence: bool = False) -> str:
-        """Return what a part, link or contact is called: what a user has named keeps its name."""
+        """Return the name of a part, link or contact; a name that a user gave is kept."""
         known = self._own.get(name)
         if known is None and self._given:
             return name
@@ -59,7 +59,7 @@ class Words:
         return found.lower() if in_sentence else found
 
     def plain(self, name: str) -> str:
-        """Return a key as words, with a capital; the unit that it ends in is left off."""
+        """Return a key as words, with a capital and without its unit."""
         key = split_unit(name)[0]
         known = self._own.get(name) or self._own.get(key)
         if known is not None:
@@ -83,12 +83,12 @@ class Words:
         return f"{named} of {of}"
 
     def stage(self, name: str) -> tuple[str, str]:
-        """Return what a stage of a model is called, and what it means."""
+        """Return name and meaning of a stage of a model."""
         return self._own.get(name, name), self._own.get(STAGE + name, "")
 
 
 def of_kind(name: str) -> Words:
-    """Return the words of a kind; those of all kinds where there is no such kind."""
+    """Return the names of a kind; for an unknown kind those of all kinds."""
     try:
         found = kind(name)
         return Words(found.WORDS, any(tables_of(attribute) for attribute in fields_of(found.Case).values()))
@@ -97,7 +97,7 @@ def of_kind(name: str) -> Words:
 
 
 def described(case: Case) -> list[str]:
-    """Return a case in sentences: what its kind says of it, then its temperature program."""
+    """Return a case in sentences: the description by its kind, then its temperature program."""
     told: list[str] = require(case, CaseText).describe(case) if has(case, CaseText) else []
     return [*told, _temperature(case)]
 

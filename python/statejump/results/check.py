@@ -12,7 +12,7 @@ from statejump.core.errors import Unreadable
 from statejump.core.hdf5 import objects
 from statejump.results.layout import ENTRIES, FORMAT, MODELS, VERSION, Form, entry_of
 
-# For columns: an attribute names the list of names of their second axis.
+# An attribute of these columns names the list of names of their second axis.
 OF_ITEMS = ("items", "links", "contacts")
 
 

@@ -48,10 +48,10 @@ class Answers:
 
 @dataclass(frozen=True)
 class Mesh:
-    """A surface that a part of type ``mesh`` refers to, in the part's own frame."""
+    """A surface for parts of type ``mesh``, in the part's own frame."""
 
     vertices_m: np.ndarray  # (vertices, 3)
-    triangles: np.ndarray  # (triangles, 3), places in vertices_m
+    triangles: np.ndarray  # (triangles, 3), indices into vertices_m
 
 
 def _given(values: Any) -> Any:
@@ -82,7 +82,7 @@ class Result:
     warnings: list[str] = field(default_factory=list)
     meshes: dict[str, Mesh] = field(default_factory=dict)
     answers: Answers | None = None
-    members: Histories | None = None  # of a truss whose members have temperatures of their own
+    members: Histories | None = None  # for a truss with temperatures for every member
 
     @cached_property
     def definition(self) -> Case:

@@ -26,9 +26,8 @@ SAME_TIME = 1e-9  # of the duration: rounding of the last sample's time
 
 @dataclass(frozen=True)
 class ColumnDifference:
-    """Largest difference of a column over time, over all its items. ``name`` is its place below the
-    model, ``range`` largest less smallest value of the first run, ``time_s`` where the difference is
-    largest."""
+    """Largest difference of a column over time and its items. ``name`` is its path below the model, ``range`` the
+    largest less the smallest value of the first run, ``time_s`` the time of the largest difference."""
 
     name: str
     unit: str
@@ -39,7 +38,7 @@ class ColumnDifference:
 
 @dataclass(frozen=True)
 class EventDifference:
-    """Events of one kind: how many in either run, ΔT [K] of the first ones (None: there is none)."""
+    """Events of one kind: their number in each run, and ΔT [K] of the first ones (None: there is none)."""
 
     kind: str
     counts: tuple[int, int]
@@ -48,10 +47,10 @@ class EventDifference:
 
 @dataclass(frozen=True)
 class RunDifference:
-    """Two runs beside each other. ``rows``: against the tolerances; None if a run is not complete.
+    """Comparison of two runs. ``rows``: with the tolerances; None if a run is incomplete.
 
     :param lacking: columns that only one of the runs has
-    :param not_finite: columns that are a finite number in one run where they are none in the other
+    :param not_finite: columns with a value that is finite in one run only
     """
 
     names: tuple[str, str]
@@ -64,8 +63,8 @@ class RunDifference:
 
     @property
     def missed(self) -> list[str]:
-        """The faults: rows beyond their tolerance, columns that cannot be compared. Two models may have different
-        columns."""
+        """The faults: rows beyond their tolerance, and columns that cannot be compared. Two different models may have
+        different columns."""
         beyond = [row.name for row in self.rows or () if not row.passed]
         alone = [f"{name} (in one file only)" for name in self.lacking] if self.names[0] == self.names[1] else []
         return beyond + alone + [f"{name} (not finite)" for name in self.not_finite]
@@ -88,7 +87,7 @@ def case_differences(first: Result, second: Result) -> tuple[list[str], list[str
     for key in dict.fromkeys([*entries[0], *entries[1]]):
         values = [found.get(key) for found in entries]
         if values[0] != values[1]:
-            # A list of items does not fit into a sentence.
+            # A list of items is too long for a sentence.
             shown = " and ".join(text if len(text) <= 60 else "(another list)" for text in map(repr, values))
             (numerical if key.partition(".")[0] in NUMERICAL_SECTIONS else physical).append(f"{key} = {shown}")
     return physical, numerical
@@ -182,7 +181,7 @@ def difference(first: Result, second: Result) -> list[RunDifference]:
     The second run is interpolated linearly at the times of the first. If a file is incomplete, the common time is
     compared without a verdict.
 
-    :raises StatejumpError: they are not of the same case or do not last equally long
+    :raises StatejumpError: they belong to different cases or have different durations
     """
     check_comparable(first, second)
     complete = first.complete and second.complete

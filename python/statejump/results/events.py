@@ -30,7 +30,7 @@ def kind_of(before: int, after: int, slipped: bool) -> str:
 def from_states(
     time_s: np.ndarray, temperature_change_K: np.ndarray, states: np.ndarray, contacts: Sequence[str]
 ) -> list[Event]:
-    """Return the events of contacts in order of time, each half-way between two samples.
+    """Return the events of contacts in order of time, each midway between two samples.
 
     :param states: (samples, contacts), see ``CONTACT_STATES``
     """

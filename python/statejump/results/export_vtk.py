@@ -139,7 +139,7 @@ class _Parts:
 
 
 class _Vertices:
-    """Points with arrays; the same points at every time, whether a force acts or not."""
+    """Points with arrays. Their number is constant over time, whether a force acts or not."""
 
     suffix = ".vtp"
 
@@ -185,7 +185,7 @@ def _forces(result: Result, run: Run) -> _Vertices | None:
 
 
 def sorts(result: Result, model: str) -> dict[str, Any]:
-    """Return the drawings of a model: name of the sort and the object that makes its frames."""
+    """Return the drawings of a model: name of the series and the object that makes its frames."""
     run = result.models[model]
     found = {
         "links": _Lines(result, run, model), "parts": _Parts(result, run, model),
@@ -199,7 +199,7 @@ def write_all(
 ) -> list[Path]:
     """Write the files of all models and return the paths of the series.
 
-    :param wanted_frames: how many samples to write, see :func:`.vtk_data.frames_of`
+    :param wanted_frames: number of samples to write, see :func:`.vtk_data.frames_of`
     """
     written: list[Path] = []
     for place, (model, run) in enumerate(result.models.items()):

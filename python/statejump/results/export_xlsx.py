@@ -15,7 +15,7 @@ from statejump.core.run import Event
 from statejump.core.units import unit_of
 from statejump.results.contents import Result
 
-MOST_ROWS, MOST_COLUMNS = 1_048_576, 16_384  # of a sheet, by ISO/IEC 29500 as Excel has it
+MOST_ROWS, MOST_COLUMNS = 1_048_576, 16_384  # limits of a sheet in ISO/IEC 29500 and Excel
 LONGEST_NAME = 31  # of a sheet
 
 Table = tuple[str, Sequence[str], int, Iterable[Sequence[Any]]]  # name, header, number of rows, rows
@@ -61,7 +61,7 @@ def write(result: Result, path: Path) -> Path:
         def cell(value: Any) -> Any:
             if isinstance(value, float) and not math.isfinite(value):
                 return None if math.isnan(value) else str(value)  # a sheet has no such numbers
-            if isinstance(value, str) and value.startswith("="):  # a name, no formula
+            if isinstance(value, str) and value.startswith("="):  # a name, not a formula
                 made = WriteOnlyCell(sheet, value)
                 made.data_type = "s"
                 return made

@@ -15,8 +15,8 @@ from statejump.results.export_vtk import sorts
 from statejump.results.scene import STATE_COLOURS, resolve_point
 
 NAME = "open_in_paraview.py"
-ARROW = 0.2  # of the scene: length of the arrow of the largest force
-TEMPLATE = "open_in_paraview.template"  # a script whose @NAMES@ stand for values
+ARROW = 0.2  # length of the arrow of the largest force, as a fraction of the scene
+TEMPLATE = "open_in_paraview.template"  # a script with @NAMES@ for values
 
 
 def _size_m(result: Result) -> float:

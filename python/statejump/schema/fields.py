@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What case and campaign files are made of: keys with unit, range, default and source, in sections.
+"""Declarations of case and campaign files: sections with keys, each with unit, range, default and source.
 
-A section is an attrs class; its keys are declared by the functions of this module::
+A section is an attrs class; the functions of this module declare its keys::
 
     @definition
     class Link(Section):
         length_m: float = parameter(..., "m", 0, 1e3, "Table 1", above=True)
 
-A key is checked where its section is made, from a file (:func:`.structure.structure`) or in Python. Only this package
-knows attrs.
+A key is checked when its section is created, from a file (:func:`.structure.structure`) or in Python. Only this package
+uses attrs.
 """
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ from statejump.schema.rules import ATTACHED, NUMBER, NUMBERS, SWITCH, TEXT, TEXT
 
 CHOICE = "choice, the paper is silent"
 RULE, SECTION, TABLES, READ = "rule", "section", "tables", "read"
-TABLES_BESIDE = "tables"  # name of the section that names files of lists, where a kind has it
+TABLES_BESIDE = "tables"  # section that lists files of items, if a kind has it
 
 SectionType = TypeVar("SectionType", bound="Section")
 Names = Sequence[str] | Callable[[], Sequence[str]]
 
 
 def definition(model: type[SectionType]) -> type[SectionType]:
-    """Make a class of sections: immutable, made by keyword, told apart by their values."""
+    """Make a class of sections: immutable, with keyword arguments, compared by value."""
     return attrs.define(model, frozen=True, kw_only=True, slots=False, repr=not model.NAMED,
                         hash=False if model.NAMED else None)
 
@@ -40,10 +40,10 @@ def _check(instance: Any, attribute: attrs.Attribute[Any], value: Any) -> None:
 
 
 def _as_float(value: Any) -> Any:
-    """A whole number is a number; all else is for the check to refuse, as it was given."""
+    """Convert an integer to a float; return any other value unchanged for the check."""
     try:
         return float(value) if type(value) is int else value
-    except OverflowError:  # beyond all ranges
+    except OverflowError:  # larger than any range
         return value
 
 
@@ -63,11 +63,11 @@ def _key(default: Any, rule: Rule, converter: Callable[[Any], Any] | None = None
 def parameter(default: Any, unit: str, low: float, high: float, source: str, *, above: bool = False) -> Any:
     """Declare a number.
 
-    :param default: default value; ``...`` for a required key, None for one that may be left out
+    :param default: default value; ``...`` for a required key, None for an optional one
     :param unit: unit, ``-`` for none
     :param low: lower end of the allowed range
     :param high: upper end, itself allowed
-    :param source: where the default comes from
+    :param source: source of the default
     :param above: whether ``low`` itself is excluded
     """
     rule = Rule(NUMBER, source, Range(low, high, unit, above), optional=default is None)
@@ -75,7 +75,7 @@ def parameter(default: Any, unit: str, low: float, high: float, source: str, *, 
 
 
 def whole(default: Any, low: float, high: float, source: str) -> Any:
-    """Declare a whole number; parameters as of :func:`parameter`."""
+    """Declare an integer; parameters as for :func:`parameter`."""
     return _key(default, Rule(WHOLE, source, Range(low, high), optional=default is None))
 
 
@@ -87,7 +87,7 @@ def switch(default: Any, source: str) -> Any:
 def text(default: Any, source: str, *, pattern: str | Callable[[], str] | None = None) -> Any:
     """Declare a text.
 
-    :param pattern: regular expression that it must match as a whole, or what returns it when it is needed
+    :param pattern: regular expression that the whole text must match, or a function that returns it on demand
     """
     return _key(default, Rule(TEXT, source, pattern=pattern, optional=default is None))
 
@@ -102,7 +102,7 @@ def _called(names: Names) -> Callable[[], Sequence[str]]:
 def choice(default: Any, names: Names, source: str) -> Any:
     """Declare one name out of several.
 
-    :param names: the names, or what returns them when they are needed
+    :param names: the names, or a function that returns them on demand
     """
     return _key(default, Rule(TEXT, source, known=_called(names), optional=default is None))
 
@@ -110,14 +110,14 @@ def choice(default: Any, names: Names, source: str) -> Any:
 def numbers(default: Any, unit: str, low: float, high: float, source: str, *, length: int | None = None) -> Any:
     """Declare a list of numbers, each within the range.
 
-    :param length: how many; None: any number of them
+    :param length: number of entries; None: any number
     """
     rule = Rule(NUMBERS, source, Range(low, high, unit), optional=default is None, length=length)
     return _key(default, rule, _as_floats)
 
 
 def attached_to_json(value: Any) -> dict[str, Any]:
-    """Return what json.dumps writes for a value of a case that it does not know."""
+    """Return a replacement that json.dumps can write for an unsupported value of a case."""
     if isinstance(value, Attached):
         return value.to_json()
     raise TypeError(f"{type(value).__name__} is no value of a case")
@@ -131,24 +131,24 @@ def attached(source: str) -> Any:
 def texts(
     default: Any, source: str, names: Names | None = None, *, pattern: str | Callable[[], str] | None = None
 ) -> Any:
-    """Declare a list of texts, of given names if any are given; ``pattern`` as of :func:`text`, for editors."""
+    """Declare a list of texts, optionally out of given names; ``pattern`` as for :func:`text`, for editors."""
     return _key(default, Rule(TEXTS, source, known=None if names is None else _called(names), pattern=pattern))
 
 
 def section(
     model: type[Section], *, required: bool = False, made: Callable[[], Section] | None = None, name: str | None = None
 ) -> Any:
-    """Declare a section of a file; one that is not required is all defaults where it is missing.
+    """Declare a section of a file. A missing optional section has all defaults.
 
-    :param made: returns the section where it is missing, if not with all defaults
-    :param name: in files, where it is not that of the attribute
+    :param made: returns a missing section, if it does not have all defaults
+    :param name: its name in files, if it differs from the attribute
     """
     default: Any = attrs.NOTHING if required else attrs.Factory(made or model)
     return attrs.field(default=default, metadata={SECTION: model}, alias=name)
 
 
 def optional_section(model: type[Section]) -> Any:
-    """Declare a section that may be left out, then None."""
+    """Declare a section that may be missing; its value is then None."""
     return attrs.field(default=None, metadata={SECTION: model})
 
 
@@ -158,9 +158,9 @@ def tables(
 ) -> Any:
     """Declare a list of tables, ``[[node]]`` and the like.
 
-    :param model: what a table is, an :class:`~statejump.schema.items.Item` unless ``read`` is given
-    :param source: what the tables are
-    :param read: returns the items, of the name of the list and what tomllib returned for it
+    :param model: class of a table, an :class:`~statejump.schema.items.Item` unless ``read`` is given
+    :param source: description of the tables
+    :param read: returns the items, for the name of the list and the result of tomllib
     """
     default: Any = attrs.NOTHING if required else attrs.Factory(list)
     return attrs.field(default=default, metadata={TABLES: model, READ: read, RULE: Rule(TEXT, source)})
@@ -170,17 +170,17 @@ def tables(
 class Section:
     """A table of a file: unknown keys are refused, numbers are strict and in range."""
 
-    # Choice of the section: keys that some of its names need and the others refuse.
+    # For a choice of the section: keys that are required with some of its names and refused with the others.
     GOES_WITH: ClassVar[dict[str, dict[str, tuple[str, ...]]]] = {}
-    # Choice of the section: groups of keys, one of which a name needs as a whole; the other names refuse all of them.
+    # For a choice of the section: groups of keys. A name needs one whole group, and the other names refuse all of them.
     ONE_OF: ClassVar[dict[str, dict[str, tuple[tuple[str, ...], ...]]]] = {}
     # New paths of moved keys by their old paths; both are accepted, see :func:`statejump.schema.paths.current`.
     MOVED: ClassVar[Mapping[str, str]] = {}
-    # Whether its name stands for it: ``repr`` and ``hash`` are its own and not those of all keys.
+    # Whether its name identifies the section: ``repr`` and ``hash`` then use the name and not all keys.
     NAMED: ClassVar[bool] = False
 
     if TYPE_CHECKING:
-        # Made by attrs, one for each class; what may be given are the keys, and their checks are those of the rules.
+        # attrs generates this method for each class. Its arguments are the keys, which the rules check.
         def __init__(self, **keys: Any) -> None: ...
 
     def to_dict(self) -> dict[str, Any]:
@@ -188,19 +188,19 @@ class Section:
         return {name: _plain(self.value_named(name)) for name in fields_of(type(self))}
 
     def value_named(self, name: str) -> Any:
-        """Return the value of a key, or of a case a section or list of tables, by its name in files."""
+        """Return the value of a key, or a section or list of tables of a case, by its name in files."""
         return getattr(self, fields_of(type(self))[name].name)
 
 
 def section_class(name: str, documentation: str, keys: Mapping[str, Any]) -> type[Section]:
-    """Return a class of sections whose keys a program lists, where a type checker need not know them."""
+    """Return a section class with unknown keys, for programs that handle keys as data."""
     return definition(type(name, (Section,), {**keys, "__doc__": documentation}))
 
 
 def _plain(value: Any) -> Any:
     if isinstance(value, Section):
         return value.to_dict()
-    # Items by columns are no list, but a sequence like one.
+    # Items in columns are no list, but a sequence like one.
     return [_plain(item) for item in value] if isinstance(value, Sequence) and not isinstance(value, str) else value
 
 
@@ -209,13 +209,13 @@ _KNOWN: dict[type[Section], Mapping[str, attrs.Attribute[Any]]] = {}
 
 def evolved(made: SectionType, **values: Any) -> SectionType:
     """Return a section with other values, checked again."""
-    changed: SectionType = attrs.evolve(cast(Any, made), **values)  # every class of sections is one of attrs
+    changed: SectionType = attrs.evolve(cast(Any, made), **values)  # every section class is an attrs class
     return changed
 
 
 def fields_of(model: type[Section]) -> Mapping[str, attrs.Attribute[Any]]:
-    """Return the keys of a section, or the sections of a file, by their names in files and in the order of their first
-    declaration: a kind that declares one of them anew leaves it in its place."""
+    """Return the keys of a section, or the sections of a file, by their names in files, in the order of their first
+    declaration. A kind that declares one of them again does not change its position."""
     if model not in _KNOWN:
         known = {attribute.alias: attribute for attribute in attrs.fields(model)}  # type: ignore[arg-type]
         order = dict.fromkeys(
@@ -239,13 +239,13 @@ def section_of(attribute: attrs.Attribute[Any]) -> type[Section] | None:
 
 
 def tables_of(attribute: attrs.Attribute[Any]) -> type[Section] | None:
-    """Return what a table of a list is; None for a section."""
+    """Return the class of the tables of a list; None for a section."""
     found: type[Section] | None = attribute.metadata.get(TABLES)
     return found
 
 
 def is_required(attribute: attrs.Attribute[Any]) -> bool:
-    """Whether a key, section or list must be there."""
+    """Return whether a key, section or list is required."""
     return attribute.default is attrs.NOTHING
 
 

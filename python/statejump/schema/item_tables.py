@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lists of tables by columns: many items as one array a key, from tables of a file or from a program's arrays.
+"""Lists of tables in columns: many items as one array per key, from table files or from arrays of a program.
 
-A million items as objects take gigabytes; their arrays do not. :class:`ItemTable` is what is given, in place of a
-list of dicts; :class:`ItemColumns` what a case keeps of it, in place of a list of items.
+A million items as objects take gigabytes; their arrays do not. The input is an :class:`ItemTable` instead of a list of
+dicts. A case stores :class:`ItemColumns` instead of a list of items.
 """
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ ItemType = TypeVar("ItemType", bound=Section)
 
 
 def _plain(values: np.ndarray | Texts) -> list[Any]:
-    """Return the elements of a column as a document has them; None where one is not given."""
+    """Return the elements of a column as in a document; None if missing."""
     if isinstance(values, Texts):
         return values.plain()
     found: list[Any] = values.tolist()
@@ -37,10 +37,11 @@ def _plain(values: np.ndarray | Texts) -> list[Any]:
 
 
 def once(values: np.ndarray) -> np.ndarray:
-    """Return numbers by rows; where all rows are one to the last bit, it is in memory once."""
+    """Return numbers by rows. If all rows are equal to the last bit, the memory has one row only."""
     if len(values) < 2 or values.dtype.kind not in "fiub" or values.dtype.itemsize > 8:
         return values
-    bits = values.view(f"i{values.dtype.itemsize}")  # as numbers no NaN is another, and no zero of the other sign else
+    # As integers, bits decide: NaN equals itself and differs from other NaN, +0 differs from -0.
+    bits = values.view(f"i{values.dtype.itemsize}")
     if any((bits[places] != bits[0]).any() for places in (slice(1, BLOCK), slice(BLOCK, None))):
         return values
     return np.broadcast_to(values[0].copy(), values.shape)
@@ -56,11 +57,11 @@ def _as_column(values: Any) -> np.ndarray | Texts:
 
 
 class ItemTable:
-    """Items as one column a key, all of one length.
+    """Items in columns of one length, one per key.
 
-    :param columns: by key: numbers (n,), NaN where there is none; vectors (n, k) of numbers; texts (n,), None where
-        there is none; lists of texts (n, k), "" or None behind their end; either also as :class:`Texts`
-    :raises NotAllowed: the columns are of several lengths
+    :param columns: by key: numbers (n,), NaN if missing; vectors (n, k) of numbers; texts (n,), None if missing; lists
+        of texts (n, k), "" or None after their end; texts also as :class:`Texts`
+    :raises NotAllowed: the columns have different lengths
     """
 
     def __init__(self, **columns: Any) -> None:
@@ -75,29 +76,29 @@ class ItemTable:
         return self.length
 
     def rows(self) -> list[dict[str, Any]]:
-        """Return the items one by one, as a case file has them."""
+        """Return the items one by one, as in a case file."""
         listed = [_plain(values) for values in self.columns.values()]
         return [{key: value for key, value in zip(self.columns, row) if value is not None} for row in zip(*listed)]
 
     def row(self, place: int) -> dict[str, Any]:
-        """Return one item as a case file has it."""
+        """Return one item as in a case file."""
         found = {key: _plain(values[place:place + 1])[0] for key, values in self.columns.items()}
         return {key: value for key, value in found.items() if value is not None}
 
 
 def with_rows(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a document with a list of dicts in place of every :class:`ItemTable`."""
+    """Return a document in which lists of dicts replace every :class:`ItemTable`."""
     return {section: part.rows() if isinstance(part, ItemTable) else part for section, part in data.items()}
 
 
 class ItemColumns(Sequence[ItemType], Generic[ItemType]):
-    """The items of a list, made one by one when they are asked for; immutable.
+    """The items of a list, created one by one on access; immutable.
 
-    :param model: what an item is
+    :param model: class of an item
     :param section: name of the list
-    :param table: its columns; what has no column has its default
-    :raises StatejumpError: one failure, without the file's name: of an unknown key, a missing one, or the first value
-        of a column that is not allowed
+    :param table: its columns; a key without column has its default
+    :raises StatejumpError: one failure, without the file's name: an unknown key, a missing one, or the first invalid
+        value of a column
     """
 
     def __init__(self, model: type[ItemType], section: str, table: ItemTable) -> None:
@@ -134,7 +135,7 @@ class ItemColumns(Sequence[ItemType], Generic[ItemType]):
             yield from self._made(slice(start, start + BLOCK))
 
     def _made(self, places: slice) -> Iterator[ItemType]:
-        """Make items, their keys always in one order: then they share the names of their keys."""
+        """Create items. Their keys always have one order, so that Python shares the names of the keys."""
         listed = [
             _plain(self._given[key][places]) if key in self._given else repeat(default_of(field))
             for key, field in self._fields.items()
@@ -153,7 +154,7 @@ class ItemColumns(Sequence[ItemType], Generic[ItemType]):
     __hash__ = None  # type: ignore[assignment]  # as of a list
 
     def numbers(self, key: str) -> np.ndarray:
-        """Return a number (n,) or a vector (n, k) of every item; NaN where it is not given."""
+        """Return a number (n,) or a vector (n, k) of every item; NaN if missing."""
         found = self._given.get(key)
         if found is None:
             default = default_of(self._fields[key])
@@ -174,13 +175,13 @@ class ItemColumns(Sequence[ItemType], Generic[ItemType]):
         return found
 
     def value(self, key: str, place: int) -> Any:
-        """Return the value of one key of one item, None where it is not given."""
+        """Return the value of one key of one item, None if missing."""
         if key not in self._given:
             return default_of(self._fields[key])
         return _plain(self._given[key][place:place + 1])[0]
 
     def values(self, key: str) -> Iterator[Any]:
-        """Return the values of a key one by one, None where it is not given."""
+        """Return the values of a key one by one, None if missing."""
         if key not in self._given:
             return repeat(default_of(self._fields[key]), self._length)
         return (value for start in range(0, self._length, BLOCK)
@@ -188,7 +189,7 @@ class ItemColumns(Sequence[ItemType], Generic[ItemType]):
 
 
 class _Place:
-    """An item of columns by its place, whose keys are looked up when they are asked for."""
+    """An item in columns, given by its index; keys are looked up on access."""
 
     def __init__(self, items: ItemColumns[Any], place: int) -> None:
         self._items, self._place = items, place
@@ -208,7 +209,7 @@ class Named(Mapping[str, Any]):
 
     @cached_property
     def _place(self) -> dict[str, int]:
-        """Made when the first name is looked up: arrays are held against each other without it."""
+        """Created at the first look-up of a name, because comparisons of arrays do not need it."""
         return {name: place for place, name in enumerate(self._items.values("name"))}
 
     def __getitem__(self, name: str) -> Any:
@@ -224,13 +225,13 @@ class Named(Mapping[str, Any]):
         return len(self._items)
 
 
-NONE, UNKNOWN = -1, -2  # places of what is not given, and of what no item is called
+NONE, UNKNOWN = -1, -2  # indices of a missing value, and of an unknown name
 
 
 class Places:
-    """The places of items by their names, which are all different.
+    """The indices of items by their names, which are all different.
 
-    :param items: one by one or by columns
+    :param items: one by one or in columns
     """
 
     def __init__(self, items: Sequence[Any]) -> None:
@@ -245,14 +246,14 @@ class Places:
         return {name: place for place, name in enumerate(self._names())}
 
     def called(self, names: Sequence[str]) -> np.ndarray:
-        """Return the places of the items of these names; UNKNOWN. For it no names are kept but these."""
+        """Return the indices of the items with these names; UNKNOWN. The method stores no other names."""
         wanted = set(names)
         found = {name: place for place, name in enumerate(self._names()) if name in wanted}
         return np.array([found.get(name, UNKNOWN) for name in names], dtype=int)
 
     @cached_property
     def _of_word(self) -> np.ndarray:
-        """Place of the item that a word of its own column of names calls."""
+        """Return the index of the item whose name is a given word of its own column of names."""
         assert isinstance(self._items, ItemColumns)
         names = self._items.texts("name")
         found = np.full(len(names.words), UNKNOWN, np.int32)
@@ -261,8 +262,8 @@ class Places:
         return found
 
     def of(self, items: Sequence[Any], key: str) -> np.ndarray:
-        """Return the place that a key of every item names (n,), or (n, k) of lists; NONE, UNKNOWN. Lists have NONE
-        behind their end."""
+        """Return the index of the item that a key of every item names (n,), or (n, k) for lists; NONE, UNKNOWN. Lists
+        have NONE after their end."""
         if not isinstance(items, ItemColumns):
             return self._of_each([getattr(item, key) for item in items])
         given = items.texts(key)
@@ -293,10 +294,10 @@ class Places:
 def where_wrong(
     items: Sequence[ItemType], wrong: Callable[[ItemColumns[ItemType]], np.ndarray]
 ) -> Iterable[ItemType]:
-    """Return the items that are to be looked at one by one: of a list all; of columns those that may be wrong, made
-    when they are asked for.
+    """Return the items that need a check one by one: all items of a list; of columns only those that may be invalid,
+    created on access.
 
-    :param wrong: returns which of an :class:`ItemColumns` (n,) may be wrong; it must not miss one that is
+    :param wrong: returns the items of an :class:`ItemColumns` (n,) that may be invalid; must include all invalid ones
     """
     if not isinstance(items, ItemColumns):
         return items
@@ -304,7 +305,7 @@ def where_wrong(
 
 
 def repeated_names(items: Sequence[Any]) -> bool:
-    """Whether items by columns have a name twice; of a list True, it is to be looked at."""
+    """Return whether items in columns have a name twice; for a list always True, because it needs a check."""
     if not isinstance(items, ItemColumns):
         return True
     names = items.texts("name")
@@ -312,7 +313,7 @@ def repeated_names(items: Sequence[Any]) -> bool:
 
 
 def each(items: Sequence[Any], *keys: str) -> Iterable[Any]:
-    """Return the items of a list to be asked for these keys alone: of columns no others are made."""
+    """Return the items of a list for access to these keys only; of columns only these keys are created."""
     if not isinstance(items, ItemColumns):
         return items
     return starmap(namedtuple("_Item", keys), zip(*(items.values(key) for key in keys)))  # type: ignore[misc]
@@ -324,7 +325,7 @@ def by_name(items: Sequence[Any]) -> Mapping[str, Any]:
 
 
 def _checked(section: str, table: ItemTable, key: str, field: attrs.Attribute[Any]) -> np.ndarray | Texts:
-    """Return a column with the default of its key where nothing is given, every value held against the rule."""
+    """Return a column with the key's default for missing values, after a check of every value against the rule."""
     rule, values = rule_of(field), table.columns[key]
     default = None if is_required(field) else default_of(field)
     allowed = rule.allowed
@@ -386,7 +387,7 @@ def _wrong_texts(key: str, rule: Rule, texts: Texts, required: bool) -> int | No
         return 0
     used = texts.used()
     if rule.known is None and rule.pattern is None:
-        # Of a list of texts no more is asked than that they are some.
+        # For a list of texts the only condition is that they are printable texts.
         used = np.intersect1d(used, texts.words.unprintable).astype(int) if rule.form == TEXT else used[:0]
     for start in range(0, len(used), BLOCK):
         numbers = used[start:start + BLOCK]
@@ -401,7 +402,7 @@ def _wrong_texts(key: str, rule: Rule, texts: Texts, required: bool) -> int | No
 
 
 def _whole(values: np.ndarray) -> np.ndarray:
-    """Return a column of numbers with whole ones as such and None for NaN; what is neither stays for its rule."""
+    """Return a column of numbers with integers as such and None for NaN; the rule checks all other values."""
     found = np.empty(values.shape, dtype=object)
     for place, value in np.ndenumerate(values):
         found[place] = None if np.isnan(value) else int(value) if value.is_integer() else float(value)
@@ -409,7 +410,7 @@ def _whole(values: np.ndarray) -> np.ndarray:
 
 
 def where(section: str, table: Any, number: int) -> str:
-    """Return how messages call an item: by its name, by its number while it has none."""
+    """Return the name of an item in messages: its name, or its number if it has none."""
     name = table.get("name") if isinstance(table, dict) else None
     return f"{section} {name!r}" if isinstance(name, str) and name else f"{section} {number}"
 

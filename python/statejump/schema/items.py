@@ -16,7 +16,7 @@ ItemType = TypeVar("ItemType", bound=Section)
 
 @definition
 class Item(Section):
-    """One table of a list of tables. It has a name, by which messages call it."""
+    """One table of a list of tables. Messages use its name."""
 
     name: str = text(..., "by which other tables and messages call it")
 
@@ -26,14 +26,14 @@ class Item(Section):
 
 
 def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[ItemType]:
-    """Return the items of a list of tables, as they are given: one by one, or by columns.
+    """Return the items of a list of tables, one by one or in columns, as given.
 
-    A truss of 10 000 joints has some 100 000 items. Comparisons check a number that is in its range, and items are
-    made without going through the checks of their class once more.
+    A truss of 10 000 joints has some 100 000 items. Numbers are therefore checked by direct comparisons with their
+    range, and items are created without a second check by their class.
 
-    :param model: what an item is
+    :param model: class of an item
     :param section: name of the list
-    :param value: what tomllib returned for it, or an :class:`~statejump.schema.item_tables.ItemTable`
+    :param value: result of tomllib, or an :class:`~statejump.schema.item_tables.ItemTable`
     :raises StatejumpError: one failure, without the file's name
     """
     if isinstance(value, ItemTable):
@@ -79,9 +79,10 @@ def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[Ite
 
 
 class _Quick(Generic[ItemType]):
-    """What lets a value pass without its rule: ranges of numbers, texts without a rule, texts that passed before.
+    """Fast checks that accept a value without its rule: numbers in range, texts without constraints, and texts that
+    passed before.
 
-    :param model: what an item is
+    :param model: class of an item
     """
 
     def __init__(self, model: type[ItemType]) -> None:
@@ -98,16 +99,17 @@ class _Quick(Generic[ItemType]):
         unruled = [key for key, rule in self.rules.items() if rule.known is None and rule.expression is None]
         self.free = {key for key in unruled if self.rules[key].form == TEXT}
         self.free_lists = {key for key, rule in self.rules.items() if rule.form == TEXTS and rule.known is None}
-        # Many items have the same text under a rule: what a key took once, it takes again.
+        # Many items have the same text. A text that the rule of a key accepted once is accepted again.
         self.taken: dict[str, set[str]] = {
             key: set() for key, rule in self.rules.items() if rule.form == TEXT and key not in self.free}
 
     def checked(self, key: str, given: Any) -> Any:
-        """Return a value as its key keeps it. :raises StatejumpError: the key does not exist or refuses the value"""
+        """Return a value in the form in which its key stores it. :raises StatejumpError: the key does not exist or
+        refuses the value"""
         field = self.fields.get(key)
         if field is None:
             raise UnknownKey(key, **suggestion(key, list(self.fields)))
-        convert: Any = field.converter  # attrs gives it a type of its own, by its version
+        convert: Any = field.converter  # attrs returns it with a type of its own, depending on its version
         converted = given if convert is None else convert(given)
         try:
             self.rules[key].check(key, converted)
@@ -121,9 +123,9 @@ class _Quick(Generic[ItemType]):
         return converted
 
     def made(self, values: Mapping[str, Any]) -> ItemType:
-        """Return the item of checked values, the others by default."""
+        """Return the item with checked values, and defaults for the others."""
         item = self.model.__new__(self.model)
-        # One by one and always in one order: then all items share the names of their keys, in a third of the memory.
+        # One by one and always in one order: items then share the names of their keys, in a third of the memory.
         for key in self.fields:
             object.__setattr__(item, key, values[key] if key in values else default_of(self.optional[key]))
         return item

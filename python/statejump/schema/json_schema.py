@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """JSON Schema of case and campaign files, for editors and for programs that write such files.
 
-Generated from the definitions that check the files (:mod:`statejump.schema.fields` and the kinds), so that
-units, ranges, names, defaults and their sources are written down once. A schema says what is right of
-every key by itself and which keys go with which choice. It cannot say what is wrong between numbers, that
-``1.0`` is no whole number, nor that ``nan`` is no number: reading the file does.
+It is generated from the definitions that check the files (:mod:`statejump.schema.fields` and the kinds), so units,
+ranges, names, defaults and sources are written once. A schema describes every key by itself, and the keys that belong
+to a choice. It cannot describe conditions between numbers, nor that ``1.0`` is no integer and ``nan`` no number.
+Reading the file checks these.
 """
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ def _sentence(text: str) -> str:
 
 
 def _described(attribute: Any) -> Schema:
-    """What a person reads when the editor points at a key: rule, default and where it comes from."""
+    """Text that an editor shows for a key: rule, default and its source."""
     rule = rule_of(attribute)
     source = rule.source
-    # What a free text is for is said by its source.
+    # The source of a free text describes its purpose.
     is_free = rule.form == TEXT and rule.known is None
     parts = ["true or false" if rule.form == SWITCH else rule.needs()] if not is_free else []
     found: Schema = {}
@@ -94,7 +94,7 @@ def key_schema(attribute: Any) -> Schema:
 
 
 def _conditions(model: type[Section]) -> list[Schema]:
-    """Keys that one choice of a section needs and the others refuse, see ``Section.GOES_WITH`` and
+    """Conditions on keys that one choice of a section requires and the others refuse, see ``Section.GOES_WITH`` and
     ``Section.ONE_OF``."""
     found = []
     for choice, keys in model.GOES_WITH.items():
@@ -138,7 +138,7 @@ def section_schema(model: type[Section]) -> Schema:
 
 
 def _part(attribute: Any) -> Schema:
-    """Return the schema of what stands under one name at the top of a file."""
+    """Return the schema of the content of a name at the top level of a file."""
     section, table = section_of(attribute), tables_of(attribute)
     if table is not None:
         item = section_schema(table)
@@ -149,7 +149,7 @@ def _part(attribute: Any) -> Schema:
 
 def _file(model: type[Section], title: str, leave_out: Iterable[str] = ()) -> Schema:
     parts = {name: attribute for name, attribute in fields_of(model).items() if name not in leave_out}
-    # What may stand in a file beside this one is not required in it; reading it says what is missing.
+    # A list that may be in a file beside the case is not required in the case. Reading the case reports a missing one.
     tables = section_of(parts[TABLES_BESIDE]) if TABLES_BESIDE in parts else None
     beside = fields_of(tables) if tables is not None else {}
     return {
@@ -171,7 +171,7 @@ def _kind(kind: Kind) -> Schema:
 def _any_case(known: list[str], alone: bool) -> Schema:
     """Case files of every kind.
 
-    :param alone: hold the schemas of the kinds instead of referring to their files
+    :param alone: include the schemas of the kinds instead of references to their files
     """
     found: Schema = {
         "title": "statejump case",
@@ -201,11 +201,11 @@ def names() -> list[str]:
 
 
 def schema(name: str = ANY, alone: bool = True) -> Schema:
-    """Return a schema as a document that json can write.
+    """Return a schema as a document for json.
 
-    :param name: one of :func:`names`; ``case`` takes case files of every kind
-    :param alone: whether ``case`` holds the schemas of the kinds; else it refers to their files beside its own
-    :raises StatejumpError: there is no such schema
+    :param name: one of :func:`names`; ``case`` accepts case files of every kind
+    :param alone: whether ``case`` includes the schemas of the kinds; else it refers to the files beside its own
+    :raises StatejumpError: the schema does not exist
     """
     check_name("KIND", name, names())
     if name == ANY:
@@ -228,7 +228,7 @@ def file_name(name: str) -> str:
 
 
 def write_all(folder: Path) -> list[Path]:
-    """Write every schema into a folder, each into a file of its own, and return their paths."""
+    """Write every schema into its own file in a folder, and return their paths."""
     written = []
     for name in names():
         with write_atomically(folder / file_name(name)) as stream:
@@ -238,10 +238,10 @@ def write_all(folder: Path) -> list[Path]:
 
 
 def head_line(name: str, file: Path) -> str:
-    """Return the first line of a case file by which editors (taplo, Even Better TOML) find its schema.
+    """Return the first line of a case file, by which editors (taplo, Even Better TOML) find its schema.
 
     :param name: name of the schema
-    :param file: where the line will be; files of one tree refer to each other relatively
+    :param file: file that gets the line; files of one tree refer to each other relatively
     """
     to, file = (_paths.SCHEMA / file_name(name)).resolve(), file.resolve()
     if _paths.SCHEMA.resolve().parent in file.parents:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Keys by their path: ``section.key`` as in a case file, ``section.item.key`` of an item of a list of tables,
-``section.*.key`` of all its items, ``section.joint*.key`` of those that fit. Names of items may hold dots: the key
-follows the last one."""
+``section.*.key`` of all its items, ``section.joint*.key`` of matching items. Names of items may contain dots, because
+the key follows the last one."""
 from __future__ import annotations
 
 import warnings
@@ -27,12 +27,12 @@ def split_path(path: str) -> tuple[str, str, str]:
 
 
 def meant(item: str, names: Collection[str]) -> list[str]:
-    """Return the names that an item of a path stands for: itself, or those that fit it as a pattern."""
+    """Return the names that match an item of a path: itself, or all matches of a pattern."""
     return [item] if item in names else [name for name in names if fnmatchcase(name, item)]
 
 
 def plain(value: Any) -> Any:
-    """Return numbers and arrays of numpy, also those in lists and dicts, as numbers and lists of Python."""
+    """Convert numbers and arrays of numpy, also in lists and dicts, to numbers and lists of Python."""
     if isinstance(value, Mapping):
         return {key: plain(inner) for key, inner in value.items()}
     if isinstance(value, (list, tuple)):
@@ -60,10 +60,9 @@ def pattern_of(path: str) -> str:
 
 
 def current(model: type[Section], path: str, file: str = "") -> str:
-    """Return where a key stands: where it is asked for, or, if it stood there once, where it stands now. That is told
-    by a :class:`FutureWarning`.
+    """Return the present path of a key. For a former path it also emits a :class:`FutureWarning`.
 
-    :param file: in which it is found, for the warning
+    :param file: file of the key, for the warning
     """
     now: str | None = model.MOVED.get(path)
     if now is None:
@@ -74,10 +73,10 @@ def current(model: type[Section], path: str, file: str = "") -> str:
 
 
 def with_keys_moved(model: type[Section], data: Mapping[str, Any], file: str = "") -> Mapping[str, Any]:
-    """Return a parsed case file with every key where it stands now.
+    """Return a parsed case file with every key at its present path.
 
     :param file: its name, for warnings
-    :raises NotAllowed: a key stands at its old place and at its new one
+    :raises NotAllowed: a key has a value at its former and at its present path
     """
     for old in model.MOVED:
         section, _, key = split_path(old)
@@ -88,7 +87,7 @@ def with_keys_moved(model: type[Section], data: Mapping[str, Any], file: str = "
         there, _, name = split_path(now)
         target = data.get(there, {})
         if not isinstance(target, Mapping):
-            continue  # whoever reads the section refuses it
+            continue  # reading the section reports the fault
         if name in target:
             raise NotAllowed(old, part[key], code="deprecated_key_duplicated", new_key=now, old_key=old)
         data = {**data, section: {name: value for name, value in part.items() if name != key}}
@@ -107,9 +106,9 @@ def attribute_of(model: type[Section], path: str) -> attrs.Attribute[Any]:
 
 
 def set_value(model: type[Section], data: dict[str, Any], path: str, value: Any) -> None:
-    """Set a key of a parsed case file. None takes it away, so that its default holds.
+    """Set a key of a parsed case file. None removes it, so that its default applies.
 
-    :raises UnknownKey: there is no such key, or no such item
+    :raises UnknownKey: the key or the item does not exist
     """
     path = current(model, path)
     attribute_of(model, path)
@@ -132,7 +131,7 @@ def set_value(model: type[Section], data: dict[str, Any], path: str, value: Any)
 
 
 def _no_item(section: str, item: str, key: str, names: Sequence[str]) -> dict[str, Any]:
-    """Return the fields of the UnknownKey for an item that is not there."""
+    """Return the fields of the UnknownKey for a missing item."""
     if not names:
         return {"code": "section_not_in_case", "table": section}
     if any(sign in item for sign in "*?["):
@@ -142,9 +141,9 @@ def _no_item(section: str, item: str, key: str, names: Sequence[str]) -> dict[st
 
 
 def filled(data: Mapping[str, Any], values: Iterable[tuple[str, Any]]) -> dict[str, Any]:
-    """Return a copy of a parsed case file with many values, those of a pattern in every item that fits it.
+    """Return a copy of a parsed case file with many values; a pattern sets the value in every matching item.
 
-    :param values: paths, of which the caller knows that the case has them, and values
+    :param values: values by path; the caller knows that the case has these paths
     """
     changed: dict[str, Any] = {
         section: [dict(table) for table in content] if isinstance(content, list) else dict(content)
@@ -166,9 +165,9 @@ def filled(data: Mapping[str, Any], values: Iterable[tuple[str, Any]]) -> dict[s
 
 
 def value_of(case: Section, path: str) -> Any:
-    """Return the value of a key of a case. :raises UnknownKey: there is no such key, or no such item
+    """Return the value of a key of a case. :raises UnknownKey: the key or the item does not exist
 
-    :raises StatejumpError: a pattern stands for items with several values
+    :raises StatejumpError: a pattern matches items with several values
     """
     path = current(type(case), path)
     attribute_of(type(case), path)
@@ -187,10 +186,10 @@ def value_of(case: Section, path: str) -> Any:
 
 
 def with_values(case: SectionType, changes: Mapping[str, Any]) -> SectionType:
-    """Return a case with other values, each held against its own rule, but the case not checked as a whole: a study
-    may ask what no case file would.
+    """Return a case with other values. Each is checked against its own rule, but not the case as a whole: a study may
+    use values that no case file would.
 
-    :param changes: value by ``section.key``; keys of lists of tables stay as they are
+    :param changes: value by ``section.key``; keys of lists of tables do not change
     :raises NotAllowed: a value is not allowed
     """
     sections: dict[str, dict[str, Any]] = {}

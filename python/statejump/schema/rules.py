@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the value of a key must be, and how a value is held against it."""
+"""Rules for the values of keys, and their checks."""
 from __future__ import annotations
 
 import difflib
@@ -17,21 +17,21 @@ FOLDER_NAME = "[A-Za-z0-9][A-Za-z0-9_-]*"
 _NOT_IN_FOLDER_NAME = re.compile("[^A-Za-z0-9_-]+")
 # Types of values.
 NUMBER, WHOLE, SWITCH, TEXT, NUMBERS, TEXTS = "number", "whole", "switch", "text", "numbers", "texts"
-ATTACHED = "attached"  # what no file can say
+ATTACHED = "attached"  # value that no file can contain
 
 
 @attrs.frozen
 class Rule:
-    """What a key takes.
+    """Rule for the value of a key.
 
     :param form: NUMBER, WHOLE, SWITCH, TEXT, NUMBERS, TEXTS or ATTACHED
-    :param source: where the default comes from, what the key is for
-    :param allowed: range of a number, of every number of a list
-    :param known: names that a text, or every text of a list, must be one of; called when it is needed, for the
-        catalogue of laws may grow
-    :param pattern: regular expression that a text must match as a whole, or what returns it when it is needed
-    :param optional: whether None stands for a value that was not given
-    :param length: how many items a list has
+    :param source: source of the default, and purpose of the key
+    :param allowed: range of a number, or of every number of a list
+    :param known: allowed names of a text, or of every text of a list; a function, because the catalogue of laws may
+        grow
+    :param pattern: regular expression that the whole text must match, or a function that returns it on demand
+    :param optional: whether None represents a missing value
+    :param length: number of entries of a list
     """
 
     form: str
@@ -70,14 +70,14 @@ class Rule:
         return "true or false is needed" if self.form == SWITCH else "a text in quotes is needed"
 
     def check(self, key: str, value: Any) -> None:
-        """Raise NotAllowed unless the key takes the value."""
+        """Raise NotAllowed unless the rule accepts the value."""
         if value is None and self.optional:
             return
         _CHECKS[self.form](self, key, value)
 
 
 def is_finite_number(value: Any) -> bool:
-    """Whether a value of a document is a number that is finite; a whole one may have more digits than any."""
+    """Return whether a value of a document is a finite number; an integer may have any number of digits."""
     return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
 
 
@@ -138,11 +138,11 @@ def _texts(rule: Rule, key: str, value: Any) -> None:
 
 
 class Attached:
-    """What a key holds that a file cannot say: arrays that were read from another file. Immutable and hashable; a copy
-    of a case has the same."""
+    """Value of a key that a file cannot contain: arrays that were read from another file. Immutable and hashable;
+    copies of a case share it."""
 
     def to_json(self) -> dict[str, Any]:
-        """Return what tells it from others, as JSON takes it: the arrays are no part of a text."""
+        """Return its identification for JSON; the arrays themselves are not included."""
         raise NotImplementedError
 
 
@@ -156,7 +156,7 @@ _CHECKS = {NUMBER: _number, WHOLE: _number, SWITCH: _switch, TEXT: _text, NUMBER
 
 
 def check_name(key: str, value: Any, names: Sequence[str], **more: Any) -> str:
-    """Return the value if it is one of the names, else raise NotAllowed that suggests the nearest."""
+    """Return the value if it is one of the names, else raise NotAllowed that suggests the most similar one."""
     if value in names:
         return str(value)
     more |= {"allowed": tuple(names), "known": " or ".join(repr(name) for name in names)}
@@ -167,12 +167,12 @@ def check_name(key: str, value: Any, names: Sequence[str], **more: Any) -> str:
 
 
 def folder_name(text: str) -> str:
-    """Return a text as the name of a folder: what is no letter, digit, '_' or '-' becomes '_'."""
+    """Convert a text to the name of a folder: '_' replaces everything except letters, digits, '_' and '-'."""
     return _NOT_IN_FOLDER_NAME.sub("_", text).strip("_-") or "case"
 
 
 def suggestion(word: str, known: Sequence[str], before: str = "", after: str = "") -> dict[str, str]:
-    """Return code and details of an UnknownKey: the nearest known word, else all of them."""
+    """Return code and details of an UnknownKey: the most similar known word, else all of them."""
     match = difflib.get_close_matches(str(word), known, n=1, cutoff=0.5)  # a dict may have keys that are no texts
     if match:
         return {"code": "misspelt_key", "meant": f"{before}{match[0]}{after}"}

@@ -12,11 +12,11 @@ from statejump.schema.rules import suggestion
 
 
 def structure(model: type[SectionType], data: Mapping[str, Any]) -> SectionType:
-    """Return what a parsed TOML document holds.
+    """Return the sections of a parsed TOML document.
 
-    An unknown key is reported first: a misspelt key is missing as well.
+    An unknown key is reported first, because a misspelt key is missing as well.
 
-    :param model: the file: its fields are sections and lists of tables
+    :param model: class of the file: its fields are sections and lists of tables
     :raises StatejumpError: one failure, without the file's name
     """
     wanted = fields_of(model)
@@ -70,6 +70,6 @@ def _section(keys: type[SectionType], name: str, given: Mapping[str, Any]) -> Se
         return keys(**given)
     except NotAllowed as refused:
         assert refused.key is not None
-        refused.value = given.get(refused.key, refused.value)  # 1, not 1.0, if the file says so
+        refused.value = given.get(refused.key, refused.value)  # 1, not 1.0, if the file has it so
         refused.key = f"{name}.{refused.key}"
         raise

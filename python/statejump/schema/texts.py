@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Columns of texts, by which items call each other: every text once, and where each stands.
+"""Columns of texts, by which items refer to each other. Every text is stored once, with the index of each use.
 
-A million texts as objects take ten times the bytes that they have. Here they are bytes one behind the other, and
-objects only while somebody looks at them.
+A million texts as objects take ten times the memory of their bytes. Here they are consecutive bytes, and become objects
+only on access.
 """
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ from typing import Any, overload
 
 import numpy as np
 
-BLOCK = 4096  # texts or items that are turned into objects at once
-SHORT = (1 << 32) - 1  # bytes of texts whose places are numbers of 4 bytes
-# UTF-8, and as it is what Python takes from elsewhere and UTF-8 has not.
+BLOCK = 4096  # texts or items that are converted to objects at a time
+SHORT = (1 << 32) - 1  # size of texts below which 4 bytes are enough for an index
+# UTF-8, and unchanged bytes for Python texts that UTF-8 does not allow.
 _AS_IT_IS = "surrogatepass"
 
 
 class Words:
-    """Texts by number, as UTF-8. Number 0 is no text.
+    """Texts by number, as UTF-8. Number 0 means a missing text.
 
-    :param texts: those of the numbers from 1 on
+    :param texts: texts of the numbers from 1 on
     """
 
     def __init__(self, texts: Iterable[str] = ()) -> None:
         self._bytes = bytearray()
-        self._begins = array("I", (0, 0))  # of every word and of the next one
-        self.unprintable: list[int] = []  # numbers of those that have characters which are not printed
+        self._begins = array("I", (0, 0))  # begin of every word, and of the next one
+        self.unprintable: list[int] = []  # numbers of words with unprintable characters
         self.add([text.encode(errors=_AS_IT_IS) for text in texts], _AS_IT_IS)
 
     def add(self, texts: Sequence[bytes], errors: str = "strict") -> None:
         """Give texts the next numbers.
 
-        :param errors: what is made of what is not UTF-8, as bytes.decode() takes it
+        :param errors: treatment of invalid UTF-8, as for bytes.decode()
         :raises UnicodeDecodeError: one is not UTF-8; none is added
         """
         joined = b"".join(texts)
@@ -63,14 +63,14 @@ class Words:
 
 
 class Numbering:
-    """Gives texts their numbers among words, new ones to those that are new; discarded when all texts are read."""
+    """Assigns numbers to texts among words; new texts get new numbers. Discarded after all texts are read."""
 
     def __init__(self) -> None:
         self.words = Words()
         self._numbers = {b"": 0}
 
     def numbers(self, texts: Sequence[bytes]) -> np.ndarray:
-        """Return the numbers of texts, 0 of those that are empty.
+        """Return the numbers of texts, 0 for empty ones.
 
         :raises UnicodeDecodeError: a text is not UTF-8
         """
@@ -85,9 +85,9 @@ class Numbering:
 class Texts:
     """A column of texts.
 
-    :param numbers: places in ``words`` (n,), or (n, k) of lists; 0: none
+    :param numbers: indices in ``words`` (n,), or (n, k) for lists; 0: missing
     :param words: the texts
-    :param none: what stands for none, the default of the key
+    :param none: replacement of a missing text, the default of the key
     """
 
     numbers: np.ndarray
@@ -116,9 +116,9 @@ class Texts:
         return self.none if found is None else found
 
     def plain(self) -> list[Any]:
-        """Return the texts or lists as a document has them."""
+        """Return the texts or lists as in a document."""
         used, which = np.unique(self.numbers, return_inverse=True)
-        word = self.words.listed(used)  # one object of a text, however often it stands here
+        word = self.words.listed(used)  # one object per text, for any number of uses
         listed = [word[place] for place in which.reshape(-1).tolist()]
         if self.ndim == 2:
             ends = self.numbers.shape[1] * np.arange(1 + len(self))
@@ -126,11 +126,11 @@ class Texts:
         return listed if self.none is None else [self.none if text is None else text for text in listed]
 
     def given(self) -> np.ndarray:
-        """Return which are given, of the shape of ``numbers``."""
+        """Return which entries exist, with the shape of ``numbers``."""
         return np.asarray(self.numbers != 0)
 
     def has(self, text: str) -> np.ndarray:
-        """Return which rows (n,) are this text, or lists with it."""
+        """Return the rows (n,) that equal this text, or lists that contain it."""
         used = self.used()
         same = [word == text for start in range(0, len(used), BLOCK)
                 for word in self.words.listed(used[start:start + BLOCK])]
@@ -142,7 +142,7 @@ class Texts:
         return np.asarray(found | (self.numbers == 0)) if self.none == text else found
 
     def used(self) -> np.ndarray:
-        """Return the places of the words that stand in it, ascending; none is no word."""
+        """Return the indices of the used words, ascending, without the missing text."""
         found = np.zeros(len(self.words), dtype=bool)
         found[self.numbers] = True
         found[0] = False
@@ -150,7 +150,7 @@ class Texts:
 
 
 def coded(values: np.ndarray) -> Texts:
-    """Return a column of texts as such; None and, in lists, "" stand for none."""
+    """Convert a column to one of texts; None and, in lists, "" mean a missing text."""
     words: dict[Any, int] = {None: 0}
     flat = [text if text or values.ndim == 1 else None for text in values.reshape(-1).tolist()]
     numbers = np.fromiter((words.setdefault(text, len(words)) for text in flat), np.int32, len(flat))
@@ -158,9 +158,9 @@ def coded(values: np.ndarray) -> Texts:
 
 
 class Names(Sequence[str]):
-    """Names of items, made when they are asked for.
+    """Names of items, created on access.
 
-    :param texts: one a row, none is missing
+    :param texts: one per row, none is missing
     """
 
     def __init__(self, texts: Texts) -> None:
@@ -195,7 +195,7 @@ class Names(Sequence[str]):
 
 
 class InBlocks(Sequence[str]):
-    """Names for whoever asks for one after the other by their places: some at a time are objects."""
+    """Names for access in the order of their indices: only some are objects at a time."""
 
     def __init__(self, names: Sequence[str]) -> None:
         self._names, self._start, self._block = names, -1, list[str]()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reading TOML files: what is wrong with one in a sentence, with its line."""
+"""Reader of TOML files; a fault is one sentence with its line."""
 from __future__ import annotations
 
 import sys
@@ -9,13 +9,13 @@ from typing import Any
 
 from statejump.core.errors import Unreadable, size
 
-LARGEST_BYTES = 1 << 28  # a truss of 100 000 joints has a tenth of it
+LARGEST_BYTES = 1 << 28  # ten times the size of a truss of 100 000 joints
 
 
 def read_toml(path: str | Path, what: str) -> tuple[str, dict[str, Any]]:
-    """Return the text of a TOML file and what it holds.
+    """Return the text of a TOML file and its content.
 
-    :param what: what the file is, for the message when it is not there: ``case`` or ``campaign``
+    :param what: type of the file, for the message if it does not exist: ``case`` or ``campaign``
     :raises Unreadable: one sentence with the file and, if it is not TOML, the line
     """
     try:
@@ -37,13 +37,13 @@ def read_toml(path: str | Path, what: str) -> tuple[str, dict[str, Any]]:
         raise Unreadable(code="not_toml_at_line", cause=reason, file=path, line=line) from None
     except RecursionError:
         raise Unreadable(code="toml_too_deep", file=path) from None
-    except ValueError as failure:  # what Python refuses to make a number of
+    except ValueError as failure:  # Python refuses to convert the digits to a number
         raise Unreadable(code="not_toml", cause=" ".join(str(failure).split(";")[0].split()), file=path) from None
 
 
 def _reason(failure: tomllib.TOMLDecodeError, text: str) -> tuple[str, int]:
-    """Return what the parser says and in which line. Python 3.14 gives both as attributes; before, they are the
-    two halves of its message."""
+    """Return the parser's reason and the line. Python 3.14 has both as attributes; before, they are the two halves of
+    its message."""
     if sys.version_info >= (3, 14):
         return str(failure.msg), int(failure.lineno)
     reason, _, place = str(failure).rpartition(" (at ")

@@ -12,7 +12,7 @@ import tomli_w
 def to_toml(made: Mapping[str, Any]) -> str:
     """Return a document as TOML, short lists on one line."""
     text = tomli_w.dumps(dict(made))
-    # The writer puts every item of a list on a line of its own; texts have no line ends.
+    # The writer puts every entry of a list on its own line; texts contain no line ends.
     return re.sub(r"\[\n((?:    [^\n]*,\n)+)\]", _on_one_line, text)
 
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A paraboloid through the drawn nodes of a surface, and the error of the surface when the nodes have moved.
+"""A paraboloid through the nodes of a surface in the reference configuration, and the error of the surface after the
+nodes have moved.
 
-To first order in the displacements, which are a millionth of the surface. Nodes in one plane with the axis have a
-profile: paraboloid reads parabola, and rigid motion is that in the plane.
+Results are of first order in the displacements, which are a millionth of the surface. If nodes and axis lie in one
+plane, the surface is a profile: its paraboloid is a parabola, and rigid motion is planar.
 """
 from __future__ import annotations
 
@@ -16,15 +17,16 @@ import numpy as np
 from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.surface.zernike import fitted
 
-# The error of a node is its displacement along the normal of the drawn paraboloid, of what is left after
+# The error of a node is its displacement along the normal of the reference paraboloid, after the removal of
 DEFINITIONS = {
     "design": "nothing is taken off: deviation from the design",
     "rigid": "the best rigid motion",
     "rigid_focal": "the best rigid motion and change of focal length: best-fit paraboloid",
 }
-# What is squared and averaged: the distance along the normal times a power of the normal's part along the axis.
+# Weight of the distance along the normal before squaring and averaging: a power of the normal's component along the
+# axis.
 MEASURES = {"normal": 0, "half_path": 1, "axial": -1}
-# Singular value, columns of length 1, below which nodes do not determine a parameter.
+# Nodes do not determine a parameter whose singular value, with columns of length 1, is below this.
 LEAST_SINGULAR_VALUE = 1e-6
 
 
@@ -34,10 +36,10 @@ class Errors:
 
     :param rms_m: by definition, over the nodes [m]
     :param residual_m: (nodes,) by definition [m]
-    :param tilt_rad: of the axis, towards the lateral axes of the frame; of the best-fit paraboloid
-    :param vertex_shift_m: of its vertex, towards the lateral axes, then along the axis [m]; a lateral shift that the
-        nodes do not tell from tilt is 0
-    :param focal_change_m: of its focal length [m]; None: the nodes do not determine it
+    :param tilt_rad: rotation of the axis of the best-fit paraboloid, towards the lateral axes of the frame
+    :param vertex_shift_m: motion of its vertex, towards the lateral axes, then along the axis [m]; 0 for a lateral
+        shift that the nodes do not distinguish from tilt
+    :param focal_change_m: change of its focal length [m]; None: the nodes do not determine it
     """
 
     rms_m: dict[str, float]
@@ -49,7 +51,8 @@ class Errors:
 
 @dataclass(frozen=True)
 class _Fit:
-    """Moves that the nodes determine, an orthonormal basis of what they do, and the moves by shares of it."""
+    """The moves that the nodes determine: an orthonormal basis of their effect on the nodes, and the moves as
+    combinations of the basis."""
 
     moves: tuple[str, ...]
     basis: np.ndarray
@@ -58,14 +61,14 @@ class _Fit:
 
 @dataclass(frozen=True)
 class Design:
-    """Drawn nodes and the paraboloid through them.
+    """Nodes in the reference configuration, and the paraboloid through them.
 
     :param position_m: (nodes, 3) [m]
     :param frame: (2 or 3, 3) lateral axes, the axis last; one lateral axis: a profile
     :param local_m: (nodes, 2 or 3) from the vertex, in the frame [m]
     :param vertex_m: in space [m]
     :param curvature_per_m: 1/(4 F) [1/m]; 0: a plane
-    :param design_rms_m: of the drawn nodes against the paraboloid along the axis [m]
+    :param design_rms_m: of the reference nodes against the paraboloid along the axis [m]
     """
 
     position_m: np.ndarray
@@ -79,12 +82,12 @@ class Design:
     def of(
         cls, position_m: Any, axis: Sequence[float] | np.ndarray = (0, 0, 1), focal_length_m: float | None = None
     ) -> Design:
-        """Return the paraboloid of least squares along the axis; a plane, where the nodes determine no focal length.
+        """Return the least-squares paraboloid along the axis; a plane, if the nodes determine no focal length.
 
         :param position_m: (nodes, 3) [m]
         :param axis: direction of the paraboloid's axis, of any length
         :param focal_length_m: [m]; None: the best
-        :raises StatejumpError: no such nodes or axis, or too few nodes to determine the paraboloid
+        :raises StatejumpError: nodes or axis are invalid, or too few nodes determine the paraboloid
         """
         position, way = _points("position_m", position_m), np.asarray(axis, dtype=float)
         if way.shape != (3,) or not np.isfinite(way).all() or not np.linalg.norm(way) > 0:
@@ -106,7 +109,7 @@ class Design:
             if abs(curvature) * float(np.ptp(lateral)) <= LEAST_SINGULAR_VALUE:
                 curvature = 0.0
         found = np.linalg.lstsq(plane, along - curvature * squared, rcond=None)[0]
-        # A plane has no vertex: below the nodes' mean.
+        # A plane has no vertex, so the origin is below the nodes' mean.
         shift = -found[1:] / (2 * curvature) if curvature else 0 * found[1:]
         depth = found[0] - curvature * float(shift @ shift)
         vertex = np.append(shift, depth)
@@ -126,8 +129,8 @@ class Design:
 
     @property
     def aperture_m(self) -> tuple[np.ndarray, float]:
-        """Middle of the aperture, from the vertex across the axis, and its radius: of the circle about the nodes' mean
-        that holds them all [m]."""
+        """Middle of the aperture, from the vertex across the axis, and its radius: that of the circle about the nodes'
+        mean that contains all nodes [m]."""
         lateral = self.local_m[:, :-1]
         middle = lateral.mean(axis=0)
         return middle, float(np.max(np.linalg.norm(lateral - middle, axis=1)))
@@ -141,18 +144,19 @@ class Design:
         return unit
 
     def _moves(self) -> dict[str, np.ndarray]:
-        """What moves of the paraboloid do along the normals: of 1 m, 1 rad, 1/m of curvature."""
+        """Effects of moves of the paraboloid along the normals: of 1 m, 1 rad, and 1/m of curvature."""
         normals, size = self.normals, len(self.frame)
         moves = {"depth": normals[:, -1]}
         for place in range(size - 1):
-            # The axis turns towards a lateral axis: what is up there goes with it, what is out there goes down.
+            # When the axis tilts towards a lateral axis, points above move in this direction, and points outside move
+            # down.
             moves[f"tilt{place}"] = normals[:, place] * self.local_m[:, -1] - normals[:, -1] * self.local_m[:, place]
         moves["curvature"] = normals[:, -1] * np.sum(self.local_m[:, :-1]**2, axis=1)
         return moves | {f"shift{place}": normals[:, place] for place in range(size - 1)}
 
     @cached_property
     def _fits(self) -> dict[str, dict[str, _Fit]]:
-        """Best fits by measure and definition: the same for all states of the surface."""
+        """Best fits by measure and definition. They are the same for all states of the surface."""
         moves = self._moves()
         return {measure: {definition: self._fit(self.normals[:, -1] ** power, {
             name: move for name, move in moves.items() if name != "curvature" or definition == "rigid_focal"
@@ -170,12 +174,12 @@ class Design:
         raise StatejumpError(code="fit_undetermined", count=len(self.position_m))
 
     def errors(self, displacement_m: Any, measure: str = "normal") -> Errors:
-        """Return the errors when the nodes have moved.
+        """Return the errors for the displacements of the nodes.
 
         :param displacement_m: (nodes, 3) [m]
-        :param measure: what is squared and averaged: ``normal``, the distance along the normal; ``half_path``, half of
-            the change of the ray's path, which the formula of Ruze takes; ``axial``, the distance along the axis
-        :raises StatejumpError: there is no such measure, or displacements are not of these nodes
+        :param measure: squared and averaged quantity: ``normal``, the distance along the normal; ``half_path``, half of
+            the change of the ray's path, for the formula of Ruze; ``axial``, the distance along the axis
+        :raises StatejumpError: the measure is unknown, or displacements do not match the nodes
         """
         check_measure(measure)
         displacement = _points("displacement_m", displacement_m, len(self.position_m))
@@ -191,7 +195,7 @@ class Design:
         )
 
     def focal_change_m(self, moves: Mapping[str, Any]) -> np.ndarray:
-        """Return the change of the focal length [m] by moves of a best fit; NaN: the nodes do not determine it."""
+        """Return the change of the focal length [m] by the moves of a best fit; NaN: the nodes do not determine it."""
         if not self.curvature_per_m or "curvature" not in moves:
             return np.full_like(moves["depth"], np.nan)
         return np.asarray(-moves["curvature"] / (4 * self.curvature_per_m**2))  # F = 1/(4 c)
@@ -199,8 +203,8 @@ class Design:
     def best_fits(
         self, displacement_m: np.ndarray, measure: str
     ) -> tuple[dict[str, np.ndarray], dict[str, dict[str, np.ndarray]]]:
-        """Return residuals (..., nodes) [m] by definition, and by best fit its moves (...): depth, tilts, curvature,
-        shifts, as far as the nodes determine them.
+        """Return residuals (..., nodes) [m] by definition, and the moves (...) of each best fit: depth, tilts,
+        curvature, shifts, as far as the nodes determine them.
 
         :param displacement_m: (..., nodes, 3) [m]
         """
@@ -215,8 +219,8 @@ class Design:
 
     def zernike_m(self, displacement_m: Any, terms: int | None = None) -> np.ndarray:
         """Return the coefficients [m] of Noll's Zernike terms 1 to ``terms`` in the error along the axis, by least
-        squares over the nodes, in the aperture. Their root of squares is the RMS over the full circle, not over the
-        nodes.
+        squares over the nodes, in the aperture. The square root of the sum of their squares is the RMS over the full
+        circle, not over the nodes.
 
         :param terms: 1 to 36; None: the most of 1, 3, 6, ... 36 (whole orders) that the nodes determine
         :raises StatejumpError: the nodes are a profile, or do not determine so many terms
@@ -252,8 +256,8 @@ def _points(key: str, given: Any, rows: int | None = None) -> np.ndarray:
 
 
 def _frame(position: np.ndarray, axis: np.ndarray) -> np.ndarray:
-    """Return lateral axes and the axis: the lateral ones are those of space as far as they can be; of nodes in one
-    plane with the axis there is one."""
+    """Return the lateral axes and the axis. Lateral axes are those of space as far as possible; if nodes and axis lie
+    in one plane, there is one."""
     across = position - position.mean(axis=0)
     across = across - np.outer(across @ axis, axis)
     spread, directions = np.linalg.svd(across, full_matrices=False)[1:]

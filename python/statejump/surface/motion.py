@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rigid motion of a set of nodes, and what it does to a direction that is fixed to them."""
+"""Rigid motion of a set of nodes, and the rotation of a direction that is fixed to them."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -9,13 +9,13 @@ import numpy as np
 
 from statejump.core.errors import NotAllowed, StatejumpError
 
-# Share of the nodes' extent below which they lie on one line and do not tell how they turn about it.
+# Fraction of the nodes' extent below which they count as collinear and do not determine the rotation about their line.
 ON_A_LINE = 1e-6
 
 
 def rotation_rad(position_m: Any, displacement_m: Any) -> np.ndarray:
-    """Return the rotation (..., 3) [rad] of the rigid motion that is nearest to the displacements of nodes, by least
-    squares, to first order.
+    """Return the rotation (..., 3) [rad] of the rigid motion nearest to the displacements of nodes, by least squares,
+    to first order.
 
     :param position_m: (nodes, 3) [m]
     :param displacement_m: (..., nodes, 3) [m]
@@ -34,13 +34,13 @@ def rotation_rad(position_m: Any, displacement_m: Any) -> np.ndarray:
 
 
 def pointing_rad(position_m: Any, displacement_m: Any, direction: Sequence[float]) -> Any:
-    """Return the pointing error (...) [rad] of a direction that is fixed to the rigid motion of nodes: the angle by
-    which it turns.
+    """Return the pointing error (...) [rad] of a direction that is fixed to the rigid motion of nodes: its angle of
+    rotation.
 
     :param position_m: (nodes, 3) [m]
     :param displacement_m: (..., nodes, 3) [m]
     :param direction: of any length
-    :raises StatejumpError: the nodes lie on one line, or there is no such direction
+    :raises StatejumpError: the nodes lie on one line, or the direction is zero
     """
     way = np.asarray(direction, dtype=float)
     if way.shape != (3,) or not np.isfinite(way).all() or not np.linalg.norm(way) > 0:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How well a structure comes back, as hardware is measured: µm per metre at a share of all samples."""
+"""Repeatability of a structure, as hardware is specified: µm per metre at a quantile of all samples."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -16,10 +16,10 @@ class Repeatability:
     """A quantile of sampled changes over a length.
 
     :param um_per_m: the quantile, µm per metre
-    :param low: lower end of its interval at 95 %, by order statistics: no distribution is assumed
-    :param high: upper end; infinite: there are too few samples for one
-    :param share: of the samples that stay below
-    :param samples: how many
+    :param low: lower end of its interval at 95 %, by order statistics, without assuming a distribution
+    :param high: upper end; infinite: there are too few samples
+    :param share: fraction of the samples below the quantile
+    :param samples: their number
     """
 
     um_per_m: float
@@ -30,11 +30,12 @@ class Repeatability:
 
 
 def repeatability(change_m: Any, length_m: float, share: float = 0.99, confidence: float = 0.95) -> Repeatability:
-    """Return how well a structure comes back over its cycles.
+    """Return the repeatability of a structure over its cycles.
 
-    :param change_m: change of a length in each sample of a campaign [m]; signs are left out, failed samples (NaN) too
-    :param length_m: over which it is told, as the diameter of the aperture [m]
-    :raises StatejumpError: no sample, no such length or share
+    :param change_m: change of a length in each sample of a campaign [m]; signs are ignored, failed samples (NaN) are
+        omitted
+    :param length_m: reference length, such as the diameter of the aperture [m]
+    :raises StatejumpError: there is no sample, or length or fraction is invalid
     """
     if not 0 < length_m < np.inf:
         raise NotAllowed("length_m", length_m, code="not_positive", unit="m")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The reflecting surface of a truss over the time of a run, of either model."""
+"""The reflecting surface of a truss over the time of a run of either model."""
 from __future__ import annotations
 
 import numpy as np
@@ -14,7 +14,7 @@ from statejump.surface.motion import pointing_rad
 
 
 def reflector_of(case: Case) -> tuple[Design, np.ndarray]:
-    """Return the drawn surface of a case and the places of its nodes.
+    """Return the reference surface of a case and the indices of its nodes.
 
     :raises StatejumpError: cases of its kind have no surface, or it has no [reflector]
     """
@@ -23,9 +23,9 @@ def reflector_of(case: Case) -> tuple[Design, np.ndarray]:
 
 
 def history(run: Run, measure: str = "normal") -> dict[str, np.ndarray]:
-    """Return the surface at every sample of a run of a truss, against its drawn shape.
+    """Return the surface at every sample of a run of a truss, compared with its reference configuration.
 
-    :param measure: as of :meth:`~statejump.surface.Design.errors`
+    :param measure: as for :meth:`~statejump.surface.Design.errors`
     :return: arrays by column: ``time_s``, ``temperature_change_K``, RMS by definition, tilt, focal change (NaN: not
         determined), pointing error of the axis with the rigid motion of the nodes (NaN: they lie on one line)
     :raises StatejumpError: the run is of no truss with a [reflector]

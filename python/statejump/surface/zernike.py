@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Zernike's circle polynomials in the order and normalization of R. J. Noll, J. Opt. Soc. Am. 66, 207 (1976).
 
-Term 1 is 1; over the unit circle every term has the RMS 1 and mean products of two terms are 0. Even terms go with
-cos mθ, odd ones with sin mθ; θ from the first lateral axis to the second.
+Term 1 is 1. Over the unit circle every term has the RMS 1, and the mean product of two terms is 0. Even terms contain
+cos mθ, odd ones sin mθ; θ runs from the first lateral axis to the second.
 """
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from statejump.core.errors import NotAllowed, StatejumpError
 
 MOST = 36
 ORDERS = tuple(n * (n + 1) // 2 for n in range(1, 9))  # 1, 3, 6, ... 36: all terms of degree below n
-# Singular value of the terms at the nodes, columns of length 1, below which the nodes do not tell them apart.
+# The nodes do not distinguish terms whose singular value, with columns of length 1, is below this.
 LEAST_SINGULAR_VALUE = 1e-6
 
 
 def noll(term: int) -> tuple[int, int]:
-    """Return degree n and order m of a term, from 1; m negative: with sin.
+    """Return degree n and order m of a term. Terms count from 1. A negative order denotes a term with sin.
 
-    :raises StatejumpError: there is no such term
+    :raises StatejumpError: the term does not exist
     """
     if not isinstance(term, int) or term < 1:
         raise NotAllowed("term", term, code="not_positive_integer")

@@ -23,7 +23,7 @@ class FirstContact:
 
 @dataclass(frozen=True)
 class Envelope:
-    """θ2 of all runs of one kind against all that the play allows at the same temperature."""
+    """θ2 of all runs of one kind, compared with the range that the play allows at the same temperature."""
 
     runs: str
     count: int

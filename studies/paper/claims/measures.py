@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Conclusion c of the paper, measure by measure: what each does to the state jump."""
+"""Conclusion c of the paper: the effect of each measure on the state jump."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -39,19 +39,20 @@ def measure(jump: Groups, without: float, larger: bool) -> str:
 
 MEASURE_RULE = (
     f"*{HOLDS}*: at every value on the side of the measure the mean |jump| is smaller than without it, at "
-    f"{SIGNIFICANCE:g} (Welch, one-sided); *{IN_PART}*: at some of them, at none larger; *{FAILS}*: else"
+    f"{SIGNIFICANCE:g} (Welch, one-sided); *{IN_PART}*: smaller at some of them and larger at none; "
+    f"*{FAILS}*: otherwise"
 )
 
 
 @dataclass(frozen=True)
 class Measure:
-    """One measure against the jump.
+    """One measure and its effect on the jump.
 
     :param without: value of the parameter without it
     :param larger: it makes the parameter larger, not smaller
     :param label: of the parameter
-    :param reduces: why it reduces the jump, where it does
-    :param fails: why it does not, where it does not; of the means with it and without it [rad]
+    :param reduces: reason if it reduces the jump
+    :param fails: reason if it does not; a text for the means with it and without it [rad]
     """
 
     name: str
@@ -69,28 +70,29 @@ def _change(means: list[float], before: float) -> str:
 
 
 def measures(f: Findings) -> tuple[Measure, ...]:
-    """Return the measures that the runs speak to."""
-    turn = f"both links together can still turn by c/|AC| = {f.free_turn_rad * MRAD:.2f} mrad within the play"
+    """Return the measures that the runs can test."""
+    turn = f"both links together can still rotate by c/|AC| = {f.free_turn_rad * MRAD:.2f} mrad within the play"
 
     def friction_fails(means: list[float], before: float) -> str:
         if max(means) > before and not f.damped:
-            return "friction takes energy out; without it the speed of the impacts stays and carries the joint farther"
-        return "less friction does not leave less of the jump throughout"
+            return "friction dissipates energy; without it the speed of the impacts stays and moves the joint farther"
+        return "less friction does not always give a smaller jump"
 
     def stiffness_fails(means: list[float], before: float) -> str:
         share = before / f.free_turn_rad
-        return f"the jump is {share:.2g} times c/|AC|, what the play alone allows, and that is not the links' to change"
+        return (f"the jump is {share:.2g} times c/|AC|, the rotation that the play allows, and links do not change "
+                "the play")
 
     return (
         Measure("reducing friction", f.jump_by_friction, f.friction_coefficient, False, "μ",
-                "less friction leaves less for the joint to be held by where it slid", friction_fails),
+                "less friction leaves less force that holds the joint where it slid", friction_fails),
         Measure("stiffer components", f.jump_by_stiffness, 1.0, True, "section over that of the case",
-                "stiffer links give less to the forces of contact", stiffness_fails),
+                "stiffer links give less under the forces of contact", stiffness_fails),
         Measure("pre-stressed torsion springs" if f.spring_bias_rad else "torsion springs", f.jump_by_spring,
                 f.jump_by_spring.values[0], True, "K_M in N m/rad",
-                f"a spring between the links holds the flare angle; {turn}, which it does not feel",
-                lambda means, before: f"a spring between the links holds the flare angle, but {turn}, which it does "
-                                      "not feel"),
+                f"a spring between the links holds the flare angle; {turn}, which does not load the spring",
+                lambda means, before: f"a spring between the links holds the flare angle, but {turn}, which does "
+                                      "not load the spring"),
     )
 
 
@@ -101,12 +103,12 @@ def _why(m: Measure, verdict: str, size: Groups) -> str:
     before = float(np.mean(size.at(m.without)))
     reason = m.reduces if verdict == HOLDS else m.fails(means, before)
     if verdict == IN_PART:
-        reason = f"it tells at some of its values only; {reason}"
+        reason = f"the measure has an effect at some of its values only; {reason}"
     return f"{_change(means, before)}: {reason}"
 
 
 def control(f: Findings) -> list[Claim]:
-    """Return what each measure does to the jump."""
+    """Return the effect of each measure on the jump."""
     claims = []
     for m in measures(f):
         size = m.jump.absolute()
@@ -131,7 +133,7 @@ def control(f: Findings) -> list[Claim]:
 
 
 def all_claims(f: Findings) -> list[Claim]:
-    """Return every statement of the paper's section 4.3, and of its conclusions as far as runs speak to it."""
+    """Return every statement of the paper's section 4.3, and those of its conclusions that the runs can test."""
     return [
         state_jump_occurs(f),
         smaller_clearance_earlier(f),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page of the claims: verdicts first, then the numbers behind."""
+"""The page of the claims: verdicts first, then the numbers."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -26,16 +26,16 @@ def _table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
 
 
 def _rules_changed(f: Findings, claims: Sequence[Claim], rules: Sequence[str]) -> str:
-    """Return that rules were not all laid down beforehand, and what the former ones would say here."""
+    """Return a note that rules were changed after the first runs, and the verdicts of the former rules."""
     spring = next(one for one in measures(f) if one.jump is f.jump_by_spring)
     now = measure(spring.jump.absolute(), spring.without, spring.larger)
     before = trend(spring.jump.absolute(), rising=False).verdict
     return (
-        "Two rules were changed after a first look at numbers of the paper's case. With ten times the spread as the "
+        "Two rules were changed after the first results of the paper's case. With ten times the spread as the "
         "threshold of rule 1 the first statement of this page would be "
-        f"{_former(jump_verdict(f, 10 * f.start_spread_m), claims[0].verdict)}; with a monotone fall asked for, as in "
-        f"rule {rules.index(TREND_RULE) + 1}, instead of rule {rules.index(MEASURE_RULE) + 1}, that on {spring.name} "
-        f"would be {_former(before, now)}."
+        f"{_former(jump_verdict(f, 10 * f.start_spread_m), claims[0].verdict)}. With a monotone fall, as in "
+        f"rule {rules.index(TREND_RULE) + 1}, instead of rule {rules.index(MEASURE_RULE) + 1}, the one on "
+        f"{spring.name} would be {_former(before, now)}."
     )
 
 
@@ -45,19 +45,20 @@ def _former(before: str, now: str) -> str:
 
 def _certainty(f: Findings) -> list[str]:
     if not f.amplification.is_chaotic:
-        return [f"That is below {CHAOTIC:g} times: single runs of this case can be compared point by point."]
+        return [f"This factor is below {CHAOTIC:g}, so single runs of this case can be compared point by point."]
     static = "" if f.static_rigid_rad is None else "the static value with a spring; "
     ringing = (
-        " Links that start at rest ring: where in that ringing the first impact falls decides its speed, so a run can "
-        f"lie far from the mean of an ensemble whose starts are spread over {f.start_spread_m * 1e6:g} µm."
+        " Links that start at rest ring. The phase of this ringing at the first impact determines the speed of the "
+        "impact, so a run can be far from the mean of an ensemble whose starts are spread over "
+        f"{f.start_spread_m * 1e6:g} µm."
         if f.rings else ""
     )
     return [
-        f"Beyond {CHAOTIC:g} times a motion is called chaotic here.", "",
+        f"This page calls a motion chaotic if this factor exceeds {CHAOTIC:g}.", "",
         f"- Deterministic: everything up to the first contact, and its temperature; the envelope of θ2; {static}the "
         "statistics of an ensemble.",
-        f"- Chaotic: the course of a single run after the first contacts, and its jump.{ringing} The paper's figures "
-        "show single runs: two codes, even two compilers, draw two such figures.",
+        f"- Chaotic: a single run after the first contacts, and its jump.{ringing} The paper's figures "
+        "show single runs. Two programs, or two compilers, give different figures of this kind.",
     ]
 
 
@@ -71,8 +72,8 @@ def page(title: str, command: str, f: Findings) -> list[str]:
     a = f.amplification
     lines = [
         f"# {title}: the paper's claims, tested", "",
-        f"Made by `{command}`: text and verdicts from the numbers of the run. Figures 13 to 16 of Chen et al. (2021), "
-        "DEM and reduced model on the same axes.", "",
+        f"`{command}` makes this page, with its texts and verdicts, from the numbers of the run. Figures 13 to 16 of "
+        "Chen et al. (2021), DEM and reduced model on the same axes.", "",
         *_table(
             ("statement", "found", "verdict", "why", "rule"),
             [(c.statement, c.found, f"**{c.verdict}**", c.why, str(rules.index(c.rule) + 1)) for c in claims],
@@ -86,8 +87,8 @@ def page(title: str, command: str, f: Findings) -> list[str]:
         + (f", {a.at_end_rad / a.start_rad:.1e} times as much." if a.start_rad > 0 else "."),
         "", *_certainty(f),
         "", "## First contact", "",
-        "The middle columns are of links that follow their expansion from the start (`start.mode = \"matched\"`), so "
-        "that they do not ring; the last ones of the figures' single runs.", "",
+        "In the middle columns, links follow their expansion from the start (`start.mode = \"matched\"`), so they do "
+        "not ring. The last columns are of the single runs in the figures.", "",
         *_table(
             ("clearance [mm]", "c/(α |AC|)", "reduced − closed form", "DEM − closed form", "figures: reduced",
              "figures: DEM"),
@@ -102,12 +103,12 @@ def page(title: str, command: str, f: Findings) -> list[str]:
             ],
         ),
         "", "## DEM against reduced model, as ensembles", "",
-        f"Kolmogorov-Smirnov for the distribution, Welch's t for the mean, Brown-Forsythe for the spread; "
-        f"significance {SIGNIFICANCE:g}; {3 * len(f.tests)} such tests of equal models raise a false alarm with a "
-        f"chance of at most {min(1.0, 3 * len(f.tests) * SIGNIFICANCE):.2g}.", "",
+        f"The tests are Kolmogorov-Smirnov for the distribution, Welch's t for the mean, and Brown-Forsythe for the "
+        f"spread, at a significance of {SIGNIFICANCE:g}. {3 * len(f.tests)} such tests of equal models give a false "
+        f"alarm with a probability of at most {min(1.0, 3 * len(f.tests) * SIGNIFICANCE):.2g}.", "",
         *_table(
             ("quantity", f"reduced, {len(f.end_shift_reduced_m)} runs", f"DEM, {len(f.end_shift_dem_m)} runs",
-             "p distribution", "p mean", "p spread", "told apart"),
+             "p distribution", "p mean", "p spread", "models differ"),
             [
                 (
                     test.quantity,
@@ -120,9 +121,9 @@ def page(title: str, command: str, f: Findings) -> list[str]:
             ],
         ),
         "", "## Envelope", "",
-        "θ2 of every sample against the extremes of θ2 over all places of the journal in the play, rigid links, at "
-        "its temperature. The margin, twice the largest depth plus stretch of both links in the single runs, widens "
-        "the play.", "",
+        "The table compares θ2 of every sample with the extremes of θ2 at its temperature, over all positions of the "
+        "journal in the play, with rigid links. The margin widens the play. It is twice the largest sum of depth "
+        "and stretch of both links in the single runs.", "",
         *_table(
             ("runs", "number", "largest excess [µrad]", "margin [µm]", "samples beyond the margin"),
             [

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Groups of runs and tests on them: trends, measures, two ensembles beside each other."""
+"""Groups of runs and tests on them: trends, measures, comparison of two ensembles."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -50,7 +50,7 @@ class Groups:
 
 @dataclass(frozen=True)
 class Trend:
-    """How a quantity goes with a parameter, measured against a claimed direction."""
+    """Trend of a quantity over a parameter, compared with a claimed direction."""
 
     verdict: str
     rank_correlation: float  # Spearman's, of all runs
@@ -62,7 +62,7 @@ class Trend:
 
 
 def one_sided_welch(first: np.ndarray, second: np.ndarray, rising: bool) -> float:
-    """Return p of "the second mean is above (rising) or below the first"; 1 where nothing varies."""
+    """Return p of "the second mean is above (rising) or below the first"; 1 if nothing varies."""
     if np.ptp(first) == 0 and np.ptp(second) == 0:
         step = np.mean(second) - np.mean(first)
         return 0.0 if (step > 0 if rising else step < 0) else 1.0
@@ -72,7 +72,7 @@ def one_sided_welch(first: np.ndarray, second: np.ndarray, rising: bool) -> floa
 
 
 def chance(first: np.ndarray, second: np.ndarray, rising: bool) -> float:
-    """Return the chance that a run of the second group lies on the claimed side of one of the first."""
+    """Return the probability that a run of the second group lies on the claimed side of one of the first."""
     difference = second[:, None] - first[None, :]
     return float(np.mean(difference > 0 if rising else difference < 0))
 
@@ -103,9 +103,9 @@ def trend(groups: Groups, rising: bool) -> Trend:
 
 TREND_RULE = (
     f"*{HOLDS}*: at every step of the parameter a run of the next value lies on the claimed side with a "
-    f"chance of at least {NEARLY_EVERY_RUN:g}; *{IN_THE_MEAN}*: else, if Spearman's rank test of all runs "
+    f"probability of at least {NEARLY_EVERY_RUN:g}; *{IN_THE_MEAN}*: otherwise, if Spearman's rank test of all runs "
     f"gives the claimed direction at {SIGNIFICANCE:g} and no step of the means goes the other way at "
-    f"{SIGNIFICANCE:g} (Welch); *{FAILS}*: else"
+    f"{SIGNIFICANCE:g} (Welch); *{FAILS}*: otherwise"
 )
 
 
@@ -129,7 +129,7 @@ class TwoSampleTest:
 
 
 def two_sample_test(quantity: str, reduced: np.ndarray, dem: np.ndarray) -> TwoSampleTest:
-    """Test whether two ensembles may be of one distribution. NaN, of too few runs, counts as 1."""
+    """Test whether two ensembles may have one distribution. NaN, the result for too few runs, counts as 1."""
 
     def p(result: object) -> float:
         value = float(result.pvalue)  # type: ignore[attr-defined]

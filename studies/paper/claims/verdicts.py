@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the paper says of its Figures 13 to 16, statement by statement."""
+"""Verdicts on the paper's statements about its Figures 13 to 16."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ NEAR_STATIC = 0.05  # of the static value
 
 @dataclass(frozen=True)
 class Claim:
-    """A statement, what was found, what follows, why as far as the numbers tell, and by which rule."""
+    """A statement, the observation, the verdict, its reason as far as the numbers show it, and the rule."""
 
     statement: str
     found: str
@@ -29,7 +29,7 @@ class Claim:
 
 
 def jump_verdict(f: Findings, least_m: float) -> str:
-    """Return the verdict on "a state jump occurs", if an end that far from the start is one."""
+    """Return the verdict on "a state jump occurs", for the given distance of the end from the start."""
     share = float(np.mean(np.concatenate([f.end_shift_reduced_m, f.end_shift_dem_m]) > least_m))
     return HOLDS if share == 1 else IN_THE_MEAN if share > 0.5 else FAILS
 
@@ -45,14 +45,15 @@ def state_jump_occurs(f: Findings) -> Claim:
     else:
         reasons = []
         if f.spring_stiffness_N_m_per_rad == 0:
-            reasons.append("without a torsion spring statics leaves the place in the play open")
+            reasons.append("without a torsion spring statics does not determine the position of the journal in "
+                           "the play")
         else:
-            reasons.append("the torsion spring asks for a flare angle only, both links together can still turn by "
-                           f"c/|AC| = {f.free_turn_rad * MRAD:.2f} mrad within the play")
+            reasons.append("the torsion spring determines the flare angle only; both links together can still rotate "
+                           f"by c/|AC| = {f.free_turn_rad * MRAD:.2f} mrad within the play")
         if not f.damped:
-            reasons.append("what speed the first contact gives stays, for nothing damps links and pins")
+            reasons.append("the speed after the first contact does not decay, because nothing damps links and pins")
         if f.amplification.is_chaotic:
-            reasons.append("starts that differ by next to nothing end far apart")
+            reasons.append("runs with almost equal starts end far apart")
         why = "; ".join(reasons) + (f"; {near} of {len(shifts)} runs end where they began" if near else "")
     return Claim(
         "Relative positions change though the temperature returns: a state jump occurs (Fig. 13)",
@@ -60,8 +61,8 @@ def state_jump_occurs(f: Findings) -> Claim:
         f"{len(f.end_shift_reduced_m)}) and {np.mean(f.end_shift_dem_m) * 1e6:.1f} µm (DEM, mean of "
         f"{len(f.end_shift_dem_m)}); smallest {np.min(shifts) * 1e6:.2f} µm",
         verdict, why,
-        f"*{HOLDS}*: every run of both models ends farther from where it began than starts are spread, "
-        f"{least * 1e6:g} µm; *{IN_THE_MEAN}*: more than half of them; *{FAILS}*: else",
+        f"*{HOLDS}*: every run of both models ends farther from its start than the spread of the starts, "
+        f"{least * 1e6:g} µm; *{IN_THE_MEAN}*: more than half of the runs do; *{FAILS}*: otherwise",
     )
 
 
@@ -85,7 +86,7 @@ def _rises(values: Sequence[float | None]) -> bool:
 
 
 def smaller_clearance_earlier(f: Findings) -> Claim:
-    """The smaller the clearance, the earlier the deflection."""
+    """Judge "the smaller the clearance, the earlier the deflection"."""
     met = all(_meets(contact, f) for contact in f.first_contacts)
     each = all(
         _rises([getattr(contact, name) for contact in f.first_contacts]) for name in ("reduced_K", "dem_K")
@@ -101,8 +102,8 @@ def smaller_clearance_earlier(f: Findings) -> Claim:
     elif not met:
         reasons = ["first contact of a model is off the closed form c/(α |AC|) by more than its tolerance"]
     else:
-        reasons = ["before contact the centres part along AC by α ΔT |AC|, whatever the stiffness: contact at "
-                   "ΔT_c = c/(α |AC|), met by both models to the tolerances of the table below"]
+        reasons = ["before contact the distance of the centres along AC is α ΔT |AC| for every stiffness; contact is "
+                   "at ΔT_c = c/(α |AC|), met by both models to the tolerances of the table below"]
     if not runs_apart:
         reasons.append("runs at neighbouring clearances begin to deflect at overlapping temperatures")
     if not (each and in_mean):
@@ -113,17 +114,17 @@ def smaller_clearance_earlier(f: Findings) -> Claim:
     )
     return Claim(
         "The smaller the clearance, the earlier the deflection (Fig. 14)",
-        f"deflection begins at, median of the reduced runs: {found}",
+        f"start of the deflection, median of the reduced runs: {found}",
         verdict, "; ".join(reasons),
-        f"*{HOLDS}*: first contacts of both models, and where the DEM runs begin to deflect, rise with c; the "
-        f"contacts meet the closed form to {f.tolerance_reduced_K:g} K (reduced) and {f.tolerance_dem_K:g} K (DEM); "
-        f"every reduced run at one c begins to deflect before every run at the next. *{IN_THE_MEAN}*: they rise, "
-        f"and so does the median of the reduced runs; *{FAILS}*: else",
+        f"*{HOLDS}*: with c, the temperature of the first contact rises in both models, and so does that at which DEM "
+        f"runs begin to deflect; the contacts agree with the closed form to {f.tolerance_reduced_K:g} K (reduced) and "
+        f"{f.tolerance_dem_K:g} K (DEM); every reduced run at one c begins to deflect before every run at the next. "
+        f"*{IN_THE_MEAN}*: these temperatures rise, and so does the median of the reduced runs; *{FAILS}*: otherwise",
     )
 
 
 def large_clearance_never_touches(f: Findings) -> Claim:
-    """Above the limit there is no contact at all, below it there always is."""
+    """Judge "above the limit there is no contact"; below it there must always be one."""
     above = [value > f.clearance_limit_m for value in f.onset_K.values]
     right = [
         bool(np.all(np.isinf(onset) if beyond else np.isfinite(onset)))
@@ -139,9 +140,9 @@ def large_clearance_never_touches(f: Findings) -> Claim:
         if not any(above):
             verdict, why = UNTESTED, "no clearance of the study lies above the limit"
         elif wrong:
-            verdict, why = FAILS, f"against the parting of the centres by α ΔT |AC|: runs at c = {wrong}"
+            verdict, why = FAILS, f"against the distance of the centres α ΔT |AC|: runs at c = {wrong}"
         else:
-            verdict, why = HOLDS, "the parting of the centres, α ΔT |AC|, ends at the limit"
+            verdict, why = HOLDS, "the distance of the centres, α ΔT |AC|, ends at the limit"
     moved = ", ".join(
         f"{np.sum(np.isfinite(onset))}/{len(onset)} and {int(np.isfinite(dem))}/1 at c = {value * 1e3:g} mm"
         for value, onset, dem in zip(f.onset_K.values, f.onset_K.runs, f.onset_dem_K)
@@ -150,8 +151,8 @@ def large_clearance_never_touches(f: Findings) -> Claim:
         "A clearance above the largest thermal deformation is never used up: no contact (Fig. 14)",
         f"{limit}; runs that deflect, reduced and DEM: {moved}",
         verdict, why,
-        f"*{HOLDS}*: no run of either model above the limit deflects or touches, every run below does; "
-        f"*{FAILS}*: else",
+        f"*{HOLDS}*: above the limit no run of either model deflects or touches, below it every run does; "
+        f"*{FAILS}*: otherwise",
     )
 
 
@@ -165,26 +166,26 @@ def _trend_text(t: Trend) -> str:
 
 
 def _trend_why(t: Trend, holds: str) -> str:
-    """Return the reason of a trend's verdict; ``holds`` is that of the claimed direction."""
+    """Return the reason of a trend's verdict; ``holds`` is the reason if the claimed direction is confirmed."""
     if t.verdict == HOLDS:
         return holds
-    scatter = ("two runs at neighbouring values come out in the claimed order with a chance as low as "
+    scatter = ("two runs at neighbouring values have the claimed order with a probability as low as "
                f"{t.least_chance:.2f}")
     if t.verdict == IN_THE_MEAN:
-        return f"{holds}; the scatter of the runs is as large as a step: {scatter}, so one run per value, as the " \
-               "paper shows, can give either order"
+        return f"{holds}; the scatter of the runs is as large as a step: {scatter}; one run per value, as in the " \
+               "paper, can therefore give either order"
     against = "the means go the other way at some step" if t.against else "the ensembles do not show it"
     return f"{against}; {scatter}"
 
 
 def more_friction_larger_range(f: Findings) -> Claim:
-    """The larger μ, the larger the range of θ2."""
+    """Judge "the larger μ, the larger the range of θ2"."""
     t = trend(f.range_by_friction, rising=True)
     first, *_, last = f.range_by_friction.runs
     return Claim(
         "Generally, the larger μ, the larger the range of the deflection angle (Fig. 15)",
         f"range of θ2: {f.range_by_friction.text()}; slope {t.slope * MRAD:+.2f} ± {t.slope_error * MRAD:.2f} mrad "
-        f"per unit of μ; {_trend_text(t)}; a run at the largest μ exceeds one at the smallest with a chance of "
+        f"per unit of μ; {_trend_text(t)}; a run at the largest μ exceeds one at the smallest with the probability "
         f"{chance(first, last, rising=True):.2f}",
         t.verdict, _trend_why(t, "the more friction, the farther AB is carried"), TREND_RULE,
     )
@@ -195,7 +196,7 @@ def friction_is_the_reason(f: Findings) -> Claim:
     statement = "Friction is a basic reason for the state jump (conclusion a)"
     rule = (
         f"*{HOLDS}*: mean |jump| at μ = 0 below {NEGLIGIBLE:g} of that at the case's μ; *{IN_THE_MEAN}*: smaller "
-        f"at {SIGNIFICANCE:g} (Welch, one-sided); *{FAILS}*: else"
+        f"at {SIGNIFICANCE:g} (Welch, one-sided); *{FAILS}*: otherwise"
     )
     jump = f.jump_by_friction.absolute()
     if f.friction_coefficient == 0:
@@ -205,12 +206,12 @@ def friction_is_the_reason(f: Findings) -> Claim:
     p = one_sided_welch(full, free, rising=False)
     verdict = HOLDS if ratio < NEGLIGIBLE else IN_THE_MEAN if p < SIGNIFICANCE else FAILS
     inertia = "" if f.damped else (
-        ": nothing else takes up the energy of the impacts, and the end of the cycle finds the links in motion"
+        "; nothing else dissipates the energy of the impacts, so the links still move at the end of the cycle"
     )
     if verdict == HOLDS:
         why = "the curves close without friction"
     elif verdict == IN_THE_MEAN:
-        why = f"a part of {ratio:.2f} of the jump is there without friction{inertia}"
+        why = f"a part of {ratio:.2f} of the jump remains without friction{inertia}"
     elif not np.isfinite(ratio):
         why = "with the friction of the case there is no jump"
     else:
@@ -237,7 +238,7 @@ def spring_ends_at_static(f: Findings) -> Claim:
     statement = "… in a certain range: until the static value is reached (Fig. 16)"
     rule = (
         f"*{HOLDS}*: at the stiffest spring the mean of the largest deflection is within {NEAR_STATIC:g} of the "
-        f"static value for rigid links; *{FAILS}*: else"
+        f"static value for rigid links; *{FAILS}*: otherwise"
     )
     if f.spring_bias_rad != 0:
         return Claim(statement, f"the spring of this case is free {f.spring_bias_rad:g} rad off the ideal position",
@@ -255,18 +256,19 @@ def spring_ends_at_static(f: Findings) -> Claim:
     verdict = HOLDS if abs(ratio - 1) <= NEAR_STATIC else FAILS
     reasons = ["contact at ΔTmax with |d| = c along AC fixes both angles"]
     if ratio > 1:
-        reasons.append(f"what is above it, {(ratio - 1) * 100:.1f} %, is the swing of the links"
+        reasons.append(f"the rest, {(ratio - 1) * 100:.1f} %, is the swing of the links"
                        + ("" if f.damped else ", which nothing damps"))
     elif ratio < 1:
         reasons.append(f"the runs stay {(1 - ratio) * 100:.1f} % below it")
     if known:
         taken = [abs(f.static_rigid_rad) - abs(value) for _, value in known]
         grows = all(later > earlier for earlier, later in zip(taken, taken[1:]))
-        reasons.append(f"elastic links take off {taken[-1] * MRAD:.4f} mrad at the stiffest spring"
-                       + (", the more, the stiffer it is" if grows and len(taken) > 1 else ""))
+        reasons.append(f"elastic links reduce the angle by {taken[-1] * MRAD:.4f} mrad at the stiffest spring"
+                       + (", and by less at softer ones" if grows and len(taken) > 1 else ""))
     return Claim(
         statement,
         f"static value at ΔTmax, contact without friction, rigid links: {f.static_rigid_rad * MRAD:.4f} mrad "
-        f"whatever K_M; elastic links: {elastic} [mrad]; mean of the runs over it: {ratio:.3f} at the stiffest",
+        f"for every K_M; elastic links: {elastic} [mrad]; mean of the runs over the rigid value: {ratio:.3f} at "
+        "the stiffest",
         verdict, "; ".join(reasons), rule,
     )

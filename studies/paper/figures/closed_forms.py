@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What geometry and statics of the rib say without a run: limits of θ2, first contact, static path."""
+"""Geometry and statics of the rib without a run: limits of θ2, first contact, static path."""
 from __future__ import annotations
 
 from typing import Any
@@ -24,7 +24,7 @@ def _theta2(case: UmbrellaCase, lengths: tuple[Any, Any], eccentricity: tuple[An
 
 
 def envelope(case: UmbrellaCase, change_K: np.ndarray, margin_m: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-    """Extremes of θ2 [rad] over all places in the play, rigid links, by temperature.
+    """Extremes of θ2 [rad] over all positions in the play, rigid links, by temperature.
 
     θ2 has no stationary point inside the play, so its extremes are on the rim.
     """
@@ -36,7 +36,7 @@ def envelope(case: UmbrellaCase, change_K: np.ndarray, margin_m: float = 0.0) ->
 
 
 def closed_form_first_contact(case: UmbrellaCase) -> float | None:
-    """ΔT_c [K] of a start without ringing; None without a closed form, infinity without contact."""
+    """ΔT_c [K] of a start without vibration; None without a closed form, infinity without contact."""
     return compare.closed_form_first_contact(with_values(case, {"start.mode": "matched"}))
 
 
@@ -68,7 +68,7 @@ def static_deflection_elastic(case: UmbrellaCase, change_K: float) -> float | No
         )["force_N"][0])
 
     def angles(force: float) -> tuple[float, float]:
-        """θ2 and θ4 under a force; pressed links get shorter, the play deeper."""
+        """θ2 and θ4 under a force: compressed links are shorter, and the play is deeper."""
         play = case.clearance_m(change_K)
         end = 0.5 * min(play, _engine.largest_depth_m(joint.normal_law, joint.journal_radius_m, case.bearing_radius_m))
         depth = brentq(lambda value: normal_force(value) - force, 0, end, xtol=1e-18)
@@ -95,7 +95,7 @@ def static_deflection_elastic(case: UmbrellaCase, change_K: float) -> float | No
 
 
 def quasi_static(case: UmbrellaCase, change_K: np.ndarray) -> np.ndarray | None:
-    """Frictionless path in contact, NaN where the spring leaves the joint open; None without spring."""
+    """Frictionless path in contact, NaN where the spring does not close the joint; None without spring."""
     spring = case.torsion_spring
     if spring.stiffness_N_m_per_rad == 0 or spring.bias_rad != 0:
         return None

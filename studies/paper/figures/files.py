@@ -56,7 +56,7 @@ def write_ensembles(
 
 
 def write_curves(done: Sequence[tuple[Study, Sequence[Variant]]], folder: Path) -> None:
-    """Write ``curves.csv``: what Figures 14 to 16 draw, at fewer times."""
+    """Write ``curves.csv``: the curves of Figures 14 to 16, at fewer times."""
 
     def rows() -> Iterator[Sequence[Any]]:
         for study, variants in done:
@@ -105,7 +105,7 @@ def _write_table(path: Path, header: Sequence[str], rows: Iterator[Sequence[Any]
 
 
 def _plain(value: Any) -> Any:
-    """Return what JSON knows, in as many digits as count: lists for arrays, None for what is not finite."""
+    """Convert to JSON with as many digits as matter: lists for arrays, None for numbers that are not finite."""
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):

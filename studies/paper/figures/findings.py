@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the runs of Figures 13 to 16 say about the paper's claims, as :mod:`studies.paper.claims` asks for it."""
+"""Results of the runs of Figures 13 to 16, as :mod:`studies.paper.claims` needs them."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
@@ -26,11 +26,11 @@ def findings_of(
     case: UmbrellaCase, done: Sequence[tuple[Study, Sequence[Variant]]], base: Variant,
     dem_ensemble: model.EnsembleOfRuns, contacts: tuple[FirstContact, ...], stiffness: Groups,
 ) -> Findings:
-    """Return what the runs say.
+    """Return the results of the runs.
 
     :param done: the studies of Figures 14 to 16 with their runs
     :param base: the case itself
-    :param contacts: first contact of links that do not ring, by clearance
+    :param contacts: first contact of links without vibration, by clearance
     :param stiffness: jumps by the section of the links
     """
     clearances, frictions, springs = (variants for _, variants in done)
@@ -92,7 +92,7 @@ def findings_of(
 
 
 def _amplification(case: UmbrellaCase, reduced: Run) -> Amplification:
-    """Run the case once more, AB turned by TWIN_RAD."""
+    """Run the case once more, with AB rotated by TWIN_RAD."""
     across = np.array([np.sin(case.theta2_rad), -np.cos(case.theta2_rad)])  # d = journal − bearing
     twin = model.run(case, offset_m=TWIN_RAD * case.link_ab.stress_free_length_m * across)
     apart = np.abs(twin["theta2_rad"] - reduced["theta2_rad"])
@@ -101,7 +101,7 @@ def _amplification(case: UmbrellaCase, reduced: Run) -> Amplification:
 
 
 def _slack(case: UmbrellaCase, run: Run) -> float:
-    """Largest depth plus stretch of both links [m]: by so much rigid links may seem out of the play."""
+    """Largest depth plus stretch of both links [m]: rigid links may seem to leave the play by this length."""
     first, second = case.link_lengths_m(run["temperature_change_K"])
     return float(np.max(
         np.maximum(run["penetration_depth_m"], 0)
@@ -138,7 +138,7 @@ def _check_envelopes(
 
 
 def _onset(change_K: np.ndarray, deflection: np.ndarray, threshold: float) -> np.ndarray:
-    """ΔT at which each run first deflects by the threshold; infinity if it never does."""
+    """ΔT at which the deflection of each run first exceeds the threshold; infinity if it never does."""
     moved = np.abs(deflection) > threshold
     return np.where(moved.any(axis=1), change_K[np.argmax(moved, axis=1)], np.inf)
 
@@ -152,7 +152,7 @@ def _groups(variants: Sequence[Variant], quantity: Callable[[Variant], np.ndarra
 
 
 def _end_shift(case: UmbrellaCase, runs: model.EnsembleOfRuns) -> np.ndarray:
-    """Way of the journal in the play from the start of each run to its end [m]."""
+    """Displacement of the journal in the play from the start of each run to its end [m]."""
     angle = case.start.eccentricity_angle_rad
     centre = case.start.eccentricity_m * np.array([np.cos(angle), np.sin(angle)])
     starts = centre + np.array(list(model.start_offsets(case, len(runs.theta2_rad))))

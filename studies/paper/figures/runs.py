@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Figures 13 to 16 vary, and the runs of both models for them."""
+"""Varied parameters of Figures 13 to 16, and their runs in both models."""
 from __future__ import annotations
 
 import json
@@ -24,7 +24,7 @@ FRICTIONS = (0.0, 0.1, 0.3, 0.5)
 SPRINGS_N_m_per_rad = (0.0, 0.01, 0.1, 1.0, 10.0, 100.0)
 SECTIONS = (0.25, 1.0, 4.0)  # over that of the case: stiffness of the links
 
-# Context of a part of the work, by its name and number of runs; gives what to call after each of them.
+# Context of a part of the work, by its name and number of runs; yields a function to call after each run.
 Part = Callable[[str, int], AbstractContextManager[Callable[[], None]]]
 
 
@@ -53,7 +53,7 @@ class Variant:
 
 @dataclass(frozen=True)
 class Study:
-    """One figure: what is varied, and how it is called."""
+    """One figure: the varied parameter and its name."""
 
     figure: str
     key: str
@@ -82,7 +82,7 @@ def studies(case: UmbrellaCase) -> tuple[Study, ...]:
 
 
 def variant_case(case: UmbrellaCase, key: str, value: float) -> UmbrellaCase:
-    """Return the case with one value changed. :raises StatejumpError: the value does not fit it"""
+    """Return the case with one value changed. :raises StatejumpError: the value is invalid"""
     try:
         variant = with_values(case, {key: value})
         variant.check()
@@ -93,7 +93,7 @@ def variant_case(case: UmbrellaCase, key: str, value: float) -> UmbrellaCase:
 
 
 def run_variants(case: UmbrellaCase, study: Study, known: dict[str, Variant], part: Part) -> list[Variant]:
-    """Run both models at every value of a study; the case itself is run once for all studies."""
+    """Run both models at every value of a study; the unchanged case is run once for all studies."""
     cases = [variant_case(case, study.key, value) for value in study.values]
     new = [variant for variant in cases if _key(variant) not in known]
     with part(f"{study.figure}, reduced", len(new) * (case.ensemble.reduced_runs + 1)) as step:
@@ -117,7 +117,7 @@ def _key(case: UmbrellaCase) -> str:
 
 
 def first_contacts(case: UmbrellaCase, values: Sequence[float], part: Part) -> tuple[FirstContact, ...]:
-    """First contact of both models at every clearance, links that do not ring."""
+    """First contact of both models at every clearance, with links that do not vibrate."""
     start = {"start.mode": "matched", "start.eccentricity_m": 0.0}
     cases = [with_values(variant_case(case, "joint.radial_clearance_m", value), start) for value in values]
     with part("first contact, both models", 2 * len(cases)) as step:

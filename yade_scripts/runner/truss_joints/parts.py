@@ -71,11 +71,11 @@ class Joints:
         raise NotImplementedError
 
     def torsion_springs(self) -> list[sj.TorsionSpring]:
-        """Return those that stand for joints, known from :meth:`append` on."""
+        """Return the torsion springs that represent joints, known from :meth:`append` on."""
         return []
 
     def prismatic_joints(self) -> list[sj.PrismaticJoint]:
-        """Return those that stand for joints, known from :meth:`append` on."""
+        """Return the prismatic joints that represent joints, known from :meth:`append` on."""
         return []
 
     def start_slides(self) -> dict[int, tuple[float, float, float]]:
@@ -84,11 +84,11 @@ class Joints:
         return {}
 
     def states(self, states: States) -> list[np.ndarray]:
-        """Return each of the columns: its values by sample and joint, vectors along a third axis."""
+        """Return the values of each column by sample and joint, with vectors along a third axis."""
         raise NotImplementedError
 
     def faults(self, states: States) -> Iterator[SceneFailure]:
-        """Yield what the model of a joint does not have, its first time."""
+        """Yield the first event that the model of a joint does not cover."""
         yield from ()
 
     def faces(self) -> dict[int, tuple[str, str]]:

@@ -33,7 +33,7 @@ class RoundParts(Joints):
         """Rotate a part to the joint's axis, if it has one."""
 
     def bodies_of(self, joint: Row) -> tuple[int, int]:
-        """Return the part that plays and what it plays in."""
+        """Return the inner part and the outer part."""
         outer, inner = self.shapes
         return self.ids[joint[f"{inner}_node"]], self.ids[joint[f"{outer}_node"]]
 
@@ -58,7 +58,7 @@ class RoundParts(Joints):
                 np.where(touches, np.where(contacts["slipping"] > 0, SLIP, STICK), SEPARATED)]
 
     def read(self, offset: np.ndarray, contacts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return what the columns have as offset of the centres and as friction where they touch."""
+        """Return the values of the columns: offset of the centres, and friction at the contact point."""
         raise NotImplementedError
 
     def name(self, found: Names) -> None:

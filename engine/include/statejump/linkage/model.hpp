@@ -40,7 +40,6 @@ struct ThermalLink {
 /// Angles: θ2 of AB from A to B, θ4 of BC from C to B, anticlockwise from AC.
 /// Limits: planar, small strain, no bending; B above AC; limits of the laws. A plain value; call
 /// validate() once.
-/// validate() once.
 struct Linkage {
   double frame_length = 0.0;               ///< a = |AC| [m], > 0; the frame does not expand
   ThermalLink link_ab;                     ///< carries the bearing

@@ -13,7 +13,7 @@
 
 namespace statejump::truss {
 
-/// The registry of elements: one list of each type. A new type is added here and nowhere else.
+/// The registry of elements: one list for each type. To add a type, change this struct only.
 /// elements/interface.hpp documents the members of a type.
 struct Elements {
   std::vector<Bar> links;
@@ -48,15 +48,15 @@ constexpr void for_each_element_type(Use&& use) {
   (std::make_index_sequence<element_types>());
 }
 
-/// Lists of frames for lists of elements; only its type is used.
+/// Type of the lists of frames that belong to lists of elements. Declared for its type only.
 template <class... Lists>
 std::tuple<std::vector<typename std::decay_t<Lists>::value_type::Frame>...> frames_of(
     const std::tuple<Lists...>& lists);
 
-/// The frames of all elements, a list of each type.
+/// The frames of all elements, one list for each type.
 using ElementFrames = decltype(frames_of(std::declval<ElementLists>()));
 
-/// How many numbers an element of a type has at every state.
+/// Number of outputs of an element of a type.
 template <Element Type>
 std::size_t output_width() {
   std::size_t width = 0;

@@ -14,11 +14,11 @@
 
 namespace statejump::truss {
 
-/// One of several types of joints; joints/interface.hpp documents the members of a type.
+/// A joint of one of several types. joints/interface.hpp documents the members of a type.
 template <JointType... Types>
 using JointOf = std::variant<Types...>;
 
-/// The registry of joints. A new type is added here and nowhere else.
+/// The registry of joints. To add a type, change this list only.
 using Joint = JointOf<Slider, ClearanceRevolute, LatchHinge, IwanJoint, BallJoint>;
 
 inline const std::string& name_of(const Joint& joint) {

@@ -8,14 +8,15 @@
 
 namespace statejump::truss {
 
-/// Frictional contact problem of the joints of a truss in one step of a path, the truss condensed
-/// to them: the one that the last Newton step solves.
+/// Frictional contact problem of the joints of a truss in one step of a path, with the truss
+/// condensed to the joints. It is the problem that the last Newton step solves.
 ///
-/// A contact's block is its normal component and its friction; `problem` gives the motions of the
-/// step u = W r + q [m] (u_n the gap at its end, u_t the slide of the step less what friction
-/// bends) of the forces r [N]. With the tangent K of the truss without these forces, the gradients
-/// G of their rows and C of their forces on the nodes, and the joints' own compliance D, W = G K⁻¹
-/// C + D. It is linear about the state that the path found, which solves it therefore.
+/// The block of a contact is its normal component and its friction. `problem` gives the motions u =
+/// W r + q [m] of the step for the forces r [N]: u_n is the gap at the end of the step, u_t its
+/// slide less the elastic deflection. With the tangent K of the truss without contact forces, the
+/// gradients G of the rows, the gradients C of the contact forces on the nodes, and the compliance
+/// D of the joints, W = G K⁻¹ C + D. The problem is linearised about the state of the path, so that
+/// state is a solution.
 struct LocalProblem {
   double time = 0.0;                ///< End of the step [s].
   double temperature_change = 0.0;  ///< Of the first program there [K].
@@ -23,9 +24,9 @@ struct LocalProblem {
   Eigen::VectorXd reactions;   ///< Of the path [N].
   Eigen::VectorXd velocities;  ///< Of the path: motions of the step [m].
   std::vector<int> joints;     ///< Of every contact.
-  /// Stiffness of every displacement against leaving the found state [N/m], where the truss without
-  /// the forces of its contacts is a mechanism or unstable; 0 where it is not. It changes W, and q
-  /// so that the path's forces and motions stay a solution.
+  /// Stiffness that holds every displacement at the state of the path [N/m]. Needed if the truss
+  /// without contact forces is a mechanism or unstable; else 0. It changes W, and also q, so that
+  /// forces and motions of the path remain a solution.
   double proximal_stiffness = 0.0;
 };
 

@@ -13,8 +13,8 @@
 
 namespace statejump::truss {
 
-/// Three directions, the columns of a matrix, kept once by all that copy them: the nodes of a truss
-/// mostly have the same.
+/// Three directions, the columns of a matrix. Copies share one matrix, because most nodes of a
+/// truss have the same directions.
 class Directions {
  public:
   /// Those of the coordinates.
@@ -45,47 +45,48 @@ struct Node {
   Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< Dead load [N].
 };
 
-/// A part of a sum of displacements: that of a node along a vector, times its length.
+/// A term of a constraint: the displacement of a node along a vector, times the length of the
+/// vector.
 struct ConstraintTerm {
   int node = 0;                                      ///< Number.
   Eigen::Vector3d factor = Eigen::Vector3d::Zero();  ///< [-]
 };
 
-/// A sum of displacements that is always zero: Σ factor · displacement = 0.
+/// A constraint: the sum of all terms factor · displacement is always zero.
 struct Constraint {
   std::string name;                   ///< For messages.
   std::vector<ConstraintTerm> terms;  ///< At least one.
 
   static constexpr const char* kind = "constraint";  ///< In messages.
-  /// Factors below this fraction of the largest one of their constraint are refused [-]. What
-  /// elimination leaves of a factor that cancels is below a thousandth of it.
+  /// Factors below this fraction of the largest one of their constraint are refused [-]. The
+  /// rounding that elimination leaves of a factor that cancels is below a thousandth of it.
   static constexpr double least_factor = 1e-9;
 };
 
-/// Structure of elements, frictional joints and loads, for quasi-static paths.
+/// Elements, frictional joints and loads of a structure, for quasi-static paths.
 struct Model : Elements {
   std::vector<Node> nodes;
   std::vector<Joint> joints;
   std::vector<Constraint> constraints;
   std::vector<thermal::Program> programs;  ///< At least one; all of one duration.
 
-  /// Share of the duration below which two times are one [-]: programs of 3 x 0.1 s and 1 x 0.3 s
-  /// last equally long, and what is typed with ten digits is meant so. Such times differ by less
-  /// than the interval within which events are located by default.
+  /// Two times closer than this fraction of the duration are equal [-]. Programs of 3 x 0.1 s and
+  /// of 1 x 0.3 s therefore have one length, and so have times typed with ten digits. The fraction
+  /// is below the default interval within which events are located.
   static constexpr double same_time = 1e-9;
 
   /// Throws std::invalid_argument that names the item, its value and the range: indices, numbers
-  /// out of range, links without length somewhere in their program, joints whose parts do not fit,
-  /// directions that both a joint and constraints hold.
+  /// out of range, links without length at some time of their program, joints whose parts do not
+  /// fit, directions that both a joint and constraints determine.
   void validate() const;
 
-  /// Constraints that follow from supports and the constraints before them. They change nothing.
+  /// Redundant constraints: those that follow from supports and earlier constraints.
   std::vector<int> redundant_constraints() const;
 
-  /// Largest value of `per_kelvin` · ΔT over a program, downwards.
+  /// Largest negative value of `per_kelvin` · ΔT over a program.
   double lowest_strain(int program, double per_kelvin) const;
 
-  /// ΔT [K] of a part at time t [s].
+  /// ΔT [K] of an item at time t [s].
   double temperature_change(int program, double fraction, double t) const {
     return fraction * programs[static_cast<std::size_t>(program)].temperature_change(t);
   }

@@ -36,7 +36,7 @@ struct Parameter {
   int width = 1;  ///< of so many numbers for each item.
 };
 
-/// A number, or a vector of three, that an element or a joint has at every state.
+/// An output of an element or a joint at every state: a number, or a vector of three.
 struct Output {
   const char* key;  ///< With its unit.
   int width;

@@ -19,11 +19,11 @@ struct Axial {
   double energy() const { return stiffness > 0.0 ? 0.5 * tension * tension / stiffness : 0.0; }
 };
 
-/// Of a bar. @param change ΔT of the bar [K]
+/// Tension and stiffness of a bar. @param change ΔT of the bar [K]
 inline Axial axial(const Bar& bar, double elongation_from_drawn, double drawn_length,
                    double change) {
   const double l0 = bar.stress_free_length;
-  // From differences: the rounding of a length would cost E A times 1e-16.
+  // Computed from differences, because the rounding of a length would be E A times 1e-16.
   const double stretch =
       elongation_from_drawn + (drawn_length - l0) - l0 * bar.thermal_expansion * change;
   const double stiffness = bar.axial_stiffness / thermal::length(l0, bar.thermal_expansion, change);

@@ -15,7 +15,8 @@ using detail::Lengths;
 
 namespace {
 
-/// From differences: the rounding of a length would be noise in the force of a stiff spring.
+/// Computed from differences, because the rounding of a length would be noise in the force of a
+/// stiff spring.
 double stretch(const Spring& spring, const Lengths& length) {
   return (length.drawn - spring.free_length) + length.growth;
 }

@@ -32,7 +32,7 @@ struct Arms {
   double angle = 0.0;  ///< From the reference configuration [rad].
 };
 
-/// The angle runs from the first bar to the second; that of a single bar from the ground.
+/// The angle from the first bar to the second; for a single bar from the ground.
 Arms arms_of(const TorsionSpring::Frame& frame, const ElementState& state) {
   Arms found;
   const bool single = frame.nodes[2] < 0;
@@ -90,7 +90,7 @@ void TorsionSpring::evaluate(const Frame& frame, const ElementState& state,
                              ElementWriter& writer) const {
   const Arms now = arms_of(frame, state);
   const double moment = stiffness * (now.angle - free_angle);
-  // The second end of a bar turns it by its motion, the first end against.
+  // The motion of the second end of a bar rotates it, that of the first end with the opposite sign.
   struct End {
     std::size_t bar;
     int node;

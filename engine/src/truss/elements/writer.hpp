@@ -10,15 +10,15 @@
 
 namespace statejump::truss {
 
-/// Adds the forces of elements on nodes and their derivatives, by the nodes' dofs. Node −1 is the
-/// ground, which takes any force.
+/// Adds the forces of elements on nodes, and their derivatives, to the rows of the nodes' dofs.
+/// Node −1 is the ground, which takes any force.
 class ElementWriter {
  public:
   ElementWriter(const detail::DofMap& dofs, AssemblyStrand& to) : dofs_(&dofs), to_(&to) {}
 
   const NodeDofs& at(int node) const { return dofs_->at(node); }
   bool residual_only() const { return to_->residual_only(); }
-  /// Force [N] that a node has to carry.
+  /// Adds the force [N] of the element on a node.
   void force(int node, const Eigen::Vector3d& value) {
     const NodeDofs& dofs = at(node);
     for (int i = 0; i < dofs.freedoms; ++i) {
@@ -31,13 +31,13 @@ class ElementWriter {
   void block(int row_node, int column_node, Value&& value) {
     to_->block(at(row_node), at(column_node), value);
   }
-  /// A vector along the directions in which a node moves.
+  /// Components of a vector along the free directions of a node.
   Eigen::Vector3d seen(int node, const Eigen::Vector3d& vector) const {
     return at(node).directions->transpose() * vector;
   }
-  /// A force that rounding and balance are measured by [N].
+  /// Includes a force in the scale of rounding and balance [N].
   void carries(double force) { to_->carries(force); }
-  /// Of a piecewise linear law: which piece is active.
+  /// For a piecewise linear law: reports the active piece.
   void piece(std::size_t which) { to_->piece(which); }
 
  private:
@@ -45,13 +45,13 @@ class ElementWriter {
   AssemblyStrand* to_;
 };
 
-/// Lists the entries of a matrix of translations.
+/// Lists the entries of a matrix that acts on translations.
 class MatrixWriter {
  public:
   MatrixWriter(const detail::DofMap& dofs, std::vector<Eigen::Triplet<double>>& to)
       : dofs_(&dofs), to_(&to) {}
 
-  /// Adds the derivative of a node's force by the motion of another node.
+  /// Adds the derivative of a force on one node by the motion of another.
   void block(int row_node, int column_node, const Eigen::Matrix3d& value) {
     const NodeDofs& rows = dofs_->at(row_node);
     const NodeDofs& columns = dofs_->at(column_node);
@@ -67,7 +67,7 @@ class MatrixWriter {
       }
     }
   }
-  /// Adds what resists the relative motion of two nodes.
+  /// Adds a resistance against the relative motion of two nodes.
   void between(int first, int second, const Eigen::Matrix3d& value) {
     block(first, first, value);
     block(second, second, value);

@@ -12,10 +12,10 @@
 
 namespace statejump::truss::detail {
 
-// A ball in its socket at one state and on the way there, as functions of numbers, or of numbers
-// that carry their derivatives.
+// A ball in its socket at one state, and since the start of the step. Numbers are doubles, or dual
+// numbers that carry derivatives.
 
-/// Displacements of four nodes, three forces, the temperature.
+/// Variables: displacements of four nodes, three forces, the temperature.
 constexpr int ball_variables = 3 * most_joint_nodes + most_joint_forces + 1;
 using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, ball_variables, 1>>;
 template <class Number>
@@ -27,7 +27,7 @@ inline double value_of(double number) {
 inline double value_of(const Dual& number) {
   return number.value();
 }
-/// A function of a number, from its value and derivative there.
+/// A function of a number, given its value and derivative there.
 inline double chain(double, const ByNormal& of) {
   return of.value;
 }
@@ -41,7 +41,7 @@ constexpr std::size_t socket = 1;
 constexpr std::size_t ball_far = 2;    ///< Far end of the link that turns the ball.
 constexpr std::size_t socket_far = 3;  ///< Likewise the socket.
 
-/// What a ball joint remembers; with partial slip the contact's memory follows.
+/// Memory of a ball joint; with partial slip the memory of the contact follows it.
 struct BallMemory {
   Eigen::Vector3d offset;            ///< Ball minus socket [m].
   Eigen::Vector3d ball_direction;    ///< Ball link, ball minus far node; zero without [m].
@@ -72,7 +72,7 @@ struct BallMemory {
   }
 };
 
-/// A ball joint at one state. Where the ball is in the very middle, its normal is zero.
+/// A ball joint at one state. If the ball is exactly in the middle, its normal is zero.
 template <class Number>
 struct BallState {
   Vector<Number> offset;
@@ -88,7 +88,7 @@ struct BallState {
   Number normal_force;
 };
 
-/// @param place a function that gives the vector from one of its nodes to another
+/// @param place returns the vector from one of its nodes to another
 template <class Number, class Between>
 BallState<Number> ball_state(const BallJoint& joint, const Vector<Number>& force,
                              const Number& temperature_change, double opening, Between&& between) {
@@ -123,7 +123,7 @@ BallState<Number> ball_state(const BallJoint& joint, const Vector<Number>& force
   return s;
 }
 
-/// An angle over its sine, by its cosine.
+/// An angle divided by its sine, as a function of its cosine.
 inline ByNormal arc_over_sine(double cosine) {
   const double x = 1.0 - cosine;
   // Four terms are exact to rounding there.
@@ -135,7 +135,8 @@ inline ByNormal arc_over_sine(double cosine) {
   return {value, (cosine * value - 1.0) / (x * (1.0 + cosine))};
 }
 
-/// Smallest rotation from one direction to another, as axis times angle [rad]; zero without one.
+/// Smallest rotation from one direction to another, as axis times angle [rad]; zero if there is
+/// none.
 template <class Number>
 Vector<Number> turned(const Eigen::Vector3d& before, const Vector<Number>& now) {
   using std::sqrt;
@@ -143,14 +144,15 @@ Vector<Number> turned(const Eigen::Vector3d& before, const Vector<Number>& now) 
   if (before.isZero(0.0) || value_of(now.squaredNorm()) == 0.0) return turn;
   const Number scale = Number(1.0 / (before.norm() * sqrt(now.squaredNorm())));
   const Number cosine = before.cast<Number>().dot(now) * scale;
-  // From the difference: exact where they are nearly one.
+  // Computed from the difference, which is exact for nearly equal directions.
   const Vector<Number> change = now - before.cast<Number>();
   turn = before.cast<Number>().cross(change) *
          Number(chain(cosine, arc_over_sine(value_of(cosine))) * scale);
   return turn;
 }
 
-/// A vector of the tangent plane of one unit normal in that of another, by the smallest rotation.
+/// Rotates a vector in the tangent plane of one unit normal into the plane of another, by the
+/// smallest rotation.
 template <class Number>
 Vector<Number> carried(const Vector<Number>& tangential, const Vector<Number>& from,
                        const Vector<Number>& to) {
@@ -158,7 +160,7 @@ Vector<Number> carried(const Vector<Number>& tangential, const Vector<Number>& f
   return tangential - half * Number(2.0 * tangential.dot(to) / half.squaredNorm());
 }
 
-/// A vector of the tangent plane turned about its normal.
+/// Rotates a vector in the tangent plane about its normal.
 template <class Number>
 Vector<Number> spun(const Vector<Number>& tangential, const Vector<Number>& normal,
                     const Number& angle) {
@@ -167,7 +169,7 @@ Vector<Number> spun(const Vector<Number>& tangential, const Vector<Number>& norm
   return tangential * Number(cos(angle)) + normal.cross(tangential) * Number(sin(angle));
 }
 
-/// What friction has to do with since the start of a step, in the tangent plane of its end.
+/// Slide, rotations and friction of a step, in the tangent plane at its end.
 template <class Number>
 struct BallSlide {
   Vector<Number> slide;  ///< σ [m].
@@ -204,7 +206,7 @@ BallSlide<Number> ball_slide(const BallState<Number>& now, const BallMemory& sta
   return found;
 }
 
-/// Bend of the contact if it stuck, as the force that makes it times a compliance.
+/// Deflection that the contact would have if it stuck: the elastic force times the compliance.
 template <class Number>
 struct BallBend {
   BallSlide<Number> moved;
@@ -239,11 +241,11 @@ BallBend<Number> ball_bend(const BallJoint& joint, const BallState<Number>& now,
 
 /// Direction of friction at the end of a step in which the contact slips; `pull` is not zero.
 ///
-/// Friction t turns into a straight slide s by dϑ/ds = −(k_t/|t|) sin ϑ, ϑ the angle between both:
-/// a tractrix, tan(ϑ/2) falls as E = exp(−∫ k_t ds/|t|). With the directions t and s, c = t·s and
-/// q = (1 − c)/(1 + c) = tan²(ϑ/2) of the start, t ends up along (1 − E)(1 + q E) s + E (1 + q) t.
-/// A slip that begins within the step, or that turns far back, is projected onto the cone.
-/// @param slipped whether it slipped at the start of the step
+/// Friction t rotates towards a straight slide s by dϑ/ds = −(k_t/|t|) sin ϑ, with the angle ϑ
+/// between both. This is a tractrix: tan(ϑ/2) falls as E = exp(−∫ k_t ds/|t|). With the directions
+/// t and s, c = t·s and q = (1 − c)/(1 + c) = tan²(ϑ/2) at the start, t ends along (1 − E)(1 + q E)
+/// s + E (1 + q) t. If slip begins within the step, or nearly reverses, t is projected onto the
+/// cone. @param slipped whether it slipped at the start of the step
 template <class Number>
 Vector<Number> slip_direction(const BallJoint& joint, const BallState<Number>& now,
                               const BallMemory& start, const BallBend<Number>& bend, bool slipped) {
@@ -259,7 +261,7 @@ Vector<Number> slip_direction(const BallJoint& joint, const BallState<Number>& n
   const Vector<Number> before = bend.moved.kept / Number(kept);
   const Vector<Number> along = bend.moved.slide / slid;
   const Number cosine = before.dot(along);
-  // On short ways both are the same to rounding.
+  // For short slides, tractrix and projection agree to rounding.
   if (!(value_of(turns) > 1e-7) || !(value_of(cosine) > -0.5)) return projected;
   const double left = std::exp(-value_of(turns));
   const Number stays = chain(turns, {left, -left});

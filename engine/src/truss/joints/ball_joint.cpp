@@ -28,8 +28,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Cosine of the largest angle by which a contact may move around its socket in one step, 0.5 rad;
-/// more within a located instant is a jump.
+/// Cosine of the largest angle by which a contact may move around its socket in one step, 0.5 rad.
+/// A larger angle within a located instant is a jump.
 constexpr double most_turned = 0.8775825618903728;
 
 constexpr int first_force = 3 * most_joint_nodes;
@@ -47,7 +47,7 @@ BallState<double> state_of(const BallJoint& joint, const Trial& trial) {
       [&](std::size_t from, std::size_t to) { return trial.between(from, to); });
 }
 
-/// The same with the derivatives by everything that is unknown.
+/// The same with the derivatives by all unknowns.
 BallState<Dual> dual_state_of(const BallJoint& joint, const Trial& trial) {
   Vector<Dual> force = Vector<Dual>::Zero();
   for (int k = 0; k < 3; ++k) {
@@ -76,7 +76,7 @@ Vector<Number> across(const Vector<Number>& owed, const BallState<Number>& now) 
   return owed - now.normal * Number(now.normal.dot(owed));
 }
 
-/// The bend of a joint that sticks, with what its slide lacks.
+/// The elastic deflection of a sticking joint, with the accumulated error of its slide.
 template <class Number>
 BallBend<Number> bend_of(const BallJoint& joint, const Trial& trial, const BallState<Number>& now) {
   BallBend<Number> bend = ball_bend(joint, now, BallMemory::of(trial.history));
@@ -84,7 +84,7 @@ BallBend<Number> bend_of(const BallJoint& joint, const Trial& trial, const BallS
   return bend;
 }
 
-/// Forces that the nodes have to carry, and what is to vanish.
+/// Forces on the nodes, and the residual.
 struct Response {
   std::array<Vector<Dual>, most_joint_nodes> force;
   Vector<Dual> row;  ///< Along the frame's axes.
@@ -104,7 +104,7 @@ kernel::PartialSlipMemory slip_memory(const double* history) {
   return detail::read_partial_slip(history + BallMemory::size, 2);
 }
 
-/// The step of the law with partial slip. @param memory at its start; that at its end
+/// One step of the law with partial slip. @param memory at its start; out: at its end
 kernel::PartialSlipResponse rub(const BallJoint& joint, const Trial& trial, bool open,
                                 kernel::PartialSlipMemory& memory) {
   const BallState<double> now = state_of(joint, trial);
@@ -115,8 +115,9 @@ kernel::PartialSlipResponse rub(const BallJoint& joint, const Trial& trial, bool
                                    {by.along_first, by.along_second}, memory);
 }
 
-/// How far bodies slide beyond what bends if they stuck, or how far friction is off its bound times
-/// the compliance: a vector in the tangent plane, zero on a joint that is on its branch [m].
+/// Residual of the tangential law, zero if the joint satisfies its status [m]. For stick: slide
+/// less elastic deflection. For slip: excess of friction over its limit, times the compliance. A
+/// vector in the tangent plane.
 Vector<Dual> tangential_row(const BallJoint& joint, const Trial& trial, const BallState<Dual>& now,
                             JointStatus status) {
   const BallMemory start = BallMemory::of(trial.history);
@@ -125,10 +126,11 @@ Vector<Dual> tangential_row(const BallJoint& joint, const Trial& trial, const Ba
   if (trial.model != JointModel::friction || joint.friction_coefficient == 0.0) return -carries;
   if (!is_slip(status) || bend.pull.squaredNorm().value() == 0.0) return bend.pull - carries;
   const Dual bound = joint.friction_coefficient * now.normal_force * bend.compliance;
-  // So deep inside the cone it sticks. Where rounding hides that, a pull of nearly nothing has no
-  // direction, and friction along it would turn about at every iteration.
+  // A pull so deep inside the cone sticks. Where rounding hides this, a tiny pull has no definite
+  // direction, and friction along it would reverse in every iteration.
   if (bend.pull.squaredNorm() < 0.25 * bound * bound) return bend.pull * Dual(2.0) - carries;
-  // What dashpots hold turns little in a step, and the direction has to be a smooth function of it.
+  // If dashpots hold the contact, its direction rotates little in a step and must be a smooth
+  // function of it.
   const bool turns = is_slip(trial.before) && !trial.damps_contact;
   return detail::slip_direction(joint, now, start, bend, turns) * bound - carries;
 }
@@ -141,7 +143,8 @@ Response respond(const BallJoint& joint, const Trial& trial, JointStatus status)
   made.force[socket] = -now.force;
   const bool open = status == JointStatus::open;
   if (open || trial.model == JointModel::pins) {
-    // An open joint has no force; the ball may be in the middle, where no normal is defined.
+    // An open joint has no force. The ball may be exactly in the middle, where no normal is
+    // defined.
     for (int k = 0; k < 3; ++k) {
       const Vector<Dual> along = Vector3d(trial.frame.axes.col(k)).cast<Dual>();
       made.is_balance[index(k)] = open || !trial.frame.holds[index(k)];
@@ -160,11 +163,12 @@ Response respond(const BallJoint& joint, const Trial& trial, JointStatus status)
   }
   const Dual depth =
       detail::chain(now.normal_force, contact_of(joint).depth(now.normal_force.value()));
-  // Surfaces give way as much as the clearance is open: from pins to contacts in small steps.
+  // The contact yields in proportion to the opening of the clearance: from pins to contacts in
+  // small steps.
   const Dual gap = now.distance - now.clearance - trial.opening * depth;
   Vector<Dual> row = now.normal * gap;
   if (joint.partial_slip && trial.model == JointModel::friction) {
-    // In metres: the slide of a spring with the stiffness of a contact that sticks.
+    // In metres: the deflection of a spring with the stiffness of a sticking contact.
     const Dual compliance = detail::chain(
         now.normal_force, contact_of(joint).tangential_compliance(now.normal_force.value()));
     const detail::BallRubbed law = detail::ball_rubbed(joint, now, BallMemory::of(trial.history),
@@ -180,7 +184,8 @@ Response respond(const BallJoint& joint, const Trial& trial, JointStatus status)
   return made;
 }
 
-/// The slip since the start of the step, if what is there now stuck: its rate is that of the slip.
+/// The slip since the start of the step, if the present contact stuck. Its rate is the rate of
+/// slip.
 Dual slipped(const BallJoint& joint, const Trial& trial) {
   const BallState<Dual> now = dual_state_of(joint, trial);
   const BallBend<Dual> bend = bend_of(joint, trial, now);
@@ -208,7 +213,7 @@ void BallJoint::evaluate(const Trial& trial, JointStatus status, JointWriter& wr
   const Response made = respond(*this, trial, status);
   if (partial_slip) writer.piece(made.piece);
   for (int k = 0; k < 3; ++k) writer.carries(trial.force[index(k)]);
-  // A contact that carries nothing holds nothing across its normal.
+  // A contact without force does not constrain its tangential directions.
   const bool is_open = status == JointStatus::open;
   double slack = 0.0;
   Vector3d slack_by_normal = Vector3d::Zero(), normal = Vector3d::Zero();
@@ -284,7 +289,7 @@ JointStatus BallJoint::decide(const Trial& trial, JointStatus status) const {
     if (now.distance <= now.clearance + trial.length_rounding) return status;
     return mu > 0.0 ? JointStatus::stick : JointStatus::slip_plus;
   }
-  // What moves a slack element by a thousandth of its play in a step is not told from no force, see
+  // A force that moves a slack element by a thousandth of its play in a step counts as zero, see
   // System::slack_stiffness().
   const double slack = 1e-3 * trial.slack_stiffness * radial_clearance;
   if (now.normal_force < -trial.force_rounding - slack) return JointStatus::open;
@@ -335,7 +340,7 @@ void BallJoint::commit(const Trial& trial, JointStatus status, double* after) co
   const Vector3d carried = detail::ball_slide(now, BallMemory::of(trial.history)).axis;
   if (carried.isZero(0.0)) return;
   BallMemory end = BallMemory::of(after);
-  // Rounding of many steps must not lead it out of the plane.
+  // Over many steps, rounding must not move it out of the plane.
   end.axis = (carried - now.normal * now.normal.dot(carried)).normalized();
   end.to(after);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a ball joint is described by, and where it sits in the truss.
+// Parameters of a ball joint, and its position in the truss.
 #include <Eigen/Eigenvalues>
 
 #include "statejump/kernel/require.hpp"
@@ -87,8 +87,8 @@ JointFrame BallJoint::frame(const Model& model) const {
   frame.forces = 3;
   frame.program = program;
   frame.temperature_fraction = temperature_fraction;
-  // Where supports leave no motion along some direction, it is one of the axes: pins have no row
-  // along it.
+  // If supports prevent motion along some direction, this direction becomes one of the axes, and
+  // pins have no row along it.
   Matrix3d free = Matrix3d::Zero();
   for (const int node : {ball_node, socket_node}) {
     const Node& part = model.nodes[index(node)];

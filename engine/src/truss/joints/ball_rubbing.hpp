@@ -6,9 +6,8 @@
 
 namespace statejump::truss::detail {
 
-// Friction of a ball that slides at the rim of its contact first. Its memory is written along a
-// direction of the tangent plane, which is carried with the contact, and the one that is left of it
-// as seen along the normal.
+// Friction of a ball with partial slip. The memory has two components: along a direction of the
+// tangent plane that rotates with the contact, and to the left of it as seen along the normal.
 
 /// Slide of a step [m] along both directions of the memory.
 template <class Number>
@@ -30,7 +29,7 @@ BallRub<Number> ball_rub(const BallState<Number>& now, const BallMemory& start) 
   return rub;
 }
 
-/// A unit vector in the tangent plane; zero where no normal is defined.
+/// Any unit vector in the tangent plane; zero if no normal is defined.
 inline Eigen::Vector3d any_across(const Eigen::Vector3d& normal) {
   return normal.isZero(0.0) ? normal : normal.unitOrthogonal();
 }

@@ -12,16 +12,16 @@ struct ByNormal {
   double slope;
 };
 
-/// Contact that Hertz and Mindlin make of two round parts: F_N = K δ^1.5 and k_t = 8 G* √(R δ).
-/// Infinite stiffnesses are those of a rigid contact.
+/// Contact of two round parts after Hertz and Mindlin: F_N = K δ^1.5 and k_t = 8 G* √(R δ).
+/// Infinite stiffnesses mean a rigid contact.
 struct HertzContact {
   double hertz_stiffness;    ///< K [N/m^1.5]
   double mindlin_stiffness;  ///< 8 G* √R [N/m^1.5]
   double radial_clearance;   ///< [m]
 
-  /// Normal force at which the depth is a millionth of the clearance [N]. Below it the depth is
-  /// linear: a contact that just closes would else have an infinite compliance, from which Newton's
-  /// method does not find away.
+  /// Normal force at which the depth is a millionth of the clearance [N]. Below it the law is
+  /// linear. A contact that just closes would otherwise have an infinite compliance, from which
+  /// Newton's method does not converge.
   double least_force() const { return hertz_stiffness * std::pow(1e-6 * radial_clearance, 1.5); }
 
   /// Depth under a normal force [m].
@@ -39,7 +39,7 @@ struct HertzContact {
     const double least = least_force();
     const double loaded = std::max(normal_force, least);
     const double compliance = 1.0 / (mindlin_stiffness * std::sqrt(depth(loaded).value));
-    // k_t grows as the cube root of the force.
+    // k_t is proportional to the cube root of the force.
     return {compliance, normal_force > least ? -compliance / (3.0 * normal_force) : 0.0};
   }
 
@@ -52,10 +52,10 @@ struct HertzContact {
   }
 };
 
-/// Heat of micro-slip at the rim of a contact that sticks [J]: work of friction less the energy
-/// that stays in the bend. Loading, where the force F at compliance C goes to F' at C' along
-/// ΔF (C + C')/2: (F² + F'²) (C − C')/4; unloading, along F' C' − F C: F·F' (C' − C)/2.
-/// @param before_squared, product, squared F², F·F', F'² [N²]
+/// Heat of micro-slip at the rim of a sticking contact [J]: work of friction less the stored
+/// energy. The force goes from F at compliance C to F' at C'. Loading, along ΔF (C + C')/2: (F² +
+/// F'²) (C − C')/4. Unloading, along F' C' − F C: F·F' (C' − C)/2. @param before_squared, product,
+/// squared F², F·F', F'² [N²]
 inline double rim_slip(double before_squared, double compliance_before, double product,
                        double squared, double compliance) {
   if (compliance_before == 0.0) return 0.0;

@@ -17,7 +17,7 @@ double slide_of(const IwanJoint& joint, const Trial& trial) {
 }
 
 /// Calls use(stiffness, reach, from, to) for the sliders of every interval, then for the last ones,
-/// of which from = to = reach.
+/// which have from = to = reach.
 template <class Use>
 void for_each_element(const IwanJoint& joint, Use&& use) {
   const double last = joint.last_reach();
@@ -26,7 +26,7 @@ void for_each_element(const IwanJoint& joint, Use&& use) {
   const double whole = joint.spacing > 1.0 ? std::pow(joint.spacing, joint.elements) - 1.0
                                            : static_cast<double>(joint.elements);
   double length = (joint.spacing > 1.0 ? joint.spacing - 1.0 : 1.0) / whole;
-  // Shares of φm, of the stiffness ∫ρ and of the force ∫φ ρ up to there.
+  // Fractions of φm, of the stiffness ∫ρ and of the force ∫φ ρ up to there.
   double from = 0.0;
   double stiffness_before = 0.0;
   double force_before = 0.0;
@@ -44,7 +44,7 @@ void for_each_element(const IwanJoint& joint, Use&& use) {
   use(spread * joint.stiffness_ratio, last, last, last);
 }
 
-/// What elements do at a slide, from where their sliders were.
+/// Forces of the elements at a slide, from the earlier positions of their sliders.
 struct Response {
   double force = 0.0;
   double tangent = 0.0;
@@ -53,8 +53,8 @@ struct Response {
   double beyond_minus = -std::numeric_limits<double>::infinity();  ///< Largest p − s − φ [m].
 };
 
-/// @param before place of every slider
-/// @param after takes the places at s, if it is there
+/// @param before position of every slider
+/// @param after receives the positions at s, if not null
 Response respond(const IwanJoint& joint, double s, const double* before, double* after) {
   Response found;
   int i = 0;
@@ -91,8 +91,8 @@ std::vector<IwanJoint::Jenkins> IwanJoint::jenkins() const {
 }
 
 double IwanJoint::slack() const {
-  // The polygon touches the curve at both ends of an interval and is farthest from it at its
-  // corner, φ_i: there the sliders that already slip miss ∫ (φ_i − φ) ρ from the interval's start.
+  // The polygon touches the curve at both ends of an interval. Its error is largest at its corner,
+  // φ_i: the sliders that already slip there lack ∫ (φ_i − φ) ρ from the start of the interval.
   const double last = last_reach();
   const double spread = tangent_stiffness / (1.0 + stiffness_ratio);
   const auto upto = [&](double share) { return std::pow(share, exponent + 1.0); };
@@ -127,7 +127,7 @@ std::span<const Parameter<IwanJoint>> IwanJoint::parameters() {
 }
 
 std::span<const Output> IwanJoint::outputs() {
-  // Slide from the drawn shape; force on the first node, against the axis.
+  // Slide from the reference configuration; force on the first node, against the axis.
   static const Output table[] = {{"iwan_slide_m", 1}, {"iwan_force_N", 1}};
   return table;
 }
@@ -141,7 +141,7 @@ void IwanJoint::validate(const Model&) const {
     throw kernel::OutOfRange(item, "exponent", exponent, "above -1, at most 0");
   }
   if (!(spacing >= 1.0)) throw kernel::OutOfRange(item, "spacing", spacing, ">= 1");
-  // The first interval must not be rounding beside the last one.
+  // The first interval must not be below the rounding of the last one.
   const double longest = std::pow(spacing, elements - 1);
   if (!(longest < 1e12)) {
     throw kernel::OutOfRange(item, "spacing to the power of elements - 1", longest, "below 1e12");
@@ -164,7 +164,7 @@ void IwanJoint::evaluate(const Trial& trial, JointStatus status, JointWriter& wr
     });
     now.tangent = tangent_stiffness;
   }
-  // In metres: the slide of a spring with the stiffness of the stuck joint.
+  // In metres: the deflection of a spring with the stiffness of the stuck joint.
   writer.piece(now.slipping);
   writer.closure(0, (now.force - trial.force[0]) / tangent_stiffness);
   writer.corner(0, 0, -1.0 / tangent_stiffness);
@@ -184,7 +184,7 @@ JointStatus IwanJoint::decide(const Trial& trial, JointStatus status) const {
 }
 
 void IwanJoint::begin(const Trial& trial, JointStatus, double* now) const {
-  // The start was found from the drawn shape, where nothing had slipped.
+  // The start was found from the reference configuration, where nothing had slipped.
   const std::vector<double> drawn(static_cast<std::size_t>(history()), 0.0);
   respond(*this, slide_of(*this, trial), drawn.data(), now);
 }

@@ -26,7 +26,7 @@ Matrix32 plane_of(const Trial& trial) {
   return trial.frame.axes.leftCols<2>();
 }
 
-/// One of the links that a hinge joins: local nodes of its ends, and the sign of its turn in φ.
+/// One of the links of a hinge: local nodes of its ends, and the sign of its rotation in φ.
 struct Arm {
   std::size_t from;
   std::size_t to;
@@ -35,7 +35,7 @@ struct Arm {
 
 /// The first link, and the second one if there is one.
 std::array<Arm, 2> arms_of(const LatchHinge& hinge) {
-  // Against the ground the first link's own turn counts.
+  // Against the ground, the rotation of the first link itself counts.
   return {Arm{0, 1, hinge.second_link < 0 ? 1.0 : -1.0}, Arm{2, 3, 1.0}};
 }
 
@@ -56,12 +56,12 @@ double rotation_of(const LatchHinge& hinge, const Trial& trial) {
   return rotation;
 }
 
-/// Radius on which a moment is a force [m].
+/// Radius that converts a moment to a force [m].
 double radius_of(const Trial& trial) {
   return (trial.drawn[1] - trial.drawn[0]).norm();
 }
 
-/// How much of the rotation friction takes while it sticks [rad].
+/// Part of the rotation that friction takes elastically while it sticks [rad].
 double bend(const LatchHinge& hinge, const Trial& trial) {
   return radius_of(trial) * trial.force[0] / hinge.friction_stiffness;
 }
@@ -99,7 +99,7 @@ std::span<const Parameter<LatchHinge>> LatchHinge::parameters() {
 }
 
 std::span<const Output> LatchHinge::outputs() {
-  // Rotation from the drawn shape; moment against it: preload, stiffness and friction.
+  // Rotation from the reference configuration; moment against it: preload, stiffness and friction.
   static const Output table[] = {{"hinge_rotation_rad", 1}, {"hinge_moment_N_m", 1}};
   return table;
 }
@@ -235,7 +235,7 @@ void LatchHinge::describe(const Trial& trial, double* outputs) const {
 }
 
 double LatchHinge::slide_rounding(const Trial& trial, double length, double force) const {
-  // Displacements of the ends of a shorter link turn it further.
+  // The same displacements of its ends rotate a shorter link by a larger angle.
   double turned = length;
   if (second_link >= 0) {
     turned *= std::max(1.0, radius_of(trial) / (trial.drawn[3] - trial.drawn[2]).norm());

@@ -7,9 +7,9 @@
 
 namespace statejump::truss::detail {
 
-/// Frame of a joint whose first node moves along a fixed axis, its first force; where there is a
-/// second node, further forces hold both together across the axis.
-/// @param second −1: ground
+/// Frame of a joint whose first node moves along a fixed axis. Its first force acts along the axis.
+/// If there is a second node, further forces constrain both nodes across the axis. @param second
+/// −1: ground
 inline JointFrame prismatic_frame(const Model& model, int first, int second, const Vector3d& axis) {
   JointFrame frame;
   frame.nodes = {first, second, -1, -1};
@@ -26,7 +26,7 @@ inline JointFrame prismatic_frame(const Model& model, int first, int second, con
   return frame;
 }
 
-/// Force along the axis on both nodes, the first of the joint's unknowns.
+/// Applies the first unknown of the joint as force along the axis on both nodes.
 inline void push_along(const Trial& trial, const Vector3d& axis, JointWriter& writer) {
   const double force = trial.force[0];
   writer.carries(force);
@@ -36,7 +36,7 @@ inline void push_along(const Trial& trial, const Vector3d& axis, JointWriter& wr
   writer.column(1, 0, -axis);
 }
 
-/// Rows of the forces that hold the nodes together.
+/// Writes the rows of the forces that constrain the nodes across the axis.
 inline void hold_across(const Trial& trial, JointWriter& writer) {
   int held = 1;
   for (int i = 1; i < 3; ++i) {

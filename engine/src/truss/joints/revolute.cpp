@@ -28,18 +28,18 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Largest angle [rad] by which a contact may move around its bearing in one step; more within a
-/// located instant is a jump.
+/// Largest angle [rad] by which a contact may move around its bearing in one step. A larger angle
+/// within a located instant is a jump.
 constexpr double most_turned = 0.5;
 
-// Local nodes: journal, bearing, far ends of the links that turn them.
+// Local nodes: journal, bearing, far ends of the links that rotate them.
 constexpr std::size_t journal = 0;
 constexpr std::size_t bearing = 1;
 constexpr std::size_t journal_far = 2;
 constexpr std::size_t bearing_far = 3;
 
-/// What a revolute remembers; with partial slip the contact's memory follows. In-plane vectors are
-/// components along its two plane directions.
+/// Memory of a revolute; with partial slip the memory of the contact follows it. In-plane vectors
+/// are components along its two plane directions.
 struct Memory {
   Vector2d eccentricity;       ///< [m]
   Vector2d journal_direction;  ///< Journal link, journal minus far node; zero without [m].
@@ -85,7 +85,7 @@ HertzContact contact_of(const ClearanceRevolute& joint) {
   return {joint.hertz_stiffness, joint.mindlin_stiffness, joint.radial_clearance};
 }
 
-/// 1/k_t of a contact that sticks [m/N]; 0: rigid.
+/// 1/k_t of a sticking contact [m/N]; 0: rigid.
 double tangential_compliance(const ClearanceRevolute& joint, double normal_force) {
   return contact_of(joint).tangential_compliance(normal_force).value;
 }
@@ -127,7 +127,7 @@ Geometry geometry_of(const ClearanceRevolute& joint, const Trial& trial) {
   return g;
 }
 
-/// How the surfaces slid and turned since the start of the step.
+/// Slide and rotation of the surfaces since the start of the step.
 struct Motion {
   double contact_turned = 0.0;  ///< Δφ [rad].
   double journal_turned = 0.0;  ///< [rad]
@@ -158,7 +158,7 @@ struct ElasticSlide {
   double by_friction;  ///< By friction [m/N].
 };
 
-/// Mindlin's contact: what loads it meanwhile keeps the force, what unloads it keeps the bend.
+/// Mindlin's contact: added normal load keeps the force, removed normal load keeps the deflection.
 ElasticSlide elastic_slide(const ClearanceRevolute& joint, const Trial& trial,
                            const Memory& start) {
   if (std::isinf(joint.mindlin_stiffness)) return {0.0, 0.0, 0.0};
@@ -175,7 +175,7 @@ ElasticSlide elastic_slide(const ClearanceRevolute& joint, const Trial& trial,
   return {mean * more, 0.5 * slope * more, mean};
 }
 
-/// Friction's law with partial slip after a slide, and its derivative by the normal force.
+/// Friction force with partial slip after a slide, and its derivative by the normal force.
 struct Rubbing {
   kernel::PartialSlipLine line;
   double by_normal;
@@ -192,7 +192,7 @@ Rubbing rubbing(const ClearanceRevolute& joint, const Trial& trial, double slide
   return {line, line.by_limit * mu + line.by_stiffness * stiffens};
 }
 
-/// The step of that law. @param memory at its start; that at its end
+/// One step of that law. @param memory at its start; out: at its end
 kernel::PartialSlipResponse rub(const ClearanceRevolute& joint, const Trial& trial, bool open,
                                 kernel::PartialSlipMemory& memory) {
   const double slide = motion_of(geometry_of(joint, trial), Memory::of(trial.history)).slide;
@@ -202,8 +202,8 @@ kernel::PartialSlipResponse rub(const ClearanceRevolute& joint, const Trial& tri
                                    memory);
 }
 
-/// Gradients of the two forces' work, of the slide, and what bends them, along the two directions
-/// of the joint's plane.
+/// Gradients of the work of both forces, of the slide and of the elastic deflection, along the two
+/// directions of the joint's plane.
 struct Gradients {
   std::array<Vector2d, 4> normal;
   std::array<Vector2d, 4> friction;  ///< Virtual work of friction.
@@ -234,8 +234,8 @@ void pinned(Gradients& of) {
   }
 }
 
-/// Holds journal and bearing together where nothing else does, see System::slack_stiffness().
-/// @param stiffness against motion since the start of the step [N/m]
+/// Damps the relative motion of journal and bearing where nothing else constrains it, see
+/// System::slack_stiffness(). @param stiffness against motion since the start of the step [N/m]
 /// @returns the force on the journal [N]
 Vector2d hold_slack(const Trial& trial, double stiffness, const Vector2d& eccentricity,
                     Gradients& of) {
@@ -248,19 +248,19 @@ Vector2d hold_slack(const Trial& trial, double stiffness, const Vector2d& eccent
   return stiffness * (eccentricity - Memory::of(trial.history).eccentricity);
 }
 
-/// @param motion that of the step if the slide's derivative is asked, else nothing
-/// @param bends whether the second derivatives are asked
+/// @param motion that of the step if the derivative of the slide is needed, else null
+/// @param bends whether second derivatives are needed
 void in_contact(const ClearanceRevolute& joint, const Trial& trial, const Geometry& g,
                 const Memory& start, const Motion& motion, bool bends, Gradients& of) {
   const double distance = g.eccentricity.norm();
   const Vector2d along = g.eccentricity / distance;
   const Vector2d left = turned_left(along);
-  // Names, not a structured binding: a lambda below takes one of them.
+  // Named references instead of a structured binding, because a lambda captures one of them.
   const double normal = trial.force[0];
   const double friction = trial.force[1];
   const double lever = 0.5 * (start.eccentricity.norm() / distance + 1.0);
   const double deeper = g.depth > 0.0 ? 0.5 : 0.0;  // −dr1/d|d| = dr2/d|d|
-  // By the distance of the centres, the radii change as well.
+  // The radii change with the distance of the centres as well.
   const double slide_by_distance =
       0.5 * motion.contact_turned - 0.5 * deeper * (motion.journal_turned + motion.bearing_turned);
   for (const auto& [at, sign] : {std::pair{journal, 1.0}, std::pair{bearing, -1.0}}) {
@@ -275,7 +275,7 @@ void in_contact(const ClearanceRevolute& joint, const Trial& trial, const Geomet
     of.bend(journal, bearing, -bend);
     of.bend(bearing, journal, -bend);
   }
-  // A link that turns: its surface slides by the radius times its angle.
+  // For a link that rotates, the surface slides by radius times angle.
   const auto turn = [&](std::size_t at, std::size_t far, const Vector2d& direction, double radius,
                         double mean_radius) {
     const PlanarAngle angle = planar_angle(direction);
@@ -407,7 +407,7 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
   Gradients of;
   Vector2d slack = Vector2d::Zero(), slack_by_normal = Vector2d::Zero();
   if (status == JointStatus::open) {
-    // Without contact forces; the journal may be in the middle, where no normal is defined.
+    // No contact forces. The journal may be exactly in the middle, where no normal is defined.
     slack = hold_slack(trial, trial.slack_stiffness, g.eccentricity, of);
     writer.balance(0, normal);
     writer.balance(1, friction);
@@ -420,19 +420,20 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
     slides = 1.0;
   } else {
     const Memory start = Memory::of(trial.history);
-    // One that slips freely or at the bound of friction is not asked how far.
+    // The slide is not needed for a joint that slips without friction or at its limit.
     const bool measures =
         trial.model == JointModel::friction && (partial_slip || status == JointStatus::stick);
     const Motion motion = measures ? motion_of(g, start) : Motion{};
     in_contact(*this, trial, g, start, motion, bends, of);
     holds_normal = true;
     const ByNormal depth = contact_of(*this).depth(normal);
-    // Surfaces give way as much as the clearance is open: from pins to contacts in small steps.
+    // The contact yields in proportion to the opening of the clearance: from pins to contacts in
+    // small steps.
     writer.closure(0, g.eccentricity.norm() - g.clearance - trial.opening * depth.value);
     corner[0][0] = -trial.opening * depth.slope;
     const double mu = trial.model == JointModel::friction ? friction_coefficient : 0.0;
     if (partial_slip && trial.model == JointModel::friction) {
-      // In metres: the slide of a spring with the stiffness of a contact that sticks.
+      // In metres: the deflection of a spring with the stiffness of a sticking contact.
       const Rubbing law = rubbing(*this, trial, motion.slide);
       const auto [compliance, softens] = contact_of(*this).tangential_compliance(normal);
       slides = trial.unslipped ? 1.0 : compliance * law.line.by_slide;
@@ -454,7 +455,7 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
       corner[1][0] = -sense * mu;
       corner[1][1] = 1.0;
     }
-    // A contact that carries nothing holds nothing across its normal.
+    // A contact without force does not constrain its tangential directions.
     const double holds = trial.slack_held(normal, g.clearance);
     slack = hold_slack(trial, holds, g.eccentricity, of);
     if (holds > 0.0 && holds < trial.slack_stiffness) {
@@ -527,7 +528,7 @@ void ClearanceRevolute::warm(const Trial& trial, JointStatus status, double temp
 
 namespace {
 
-/// The slide of a step less what friction bends, with what is owed [m].
+/// The slide of a step less the elastic deflection, with the accumulated error [m].
 double lag_at(const ClearanceRevolute& joint, const Trial& trial, const Geometry& g) {
   const Memory start = Memory::of(trial.history);
   return motion_of(g, start).slide - elastic_slide(joint, trial, start).slide + trial.owed.x();
@@ -549,7 +550,7 @@ JointStatus ClearanceRevolute::decide(const Trial& trial, JointStatus status) co
     if (g.eccentricity.norm() <= g.clearance + trial.length_rounding) return status;
     return mu > 0.0 ? JointStatus::stick : JointStatus::slip_plus;
   }
-  // What moves a slack element by a thousandth of its play in a step is not told from no force, see
+  // A force that moves a slack element by a thousandth of its play in a step counts as zero, see
   // System::slack_stiffness().
   const double slack = 1e-3 * trial.slack_stiffness * radial_clearance;
   if (normal < -trial.force_rounding - slack) return JointStatus::open;
@@ -650,7 +651,7 @@ JointStatus ClearanceRevolute::settled(const Trial& trial, JointStatus status) c
 
 std::optional<LocalContact> ClearanceRevolute::contact(const Trial& trial, JointStatus) const {
   if (partial_slip) return {};  // its friction is no cone: as a contact it is held
-  // In the middle of its play no direction is normal.
+  // For concentric parts no normal is defined.
   if (trial.between(bearing, journal).isZero(0.0)) return {};
   return LocalContact{1, 0, friction_coefficient, 0.0};
 }

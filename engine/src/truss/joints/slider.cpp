@@ -14,7 +14,7 @@ namespace statejump::truss {
 
 namespace {
 
-/// One of the two ways in which a slider may go.
+/// One of the two directions of a slider.
 struct Sense {
   double sign;
   JointStatus slip;
@@ -42,20 +42,20 @@ kernel::PartialSlipMemory memory_of(const double* history) {
   return detail::read_partial_slip(history + 1);
 }
 
-/// Friction's law with partial slip, where the slide is s.
+/// Friction force with partial slip at the slide s.
 kernel::PartialSlipLine rubbing(const Slider& slider, const double* history, double s) {
   return kernel::partial_slip_line(slider.tangential_stiffness, slider.friction_force,
                                    s - history[0], memory_of(history));
 }
 
-/// The step to where the slide is s. @param memory at its start; that at its end
+/// The step of that law to the slide s. @param memory at its start; out: at its end
 kernel::PartialSlipResponse rub(const Slider& slider, const double* history, double s,
                                 kernel::PartialSlipMemory& memory) {
   return kernel::partial_slip_step(slider.tangential_stiffness, slider.friction_force,
                                    {s - history[0], 0.0}, memory);
 }
 
-/// Friction where the slide is s [N]; only if the contact is not rigid.
+/// Friction at the slide s [N]; only for a contact that is not rigid.
 double friction_at(const Slider& slider, const double* history, double s) {
   if (slider.partial_slip) return rubbing(slider, history, s).force;
   const double f = slider.friction_limit();
@@ -68,12 +68,12 @@ double beyond_stops(const Slider& slider, double s) {
   return s - std::clamp(s, -slider.clearance_minus, slider.clearance_plus);
 }
 
-/// Bend of the contact that its play takes [m].
+/// Part of the contact's deflection that its play takes [m].
 double played(const Slider& slider, double bend) {
   return std::clamp(bend, -0.5 * slider.play, 0.5 * slider.play);
 }
 
-/// Soft stops and play: what pushes beside the unknown, against the axis.
+/// Forces of soft stops and play, beside the unknown and against the axis.
 struct Springs {
   double force = 0.0;      ///< [N]
   double stiffness = 0.0;  ///< [N/m]
@@ -114,14 +114,15 @@ void push_springs(const Slider& slider, const Trial& trial, JointWriter& writer)
   writer.block(1, 0, -block);
 }
 
-/// Slide of a state [m]: at a stop the clearance itself, rounding must not add up.
+/// Slide of a state [m]. At a stop it is the clearance itself, so that rounding does not
+/// accumulate.
 double slide_of(const Slider& slider, const Trial& trial, JointStatus status) {
   return status == JointStatus::stop_plus    ? slider.clearance_plus
          : status == JointStatus::stop_minus ? -slider.clearance_minus
                                              : slide_of(slider, trial);
 }
 
-/// What of the slide has slipped [m]; not with partial slip. @param before at the start of the step
+/// Slipped part of the slide [m]; not with partial slip. @param before at the start of the step
 double slipped(const Slider& slider, const Trial& trial, JointStatus status, const double* before) {
   const double s = slide_of(slider, trial, status);
   if (status != JointStatus::stop_plus && status != JointStatus::stop_minus) {
@@ -131,7 +132,7 @@ double slipped(const Slider& slider, const Trial& trial, JointStatus status, con
   return s - friction_at(slider, before, s) / slider.tangential_stiffness;
 }
 
-/// Branch in which a slider that slips one way should be.
+/// Status that the inequalities require of a slider that slips in one direction.
 JointStatus after_slip(const Slider& slider, const Trial& trial, const Sense& way) {
   const double s = slide_of(slider, trial);
   if (way.sign * s > way.clearance(slider) + trial.length_rounding) return way.stop;
@@ -147,7 +148,7 @@ JointStatus after_slip(const Slider& slider, const Trial& trial, const Sense& wa
   return trial.before == way.other_stop && !elastic ? trial.before : JointStatus::stick;
 }
 
-/// Branch in which a slider that rests at a stop should be.
+/// Status that the inequalities require of a slider at a stop.
 JointStatus after_stop(const Slider& slider, const Trial& trial, const Sense& way) {
   const double f = slider.friction_force;
   const double pushed = way.sign * trial.force[0];
@@ -156,18 +157,19 @@ JointStatus after_stop(const Slider& slider, const Trial& trial, const Sense& wa
     const bool leaves = pushed < way.sign * rubs - trial.force_rounding;
     return leaves ? JointStatus::stick : way.stop;
   }
-  // Rested there already: friction helps to stay. Arrived in this step: friction pushes back.
+  // If it rested there before, friction helps to keep it there. If it arrived in this step,
+  // friction pushes it back.
   if (trial.before == way.stop) {
     return pushed < -(f + trial.force_rounding) ? way.other_slip : way.stop;
   }
   return pushed < f - trial.force_rounding ? way.slip : way.stop;
 }
 
-/// Branch in which a slider that sticks should be.
+/// Status that the inequalities require of a sticking slider.
 JointStatus after_stick(const Slider& slider, const Trial& trial, JointStatus status) {
   const bool elastic = std::isfinite(slider.tangential_stiffness);
   for (const Sense& way : {plus, minus}) {
-    // It may get to a stop while it bends.
+    // It may reach a stop by its elastic deflection.
     const double s = way.sign * slide_of(slider, trial);
     if (elastic && s > way.clearance(slider) + trial.length_rounding) return way.stop;
     if (slider.partial_slip) continue;  // one row for stick and slip
@@ -201,7 +203,8 @@ std::span<const Parameter<Slider>> Slider::parameters() {
 }
 
 std::span<const Output> Slider::outputs() {
-  // Slide from the drawn shape; friction and stop on the slider, against its axis.
+  // Slide from the reference configuration; friction and stop force on the slider, against its
+  // axis.
   static const Output table[] = {{"slide_m", 1}, {"slider_force_N", 1}};
   return table;
 }
@@ -242,7 +245,7 @@ void Slider::evaluate(const Trial& trial, JointStatus status, JointWriter& write
   detail::push_along(trial, axis, writer);
   if (has_springs()) push_springs(*this, trial, writer);
   if (partial_slip && status != JointStatus::stop_plus && status != JointStatus::stop_minus) {
-    // In metres: the slide of a spring with the stiffness of a contact that sticks.
+    // In metres: the deflection of a spring with the stiffness of a sticking contact.
     const kernel::PartialSlipLine law = rubbing(*this, trial.history, s);
     const double gives = trial.unslipped ? 1.0 : law.by_slide / tangential_stiffness;
     writer.piece(detail::piece_of(law));
@@ -297,7 +300,7 @@ JointStatus Slider::decide(const Trial& trial, JointStatus status) const {
 }
 
 void Slider::begin(const Trial& trial, JointStatus status, double* now) const {
-  // The start was found from the drawn shape, where nothing had slipped.
+  // The start was found from the reference configuration, where nothing had slipped.
   std::vector<double> drawn(detail::index(history()), 0.0);
   Trial from = trial;
   from.history = drawn.data();
@@ -332,7 +335,7 @@ double Slider::dissipation(const Trial& trial, const double* after, double slip)
     kernel::PartialSlipMemory memory = memory_of(trial.history);
     return rub(*this, trial.history, after[0], memory).dissipation;
   }
-  // Whenever it slides, friction is f; a stop takes no heat.
+  // Whenever it slides, friction is f; a stop dissipates nothing.
   return friction_force * std::abs(slip);
 }
 
@@ -371,7 +374,7 @@ void Slider::describe(const Trial& trial, double* outputs) const {
   outputs[0] = s;
   outputs[1] = trial.force[0];
   if (play > 0.0) {
-    // In the open play nothing, not the difference of two forces.
+    // In the open play the force is zero, and not the difference of two forces.
     const double bend = s - trial.history[0];
     const double inside = played(*this, bend);
     outputs[1] = inside == bend ? 0.0 : trial.force[0] - tangential_stiffness * inside;
@@ -400,7 +403,8 @@ JointStatus Slider::settled(const Trial& trial, JointStatus status) const {
 
 std::optional<LocalContact> Slider::contact(const Trial&, JointStatus status) const {
   if (partial_slip) return {};  // its friction is no cone: as a contact it is held
-  // Wall and friction share a force that is not told apart: at a stop it is held.
+  // Statics does not determine how wall and friction share a force. In contact problems a slider at
+  // a stop therefore keeps its status.
   if (status == JointStatus::stop_plus || status == JointStatus::stop_minus) return {};
   return LocalContact{0, -1, 1.0, friction_limit()};
 }

@@ -17,24 +17,25 @@
 
 namespace statejump::truss {
 
-/// What a row of the equations is measured in.
+/// Unit in which the residual of a row is measured.
 enum class RowUnit : unsigned char { balance, closure, force };
 
-/// Residual and Jacobian of all equations while they are added up. The k-th place that is written
-/// is the same at every evaluation: the first one records the places, later ones look nothing up.
-/// What is written is cut into strands, see AssemblyStrand; those that share no place may be
-/// written at the same time.
+/// Sums of residual and Jacobian of all equations. Every evaluation writes its entries in the same
+/// order. The first evaluation records their positions, so later ones look nothing up. The entries
+/// are divided into strands, see AssemblyStrand. Strands that share no position may be written at
+/// the same time.
 class Assembly {
  public:
   explicit Assembly(Eigen::Index unknowns)
       : residual(unknowns), units(static_cast<std::size_t>(unknowns), RowUnit::balance) {}
-  /// Adds up the Jacobian times a vector, which must outlive it, instead of the Jacobian.
+  /// Adds up the product of the Jacobian and a vector, instead of the Jacobian. The vector must
+  /// outlive the assembly.
   explicit Assembly(const Eigen::VectorXd& along) : Assembly(along.size()) {
     along_ = &along;
     product = residual = Eigen::VectorXd::Zero(along.size());
   }
 
-  /// Lists every entry of the Jacobian instead of adding them up.
+  /// Lists every entry of the Jacobian separately, without sums.
   static Assembly listing(Eigen::Index unknowns) {
     Assembly made(unknowns);
     made.lists_ = true;
@@ -42,17 +43,17 @@ class Assembly {
     return made;
   }
 
-  /// Adds up residuals only, for who needs no Jacobian.
+  /// Adds up residuals only, for callers that need no Jacobian.
   static Assembly without_jacobian(Eigen::Index unknowns) {
     Assembly made(unknowns);
     made.residual_only_ = true;
     return made;
   }
   bool residual_only() const { return residual_only_; }
-  /// From the next evaluation on: whether the Jacobian is added up, or stays as it is.
+  /// Whether the next evaluations update the Jacobian.
   void want_jacobian(bool wanted) { residual_only_ = !wanted; }
 
-  /// Whether places are still written down, one after the other.
+  /// Whether this evaluation records the positions of entries.
   bool records() const {
     return slots_ == nullptr && !residual_only_ && !lists_ && along_ == nullptr;
   }
@@ -66,8 +67,7 @@ class Assembly {
 
   Eigen::VectorXd residual;
   Eigen::Matrix3Xd moved;  ///< Displacements of all nodes, where it is evaluated [m].
-  /// The Jacobian as of the last evaluation that was to add it up; its pattern is the same of all
-  /// copies.
+  /// The Jacobian of the last evaluation that updated it. All copies have the same pattern.
   linear::SparseView jacobian() const {
     return {residual.size(),      residual.size(),      values_.size(),
             slots_->outer.data(), slots_->inner.data(), values_.data()};
@@ -80,7 +80,7 @@ class Assembly {
 
  private:
   friend class AssemblyStrand;
-  /// Pattern of the Jacobian, and where in it what is written stands.
+  /// Pattern of the Jacobian, and the position in it of each written entry.
   struct Slots {
     std::vector<int> outer, inner;  ///< Of the Jacobian: begin of its columns, rows of its entries.
     std::vector<int> entries;       ///< Where every run of places begins among the entries.
@@ -89,7 +89,7 @@ class Assembly {
   bool residual_only_ = false;
   bool lists_ = false;
   const Eigen::VectorXd* along_ = nullptr;
-  /// Places one below the other, which are entries one behind the other: a column of a block.
+  /// Consecutive positions of a column, which are consecutive entries: a column of a block.
   struct Run {
     int row, column, length;
   };
@@ -99,10 +99,11 @@ class Assembly {
   Eigen::VectorXd values_;              ///< Of the entries of the Jacobian.
 };
 
-/// Writes a part of an assembly, always the same places in the same order.
+/// Writes one part of an assembly, always the same positions in the same order.
 class AssemblyStrand {
  public:
-  /// @param which number of the strand; while an assembly records, they come in their order
+  /// @param which number of the strand; while an assembly records, strands come in the order of
+  /// their numbers
   AssemblyStrand(Assembly& to, std::size_t which) : to_(&to) {
     if (to.slots_ != nullptr) {
       slot_ = to.slots_->entries.data() + to.slots_->begin[which];
@@ -111,7 +112,7 @@ class AssemblyStrand {
       to.begin_.push_back(to.runs_.size());
     }
   }
-  /// Tells the assembly what the strand saw; strands in their order.
+  /// Adds the scales of the strand to the assembly; call for strands in their order.
   void end() {
     to_->largest_force = std::max(to_->largest_force, largest_force_);
     to_->pieces = to_->pieces * hash_factor_ + pieces_;
@@ -120,14 +121,14 @@ class AssemblyStrand {
   bool residual_only() const { return to_->residual_only_; }
   const Eigen::Matrix3Xd& moved() const { return to_->moved; }
   void residual(int row, double value) { to_->residual[row] += value; }
-  /// A force along a free direction of a node.
+  /// Adds a force along a free direction of a node.
   void residual(const NodeDofs& at, int direction, double value) {
     at.each_term(direction, [&](int row, double factor) { residual(row, factor * value); });
   }
   void unit(int row, RowUnit unit) { to_->units[static_cast<std::size_t>(row)] = unit; }
-  /// A force that rounding and balance are measured by [N].
+  /// Includes a force in the scale of rounding and balance [N].
   void carries(double force) { largest_force_ = std::max(largest_force_, std::abs(force)); }
-  /// On a branch that is piecewise linear: which piece it is.
+  /// For a piecewise linear status: reports the active piece.
   void piece(std::size_t which) {
     pieces_ = hash_base * pieces_ + which;
     hash_factor_ *= hash_base;
@@ -138,7 +139,7 @@ class AssemblyStrand {
     if (slot_ == nullptr) return elsewhere(row, column, value);
     values_[*slot_++] += value;
   }
-  /// A block of places, column by column: `value(row of it, column of it)`.
+  /// Adds a block column by column: `value(row within the block, column within the block)`.
   template <class Value>
   void block(int row, int rows, int column, int columns, Value&& value) {
     if (residual_only() || rows == 0) return;
@@ -150,7 +151,7 @@ class AssemblyStrand {
         for (int i = 0; i < of_rows; ++i) run[i] += value(i, j);
       }
     };
-    // Nodes are mostly free in space or in a plane: loops of a known length.
+    // Most nodes are free in space or in a plane. These loops have a constant length.
     if (rows == 2 && columns == 2) {
       add_up(std::integral_constant<int, 2>(), std::integral_constant<int, 2>());
     } else if (rows == 3 && columns == 3) {
@@ -160,7 +161,7 @@ class AssemblyStrand {
     }
     slot_ += columns;
   }
-  /// A block of the free directions of two nodes: `value(direction of rows, of columns)`.
+  /// Adds a block for the free directions of two nodes: `value(direction of rows, of columns)`.
   template <class Value>
   void block(const NodeDofs& rows, const NodeDofs& columns, Value&& value) {
     if (rows.sums == nullptr && columns.sums == nullptr) {
@@ -185,15 +186,15 @@ class AssemblyStrand {
     }
     block(rows, columns, [](int, int) { return 0.0; });
   }
-  /// A block that is zero: its places are passed. (A sum that begins at +0 is never −0, so that
-  /// adding zeros would change nothing.)
+  /// Skips the positions of a block of zeros. (A sum that begins at +0 is never −0, so adding zeros
+  /// would change nothing.)
   void zeros(int row, int rows, int column, int columns) {
     if (slot_ == nullptr) return block(row, rows, column, columns, [](int, int) { return 0.0; });
     if (!residual_only() && rows > 0) slot_ += columns;
   }
 
  private:
-  /// Where nothing is recorded yet, or no Jacobian added up.
+  /// The slow case: positions are not recorded yet, or no Jacobian is wanted.
   [[gnu::noinline]] void elsewhere(int row, int column, double value) {
     if (to_->lists_) {
       to_->entries.emplace_back(row, column, value);
@@ -224,7 +225,7 @@ class AssemblyStrand {
   std::size_t hash_factor_ = 1;
 };
 
-/// Takes what a joint adds, in the places of its own nodes and forces.
+/// Adds the contributions of a joint to the positions of its own nodes and forces.
 class JointWriter {
  public:
   explicit JointWriter(AssemblyStrand& strand) : to_(&strand) {}
@@ -232,7 +233,7 @@ class JointWriter {
   std::array<NodeDofs, most_joint_nodes> places;
   int first_force = 0;
 
-  /// Force [N] that a node has to carry.
+  /// Adds the force [N] of the joint on a node.
   void force(std::size_t node, const Eigen::Vector3d& value) {
     const NodeDofs& at = places[node];
     for (int i = 0; i < at.freedoms; ++i) {
@@ -266,15 +267,15 @@ class JointWriter {
   void corner(int row, int force, double value) {
     to_->add(first_force + row, first_force + force, value);
   }
-  /// Residual of a row: what a closure is away from closing [m] …
+  /// Sets the residual of a row as a closure error [m].
   void closure(int row, double value) { set(row, value, RowUnit::closure); }
-  /// … or a force from what it must be [N].
+  /// Sets the residual of a row as a difference of forces [N].
   void balance(int row, double value) { set(row, value, RowUnit::force); }
-  /// A force that rounding and balance are measured by [N].
+  /// Includes a force in the scale of rounding and balance [N].
   void carries(double force) { to_->carries(force); }
-  /// On a branch that is piecewise linear: which piece it is.
+  /// For a piecewise linear status: reports the active piece.
   void piece(std::size_t which) { to_->piece(which); }
-  /// Holds the first two nodes together along a direction by one of the joint's forces.
+  /// Constrains the first two nodes along a direction by one of the joint's forces.
   void hold(int row, const Eigen::Vector3d& along, double force, double apart) {
     closure(row, apart);
     this->row(row, 0, along);
@@ -298,7 +299,7 @@ class JointWriter {
   AssemblyStrand* to_;
 };
 
-/// The same of a joint whose forces and slides lie in a plane: vectors are components along its two
+/// The same for a joint with forces and slides in a plane: vectors are components along its two
 /// directions.
 class PlanarWriter {
  public:

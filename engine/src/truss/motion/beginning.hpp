@@ -7,10 +7,10 @@
 
 namespace statejump::truss::detail {
 
-/// What every scheme asks of a model and its options. Throws std::invalid_argument.
+/// Checks of a model and its options that all integrators need. Throws std::invalid_argument.
 void check_motion(const Model& model, const MotionOptions& options);
 
-/// State in which the quasi-static path begins; empty if the caller ended the search for it.
+/// First state of the quasi-static path; empty if the caller cancelled the search.
 std::optional<State> equilibrium(const Model& model, const MotionOptions& options);
 
 }  // namespace statejump::truss::detail

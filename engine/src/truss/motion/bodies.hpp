@@ -9,7 +9,7 @@
 
 namespace statejump::truss::detail {
 
-/// Masses and dashpots of a truss in its free displacements.
+/// Masses and dashpots of a truss, for its independent displacements.
 class Bodies {
  public:
   /// All arguments must outlive it. @throws kernel::OutOfRange for numbers of a wrong count or sign
@@ -19,24 +19,24 @@ class Bodies {
   bool damped() const { return !dashpots_.empty(); }
   const VectorXd& joint_damping() const { return joint_damping_; }
 
-  /// What the dashpots know of a step [s].
+  /// Values of a step that the dashpots use [s].
   struct Step {
     double from;
     double to;
     std::vector<double> growth_rate = {};  ///< Of the stress-free length of every dashpot [m/s].
   };
   Step step(double from, double to) const;
-  /// Forces of the dashpots on the free displacements [N]; stress-free lengths grow evenly over
-  /// the step, as a corner of a program within it would make a jump of an instant's rate.
+  /// Forces of the dashpots on the independent displacements [N]. Stress-free lengths grow evenly
+  /// over the step: at a corner of a program within the step, the rate at one instant would jump.
   VectorXd force(const VectorXd& q, const VectorXd& v, const Step& step) const;
   /// −∂force/∂v at q.
   Eigen::SparseMatrix<double> damping(const VectorXd& q) const;
-  /// The same entry by entry, always in one order; those at one place add up.
+  /// The entries of the damping matrix, always in the same order. Entries at one position add up.
   std::vector<Eigen::Triplet<double>> damping_entries(const VectorXd& q) const;
-  /// What the compression of links takes from their stiffness at places and a time, with its sign
-  /// turned.
+  /// The softening of links by their compression, at positions and a time: the negative geometric
+  /// stiffness, with its sign changed.
   std::vector<Eigen::Triplet<double>> compression_entries(const VectorXd& q, double time) const;
-  /// Heat of the dashpots over the step, and the temperature's work on them [J].
+  /// Heat of the dashpots over the step, and the work of the temperature on them [J].
   struct Work {
     double heat = 0.0;
     double thermal = 0.0;
@@ -44,7 +44,7 @@ class Bodies {
   Work work(const VectorXd& q0, const VectorXd& v0, const VectorXd& q1, const VectorXd& v1,
             const Step& step, double theta) const;
 
-  /// Free displacements of displacements or velocities of the nodes, and back.
+  /// Independent displacements from displacements or velocities of the nodes, and back.
   VectorXd free_part(const Eigen::Matrix3Xd& of_nodes) const {
     return system_->dofs().dofs_at(of_nodes);
   }

@@ -6,19 +6,20 @@
 
 namespace statejump::truss::detail {
 
-/// Solves steps whose statuses are not found, by their frictional contact problem.
+/// Solves a step as a frictional contact problem, if its statuses are not found.
 ///
-/// Newton's method on the bodies: at an iterate, velocities without impulses are v_free, those of
-/// the contacts u = W r + Hᵀ v_free with the Delassus matrix W = Hᵀ A⁻¹ H. Signorini's condition
-/// and Coulomb's law on u and r are a complementarity problem, whose methods need no statuses;
-/// elastic contacts add their compliances to W. A is factored once, at the middle of the step.
+/// Newton's method on the bodies: at an iterate, v_free are the velocities without impulses. The
+/// velocities of the contacts are u = W r + Hᵀ v_free with the Delassus matrix W = Hᵀ A⁻¹ H.
+/// Signorini's condition and Coulomb's law on u and r are a complementarity problem, whose methods
+/// need no statuses. Elastic contacts add their compliances to W. A is factored once, at the middle
+/// of the step.
 class ContactProblem {
  public:
   /// All arguments must outlive it.
   ContactProblem(StepForces& forces, StepMatrix& matrix, const MotionOptions& options)
       : forces_(forces), matrix_(matrix), options_(options) {}
 
-  /// Solves the step. @throws Failure if it has no solution that is found
+  /// Solves the step. @throws Failure if no solution is found
   void solve(TimeStep& step, StepContacts& contacts);
 
   long iterations() const { return iterations_; }
@@ -36,8 +37,8 @@ class ContactProblem {
   double largest_merit_ = 0.0;
 };
 
-/// The contact of a planar problem whose law is violated most [unit of u], W_nn times what its
-/// impulses lack; −1 without contacts.
+/// The contact of a planar problem with the largest violation of its law [unit of u]: W_nn times
+/// the error of its impulses; −1 without contacts.
 Eigen::Index worst_contact(const complementarity::Problem& problem, const VectorXd& impulses);
 
 }  // namespace statejump::truss::detail

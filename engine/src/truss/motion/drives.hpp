@@ -9,7 +9,7 @@
 
 namespace statejump::truss::detail {
 
-/// Links whose turning is prescribed, as conditions on the velocities at the end of a step.
+/// Links with prescribed rotation, as constraints on the velocities at the end of a step.
 class Drives {
  public:
   /// All arguments must outlive it. @throws kernel::OutOfRange, std::invalid_argument with the
@@ -17,12 +17,12 @@ class Drives {
   Drives(const System& system, const std::vector<Drive>& drives);
 
   Eigen::Index count() const { return static_cast<Eigen::Index>(drives_->size()); }
-  /// Derivative of each link's angle by the free displacements [1/m], where its program puts it at
-  /// the end of the step, at the length that it has at q.
+  /// Derivative of each link's angle by the independent displacements [1/m], in the direction that
+  /// its program prescribes for the end of the step, with the length at q.
   std::vector<Eigen::Triplet<double>> directions(const VectorXd& q, double to) const;
-  /// Angular velocities at the end of the step [rad/s]: those of the program and half of what the
-  /// angles at its start (q) lack, over the step. Both halves come in two steps, as positions
-  /// follow the mean velocity of a step.
+  /// Angular velocities at the end of the step [rad/s]: those of the program, plus half of the
+  /// angle error at the start (q) divided by the step. Positions follow the mean velocity of a
+  /// step, so an angle error vanishes over two steps.
   VectorXd targets(const VectorXd& q, double from, double to) const;
 
  private:

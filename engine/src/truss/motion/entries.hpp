@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Entries of sparse matrices, and where they are.
+// Entries of sparse matrices and their positions.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -7,7 +7,7 @@
 
 namespace statejump::truss::detail {
 
-/// Place of an entry among those of a compressed matrix.
+/// Index of an entry among the entries of a compressed matrix.
 inline Eigen::Index place(const Eigen::SparseMatrix<double>& matrix, Eigen::Index row,
                           Eigen::Index column) {
   const int* inner = matrix.innerIndexPtr();
@@ -16,8 +16,8 @@ inline Eigen::Index place(const Eigen::SparseMatrix<double>& matrix, Eigen::Inde
   return std::lower_bound(first, last, static_cast<int>(row)) - inner;
 }
 
-/// Calls `visit(row, column, value)` for the entries of a matrix that are among the first `size`
-/// rows and columns.
+/// Calls `visit(row, column, value)` for the entries in the first `size` rows and columns of a
+/// matrix.
 template <class Matrix, class Visit>
 void each_entry(const Matrix& matrix, Eigen::Index size, Visit&& visit) {
   for (Eigen::Index j = 0; j < size; ++j) {

@@ -8,12 +8,12 @@
 
 namespace statejump::truss::detail {
 
-/// Notes the first step in which a slide ends that Coulomb's law does not let go on (Painlevé).
+/// Records the first step in which Coulomb's law does not allow a slide to continue (Painlevé).
 ///
-/// While a rigid contact slides, its normal force is what keeps its gap from closing: p r_n = −b,
-/// with p the acceleration at which it opens for a unit of the normal force and of the friction
-/// that comes with it. Where p is not above 0 the force has no solution or is one of several, and
-/// the slide ends at once, by an impulse without a collision.
+/// While a rigid contact slides, its normal force keeps the gap from closing: p r_n = −b. p is the
+/// acceleration at which the gap opens for a unit of normal force and its friction. If p is not
+/// above 0, the force has no solution or several, and the slide ends at once, by an impulse without
+/// a collision.
 class PainleveCheck {
  public:
   PainleveCheck(const StepForces& forces, StepMatrix& matrix) : forces_(forces), matrix_(matrix) {}

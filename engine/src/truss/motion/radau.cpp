@@ -13,7 +13,7 @@ using Real = long double;
 using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 
-/// P_s − P_{s−1} of Legendre at 2x − 1, whose zeros are the nodes.
+/// P_s − P_{s−1} of Legendre polynomials at 2x − 1; its zeros are the nodes.
 Real nodal(int s, Real x) {
   const Real y = 2 * x - 1;
   Real before = 1;
@@ -28,7 +28,7 @@ Real nodal(int s, Real x) {
 
 Vector nodes(int s) {
   Vector found(s);
-  // They are apart by more than 1/s² at the ends.
+  // The zeros are more than 1/s² apart at the ends.
   const int places = 20 * s * s;
   int count = 0;
   for (int k = 0; k + 1 < places && count + 1 < s; ++k) {
@@ -79,7 +79,7 @@ Radau::Radau(int stages) {
                        back.row(k).cast<std::complex<double>>()});
     }
   }
-  // Weights of order s with the start among the nodes, that of the start 1/λ.
+  // Weights of order s with the start among the nodes, whose weight is 1/λ.
   Vector integrals(stages);
   for (int k = 0; k < stages; ++k) integrals[k] = 1 / static_cast<Real>(k + 1);
   integrals[0] -= 1 / static_cast<Real>(eigenvalue);

@@ -7,8 +7,9 @@
 
 namespace statejump::truss::detail {
 
-/// Radau IIA of s stages, s odd: collocation, order 2s − 1, L-stable, the last stage is the end of
-/// the step [1]. A⁻¹ = T Λ T⁻¹ has one real eigenvalue and pairs, of which one of each is kept.
+/// Radau IIA with s stages, s odd: collocation, order 2s − 1, L-stable; the last stage is the end
+/// of the step [1]. A⁻¹ = T Λ T⁻¹ has one real eigenvalue and complex pairs, of which one of each
+/// is stored.
 ///
 /// [1] E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, Springer 1996, IV.5, IV.8.
 struct Radau {
@@ -17,8 +18,8 @@ struct Radau {
   Eigen::VectorXd c;  ///< Times of the stages, shares of the step.
   Eigen::MatrixXd a;
   Eigen::MatrixXd inverse;  ///< A⁻¹
-  /// Weights of the stages' increments in the difference to the embedded method of order s, which
-  /// takes h/λ of the rate at the start as well.
+  /// Weights of the stages' increments in the difference to the embedded method of order s. That
+  /// method also uses h/λ times the rate at the start.
   Eigen::VectorXd embedded;
 
   double eigenvalue = 0.0;     ///< λ, the real one.

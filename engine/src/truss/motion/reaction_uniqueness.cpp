@@ -10,10 +10,10 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Fraction of the largest pivot of W below which a reaction follows from others. W comes of solves
-/// whose matrix has a condition of 1e4 at most: h²K is about as large as M.
+/// Fraction of the largest pivot of W below which a reaction depends on others. W results from
+/// solves whose matrix has a condition of at most 1e4, because h²K is about as large as M.
 constexpr double dependent = 1e-10;
-/// Fraction of the largest reaction in a trade of reactions from which a joint is named.
+/// Fraction of the largest reaction in a null vector from which a joint is named.
 constexpr double takes_part = 1e-3;
 
 }  // namespace
@@ -54,8 +54,8 @@ void ReactionUniqueness::check(const TimeStep& step, const StepContacts& contact
     on.statuses = held;
     if (matrix_.factorize(on, step, contacts)) return;
   }
-  // Rows of W that hold. How a slider's friction and its stop share a force is never determined:
-  // it is one force there.
+  // Constrained rows of W. Friction and stop of a slider are one force here, because statics never
+  // determines how they share it.
   std::vector<Eigen::Index> rows;
   int sticking_slider = -1;
   for (std::size_t k = 0; k < held.size(); ++k) {

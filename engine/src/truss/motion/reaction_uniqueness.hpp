@@ -9,12 +9,12 @@
 
 namespace statejump::truss::detail {
 
-/// Notes the first step whose reactions are not unique.
+/// Records the first step whose reactions are not unique.
 ///
-/// On statuses whose system is regular, reactions are unique. A contact that neither pushes nor
-/// opens, or has its friction at the bound and does not slide, satisfies another status as well. So
-/// the system is checked on the statuses with the most constraints that hold. If it is singular, a
-/// kernel of the rows of W that hold names the joints that share a reaction.
+/// For statuses with a regular system, reactions are unique. A contact that neither pushes nor
+/// opens, or has its friction at the limit and does not slide, satisfies a second status. The check
+/// therefore uses the admissible statuses with the most constraints. If their system is singular, a
+/// null vector of the constrained rows of W names the joints that share a reaction.
 class ReactionUniqueness {
  public:
   ReactionUniqueness(const StepForces& forces, StepMatrix& matrix)
@@ -24,7 +24,8 @@ class ReactionUniqueness {
   const std::optional<Undetermined>& found() const { return found_; }
 
  private:
-  /// Statuses at the end of a step, where those whose inequality is an equation as well hold.
+  /// Statuses at the end of a step, with a constraint wherever an inequality is satisfied as an
+  /// equation.
   ContactStatuses held_statuses(const TimeStep& step, const StepContacts& contacts) const;
 
   const StepForces& forces_;

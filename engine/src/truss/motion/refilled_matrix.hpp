@@ -8,8 +8,8 @@
 
 namespace statejump::truss::detail {
 
-/// A square sparse matrix whose entries are given again and again in one order: where each of them
-/// goes is found once. Entries at one place add up.
+/// A square sparse matrix that is filled repeatedly, always in the same order. The position of each
+/// entry is found once. Entries at one position add up.
 class RefilledMatrix {
  public:
   void begin(Eigen::Index size) {
@@ -32,10 +32,10 @@ class RefilledMatrix {
   }
   /// Number of the next entry.
   std::size_t next() const { return next_; }
-  /// Finds places where entries are not where they were last.
+  /// Updates the positions if the entries differ from the last filling.
   void end();
 
-  /// Gives an entry another value; it is alone at its place.
+  /// Replaces the value of an entry. No other entry may have its position.
   void set(std::size_t entry, double value) { matrix_.valuePtr()[slots_[entry]] = value; }
 
   const Eigen::SparseMatrix<double>& matrix() const { return matrix_; }

@@ -10,14 +10,14 @@
 
 namespace statejump::truss::detail {
 
-/// Forces of links and of their dashpots in free displacements, both in one go: as System and
-/// Bodies have them, at a fraction of the time.
+/// Computes the forces of links and of their dashpots on the independent displacements in one pass.
+/// System and Bodies compute the same forces more slowly.
 class Rods {
  public:
   /// The system and its model must outlive it.
   Rods(const System& system, const Inertia& inertia);
 
-  /// What programs are at a time: changes [K] and rates [K/s].
+  /// Values of the programs at a time: changes [K] and rates [K/s].
   struct Heat {
     std::vector<double> change;
     std::vector<double> rate;
@@ -34,7 +34,8 @@ class Rods {
   Power power(const ConstColumn& q, const ConstColumn& v, const Heat& heat) const;
 
  private:
-  /// A free displacement, and by how much it moves the second end of a rod from its first.
+  /// An independent displacement, and the motion that it causes of the second end of a rod relative
+  /// to the first.
   struct Move {
     int row;
     Vector3d by;

@@ -8,18 +8,18 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Newton's method converges in three or four iterations, or a contact is on another status.
+/// Newton's method converges in three or four iterations, unless a contact has another status.
 constexpr int most_iterations = 8;
-/// The same where contacts slip partially, whose tangents are taken anew every time, and where the
-/// matrix leaves out compression.
+/// The same limit with partial slip, whose tangents are updated in every iteration, and for a
+/// matrix without the softening by compression.
 constexpr int most_tangents = 50;
-/// Fraction of an iteration that goes downhill: it is halved until the residual has fallen by this
-/// share of it, or it is short.
+/// Line search: the step is halved until the residual has fallen by this fraction of it, or the
+/// step is short.
 constexpr double least_fall = 1e-4;
 constexpr double shortest_share = 1e-3;
-/// Kept factors that take more iterations than this are made again for the next step.
+/// Kept factors that need more iterations than this are replaced for the next step.
 constexpr int few_iterations = 3;
-/// With kept factors, corrections that do not fall to this fraction of the one before give them up.
+/// Kept factors are given up if corrections do not fall to this fraction of the one before.
 constexpr double falls_to = 0.3;
 
 using At = StepContacts::TangentAt;

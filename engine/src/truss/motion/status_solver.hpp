@@ -7,27 +7,27 @@
 
 namespace statejump::truss::detail {
 
-/// Newton's method for a step whose active contacts are on given statuses.
+/// Newton's method for a step with given statuses of the active contacts.
 ///
-/// On statuses the laws of all contacts are equations, which stand beside momentum in one sparse
-/// system (StepMatrix). Most steps keep the statuses of the step before: corrections with its
-/// factors converge in a few iterations, and no factorization is made. If they do not converge,
-/// the matrix is factored where the step begins. Contacts that slip partially have a tangent that
-/// changes with the iterate, so that every iteration factors; if these do not converge either, a
-/// line search goes downhill.
+/// With given statuses the laws of all contacts are equations. Together with the momentum balance
+/// they form one sparse system (StepMatrix). Most steps keep the statuses of the step before, and
+/// corrections with its factors converge in a few iterations without a factorisation. If they do
+/// not converge, the matrix is factored at the beginning of the step. The tangent of a contact with
+/// partial slip changes with the iterate, so every iteration factors. If these do not converge
+/// either, a line search reduces the residual.
 class StatusSolver {
  public:
   StatusSolver(StepForces& forces, StepMatrix& matrix) : forces_(forces), matrix_(matrix) {}
 
-  /// Solves the step with every active contact on a status. False if that does not converge.
-  /// @param is_near whether to begin at the iterate; else at the end of the last step
+  /// Solves the step with the given status of every active contact. Returns false without
+  /// convergence. @param is_near whether to start at the iterate; else at the end of the last step
   bool solve(const ContactStatuses& statuses, TimeStep& step, StepContacts& contacts, bool is_near);
 
  private:
-  /// The factors that Newton's method takes: of an earlier step, of where it begins, or of every
-  /// iterate; the last also with a line search downhill.
+  /// Factors that Newton's method uses: of an earlier step, of the beginning of this one, or of
+  /// every iterate; `downhill` adds a line search to the last.
   enum class Tangents : unsigned char { kept, once, anew, downhill };
-  /// Newton's method; its iterations, none if it did not converge.
+  /// Newton's method. Returns the number of iterations; empty without convergence.
   std::optional<int> iterate(StatusFactors& on, TimeStep& step, StepContacts& contacts,
                              Tangents tangents);
   /// Residual of the equations at an iterate [N s].

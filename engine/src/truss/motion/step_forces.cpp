@@ -50,7 +50,7 @@ const Assembly& StepForces::evaluate_elements(const VectorXd& q, double time) {
 }
 
 VectorXd StepForces::elastic_force(const VectorXd& q, double time) {
-  // Contacts are left out of the joints: r has all of their forces.
+  // The joints are omitted, because r contains all contact forces.
   system_.evaluate_elements(unknowns_at(q), time, forces_);
   VectorXd found = -forces_.residual.head(q.size());
   if (!contacts_.have_springs()) return found;

@@ -11,12 +11,12 @@
 
 namespace statejump::truss::detail {
 
-/// Forces f(q, v) of a truss in a step, and what a step has to balance.
+/// Forces f(q, v) of a truss in a step, and the residual of its momentum balance.
 ///
-/// Elements, loads, springs of joints and dashpots are in f; contacts are not, their impulses r are
-/// unknowns of the step. At an iterate v the step lacks the momentum
-/// M (v − v_from) − h (θ f + (1 − θ) f0) − H r + B λ, with the impulses λ of the velocity
-/// constraints. It is solved where this vanishes to rounding and every contact is on its law.
+/// f contains elements, loads, springs of joints and dashpots. It does not contain contacts, whose
+/// impulses r are unknowns. At an iterate v the residual is M (v − v_from) − h (θ f + (1 − θ) f0) −
+/// H r + B λ, with the impulses λ of the velocity constraints. The step is solved if the residual
+/// vanishes to rounding and every contact is on its law.
 class StepForces {
  public:
   /// All arguments must outlive it.
@@ -35,10 +35,10 @@ class StepForces {
   VectorXd elastic_force(const VectorXd& q, double time);
   /// Those of the last iterate.
   const VectorXd& last_elastic_force() const { return elastic_force_; }
-  /// Forces where the step begins, with dashpots [N].
+  /// Forces at the beginning of the step, with dashpots [N].
   VectorXd force_before(const TimeStep& step) const;
 
-  /// Gaps and directions of the contacts, all of them closed and free of force.
+  /// Gaps and directions of the contacts, evaluated as if all were closed without force.
   void evaluate_contacts(const VectorXd& q, double time);
   /// As evaluated last.
   const Assembly& joints() const { return joints_; }
@@ -46,18 +46,19 @@ class StepForces {
   const Assembly& evaluate_springs(const VectorXd& q, double time);
   const Assembly& evaluate_elements(const VectorXd& q, double time);
 
-  /// Gap of a contact by the directions of the step [m]. @param way from its middle [m]
+  /// Gap of a contact along the directions of the step [m]. @param way displacement from its middle
+  /// [m]
   double gap_after(const Contact& contact, const VectorXd& way) const;
   /// Rounding of lengths at the middle of a step [m].
   double rounding_at_middle(const TimeStep& step) const;
 
-  /// Moves q to where the step's velocities lead. @return momentum that it lacks without impulses
+  /// Moves q according to the step's velocities. @return residual of the momentum without impulses
   /// [N s]
   VectorXd move(TimeStep& step);
-  /// Whether momentum balances and elastic contacts are on their laws, not only on the tangents.
-  /// @param residual of move()
-  /// @param constraints B, see VelocityConstraints
-  /// @param on_statuses a contact may pull, or be open where it closes: its status is checked next
+  /// Whether momentum balances, and elastic contacts are on their laws and not only on the
+  /// tangents. @param residual of move() @param constraints B, see VelocityConstraints @param
+  /// on_statuses allows a contact to pull, or to be open where it closes, because its status is
+  /// checked next
   bool balanced(const TimeStep& step, const VectorXd& residual,
                 const Eigen::SparseMatrix<double>& constraints, const StepContacts& contacts,
                 bool on_statuses) const;

@@ -11,11 +11,11 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Factors kept, of other statuses or lengths of steps.
+/// Number of kept factors of other statuses or step lengths.
 constexpr std::size_t most_kept = 8;
 
-/// Whether a push would speed a contact up against it: the step is long beside how fast something
-/// gives way, and the contact problem need not have a solution.
+/// Whether a push would accelerate a contact against it. The step is then long beside the time
+/// scale of an instability, and the contact problem may have no solution.
 bool is_indefinite(const Eigen::MatrixXd& delassus) {
   constexpr double rounding = 1e-8;  // of systems whose condition is that of stiff links
   if (delassus.size() == 0) return false;
@@ -79,8 +79,8 @@ StatusFactors& StepMatrix::factors_for(double h, const StepContacts& contacts,
     std::rotate(kept_.begin(), found, found + 1);
     return *kept_.front();
   }
-  // The pattern depends on which contacts are active, not on their statuses: the oldest factors of
-  // the same pattern need no new order.
+  // The pattern depends on the active contacts, not on their statuses. The oldest factors with the
+  // same pattern are reused without a new order.
   const auto same = std::find_if(kept_.rbegin(), kept_.rend(),
                                  [&](const auto& one) { return one->active == contacts.numbers; });
   if (kept_.size() < most_kept || same == kept_.rend()) {
@@ -199,7 +199,7 @@ Delassus StepMatrix::delassus(const TimeStep& step, const StepContacts& contacts
   if (is_indefinite(found.matrix)) {
     fail_step(forces_.system(), FailureKind::not_converged, step.to, nullptr);
   }
-  // Rows that touch nothing else are of the size of the others.
+  // Rows without other entries are scaled to the size of the others.
   const auto real = (found.matrix.diagonal().array() > 0.0).count();
   const double size = real > 0 ? found.matrix.trace() / static_cast<double>(real) : 1.0;
   for (Eigen::Index k = 0; k < rows; ++k) {

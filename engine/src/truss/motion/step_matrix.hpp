@@ -11,8 +11,8 @@
 
 namespace statejump::truss::detail {
 
-/// Factors of the equations of a step with every active contact on a status, of this step or an
-/// earlier one of the same length.
+/// Factors of the equations of a step for given statuses of the active contacts, from this step or
+/// an earlier one of the same length.
 struct StatusFactors {
   double h = 0.0;
   std::vector<int> active;  ///< Numbers of the active contacts.
@@ -24,49 +24,51 @@ struct StatusFactors {
 
 /// The linear system of a step, and its factors.
 ///
-/// A correction of v changes f by its derivatives, q by h θ times it: so bodies have the matrix
-/// M + h θ C + (h θ)² K at the middle of the step. The velocity constraints B border it, and every
-/// active contact by two rows more, its ContactRow or, on another status, r = 0 or
-/// r_t = ∓ μ r_n. A contact's impulses are unknowns on every status, so that the pattern is the
-/// same on all of them. What does not depend on contacts is filled once for a step.
+/// A correction of v changes f by its derivatives, and q by h θ times the correction. Bodies
+/// therefore have the matrix M + h θ C + (h θ)² K at the middle of the step. The velocity
+/// constraints B border it. Every active contact adds two rows: its ContactRow or, for another
+/// status, r = 0 or r_t = ∓ μ r_n. The impulses of a contact are unknowns for every status, so the
+/// pattern does not depend on statuses. Entries that do not depend on contacts are filled once for
+/// a step.
 ///
-/// Where statuses are not found, bodies are factored alone, for the Delassus matrix of the contact
-/// problem.
+/// If the statuses are not found, the bodies are factored alone, for the Delassus matrix of the
+/// contact problem.
 class StepMatrix {
  public:
   /// All arguments must outlive it.
   StepMatrix(StepForces& forces, const std::vector<Drive>& drives);
 
-  /// Factors for a length of step and statuses; kept ones if there are.
+  /// Factors for a step length and statuses; existing ones if there are.
   StatusFactors& factors_for(double h, const StepContacts& contacts,
                              const ContactStatuses& statuses);
-  /// Factors the matrix at an iterate. False: it is singular.
+  /// Factors the matrix at an iterate. False: the matrix is singular.
   bool factorize(StatusFactors& of, const TimeStep& step, const StepContacts& contacts);
-  /// Fills the matrix of a step with its contacts on these statuses at an iterate.
+  /// Fills the matrix of a step at an iterate, for given statuses of its contacts.
   void assemble(const ContactStatuses& statuses, const TimeStep& step,
                 const StepContacts& contacts);
-  /// Changes the entries of one contact to its status at an iterate.
+  /// Replaces the entries of one contact by those of another status at an iterate.
   void update_entries(ContactStatus status, const TimeStep& step, const StepContacts& contacts,
                       Eigen::Index i);
-  /// As assembled last. Rows: momentum, constraints, then two of each active contact.
+  /// The matrix of the last assemble(). Rows: momentum, constraints, then two for each active
+  /// contact.
   const Eigen::SparseMatrix<double>& matrix() const { return matrix_.matrix(); }
   double scale() const { return scale_; }  ///< Of its constraints and contacts.
 
-  /// Factors the bodies alone, for solve_bodies(). @throws Failure if that is singular, or a push
-  /// would speed a contact up against it
+  /// Factors the bodies alone, for solve_bodies(). @throws Failure if that matrix is singular, or
+  /// if a push would accelerate a contact against it
   Delassus delassus(const TimeStep& step, const StepContacts& contacts);
   VectorXd solve_bodies(const VectorXd& right) { return bodies_factor_.solve(right); }
 
   const VelocityConstraints& constraints() const { return constraints_; }
-  /// Scales the constraints as in factors that are kept.
+  /// Scales the constraints as in stored factors.
   void scale_constraints(const TimeStep& step, double scale) { constraints_.set(step, scale); }
   long factorizations() const { return factorizations_; }
 
  private:
-  /// Fills M + h θ C + (h θ)² K and the constraints; also sets these.
+  /// Fills M + h θ C + (h θ)² K and the constraints; also updates the constraints.
   void fill_bodies(const TimeStep& step, RefilledMatrix& to);
-  /// Calls `visit(row, column, value)` for the entries of a contact, on all statuses at the same
-  /// positions in one order.
+  /// Calls `visit(row, column, value)` for the entries of a contact. Positions and order are the
+  /// same for all statuses.
   template <class Visit>
   void each_contact_entry(ContactStatus status, const TimeStep& step, const StepContacts& contacts,
                           Eigen::Index i, Visit&& visit) const;

@@ -15,15 +15,15 @@ namespace statejump::truss::detail {
 
 /// Integrates a truss in motion, one step after the other; see simulate().
 ///
-/// A step of Moreau and Jean's scheme with θ finds velocities v, displacements q and impulses r of
-/// the contacts at its end:
+/// A Moreau–Jean step with θ finds the velocities v, displacements q and contact impulses r at its
+/// end:
 ///
 ///   M (v − v0) = h (θ f(q, v) + (1 − θ) f0) + H r,   q = q0 + h (θ v + (1 − θ) v0),
 ///
-/// with Signorini's condition and Coulomb's law between u = Hᵀ v and r. Directions H are those of
-/// the middle of the step. Backward differentiation has the same equations from another beginning
-/// (TimeStep). StatusSearch finds the statuses of the contacts, on which the equations are smooth;
-/// ContactProblem solves the steps where it does not. The step is then committed.
+/// with Signorini's condition and Coulomb's law between u = Hᵀ v and r. The directions H are those
+/// of the middle of the step. Backward differentiation has the same equations with another
+/// beginning (TimeStep). StatusSearch finds the statuses of the contacts, for which the equations
+/// are smooth. If it fails, ContactProblem solves the step. The step is then committed.
 class Stepper {
  public:
   /// All arguments must outlive it.
@@ -31,18 +31,20 @@ class Stepper {
   Stepper(const Stepper&) = delete;
   Stepper& operator=(const Stepper&) = delete;
 
-  /// Sets positions and velocities, at rest in their contacts where a quasi-static state is given.
+  /// Sets positions and velocities. If a quasi-static state is given, contacts start at rest with
+  /// its forces.
   void begin(const VectorXd& q, const VectorXd& v, const State* equilibrium);
-  /// One step to this time; only a step that is made changes the stepper. False where a contact
-  /// ends elsewhere than the directions of the step lead. @throws Failure if it has no solution
-  /// that is found
+  /// Takes one step to a time. The stepper changes only if the step succeeds. Returns false if a
+  /// contact ends elsewhere than the directions of the step predict. @throws Failure if no solution
+  /// is found
   bool advance(double to);
-  /// The same by implicit Euler with a matrix that is positive definite, for a step that was not
-  /// found otherwise. False also where its statuses are not found and `give_up`.
+  /// The same by implicit Euler with a positive definite matrix, for a step that has no solution
+  /// otherwise. Also returns false if its statuses are not found and `give_up`.
   bool advance_damped(double to, bool give_up);
-  /// The same by backward differentiation, not yet taken: the error of displacements [m]. Of
-  /// second order where the step before was one of these. Without a number where its statuses were
-  /// not found and `give_up`, which saves the contact problem. @throws Failure as advance()
+  /// Attempts a step of backward differentiation without committing it. Returns the error of the
+  /// displacements [m]. It is second-order accurate if the last step was of this kind. The error is
+  /// NaN if the statuses were not found and `give_up`, which avoids the contact problem. @throws
+  /// Failure as advance()
   std::optional<double> attempt(double to, bool give_up);
   /// Takes what was attempted last.
   void accept();
@@ -61,22 +63,22 @@ class Stepper {
   double largest_merit() const { return contact_problem_.largest_merit(); }
 
  private:
-  /// The step before the next one, for backward differentiation.
+  /// The second-last step, for backward differentiation.
   struct Before {
     double length = 0.0;  ///< [s]; 0: none, or velocities jump.
     VectorXd q;           ///< Where it began.
     VectorXd v;
   };
 
-  /// A step of Moreau and Jean to this time.
+  /// The beginning of a Moreau–Jean step to this time.
   TimeStep begin_step(double to);
   StepContacts contacts_of(const TimeStep& step);
-  /// Finds the end of a step; none where its statuses are not found and `give_up`.
+  /// Finds the end of a step; empty if its statuses are not found and `give_up`.
   std::optional<StepContacts> find(TimeStep& step, bool give_up);
-  /// Whether round contacts end where the directions of the step lead: of a step that is long
-  /// beside their motion they do not, and its forces make energy.
+  /// Whether round contacts end where the directions of the step predict. In a step that is long
+  /// beside their motion they do not, and their forces create energy.
   bool keeps_directions(const TimeStep& step) const;
-  /// Depth at the end of a step of rigid contacts that its middle did not know closed [m].
+  /// Largest depth at the end of a step of those rigid contacts that were open at its middle [m].
   double deepest(const TimeStep& step) const;
   /// Takes a step: state, memories, energies.
   void commit(const TimeStep& step, const StepContacts& contacts);

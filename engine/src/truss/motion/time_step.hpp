@@ -10,11 +10,11 @@
 
 namespace statejump::truss::detail {
 
-/// Status of a contact in a step: open, or closed and held along its surface, or sliding on it.
+/// Status of a contact in a step: open, closed and sticking, or closed and sliding.
 enum class ContactStatus : unsigned char { open, stick, slip_plus, slip_minus };
 using ContactStatuses = std::vector<ContactStatus>;
 
-/// A truss between two steps. What contacts remember is in Contact.
+/// A truss between two steps. Contact has the memory of each contact.
 struct MotionState {
   double time = 0.0;         ///< [s]
   VectorXd q;                ///< Free displacements [m].
@@ -26,9 +26,9 @@ struct MotionState {
 };
 
 /// A step that is being solved: M (v − v_from) = h (θ f + (1 − θ) f0) + H r, q = q_from + h (θ v +
-/// (1 − θ) v0). A step of Moreau and Jean begins where the last one ended. A step of backward
-/// differentiation has θ = 1; the last two steps give its beginning, and its h is a fraction of its
-/// length.
+/// (1 − θ) v0). A Moreau–Jean step begins where the last one ended. A step of backward
+/// differentiation has θ = 1; its beginning follows from the last two steps, and its h is a
+/// fraction of its length.
 struct TimeStep {
   long number = 0;
   double h = 0.0;       ///< [s]; impulses are h times the forces at the end.
@@ -36,9 +36,9 @@ struct TimeStep {
   double length = 0.0;  ///< [s]
   double theta = 1.0;
   bool differentiates = false;  ///< Whether the last two steps give its beginning.
-  /// Whether its matrix leaves out what compression takes from the stiffness. Where a step begins
-  /// a slack element is as compressed as its temperature makes it; where it ends it carries
-  /// nothing, and only its mass resists a rotation.
+  /// Whether the matrix omits the softening by compression. At the beginning of a step a slack
+  /// element looks compressed by its temperature. At the end it carries nothing, and only its mass
+  /// resists a rotation.
   bool is_definite = false;
   Bodies::Step span = {};
   VectorXd q_from;
@@ -49,23 +49,24 @@ struct TimeStep {
   VectorXd v;
   VectorXd held = {};  ///< Impulses of the velocity constraints, along their scaled columns.
 
-  /// Mean of a force over the step, by which it works. In a step of backward differentiation a
-  /// force that grew from zero has half its size in the mean; a force at its bound has all of it
-  /// while the contact slides.
+  /// Mean of a force over the step, by which it works. In a step of backward differentiation, the
+  /// mean of a force that grew from zero is half its size. The mean of a force at its limit is the
+  /// whole force while the contact slides.
   double mean(double before, double after, bool slides) const {
     return differentiates && !slides ? 0.5 * (before + after) : after;
   }
 };
 
-/// An elastic contact is on its law to this fraction of its force: its problem is solved to 1e-10
-/// of the largest velocity in it, which a stiff contact turns into much more of a force.
+/// Tolerance of the law of an elastic contact, as a fraction of its force. The contact problem is
+/// solved to 1e-10 of its largest velocity, which a stiff contact converts into a much larger
+/// fraction of a force.
 constexpr double on_law = 1e-6;
 
-/// Fraction of a contact's own force or of the largest speed by which it may miss an inequality, as
-/// the contact problem's tolerance allows.
+/// Allowed violation of an inequality, as a fraction of the contact's own force or of the largest
+/// speed. It corresponds to the tolerance of the contact problem.
 constexpr double allowance = 1e-10;
 
-/// Throws Failure for a step without a solution. @param contact that caused it, or null
+/// Throws Failure for a step without a solution. @param contact the contact that caused it, or null
 [[noreturn]] void fail_step(const System& system, FailureKind kind, double time,
                             const Contact* contact);
 

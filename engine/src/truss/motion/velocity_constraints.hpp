@@ -9,9 +9,8 @@
 
 namespace statejump::truss::detail {
 
-/// Linear constraints Bᵀ v = w on the velocities at the end of a step: joints that hold two nodes
-/// together, then drives. Their columns are scaled to the size of the matrix beside them, so that
-/// pivots compare.
+/// Linear constraints Bᵀ v = w on the velocities at the end of a step: joints that constrain two
+/// nodes, then drives. Columns are scaled to the size of the matrix, so that pivots are comparable.
 class VelocityConstraints {
  public:
   /// All arguments must outlive it.

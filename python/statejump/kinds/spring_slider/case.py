@@ -60,7 +60,7 @@ class Joint(Section):
 
 @definition
 class Dem(Section):
-    """How the DEM runs the case; the reduced model takes only the samples from here."""
+    """Settings of the DEM; the reduced model uses only the number of samples."""
 
     time_step_s: float | None = parameter(None, "s", 0, 1.0, "from the fraction", above=True)
     time_step_fraction: float = parameter(0.1, "-", 0, 1.0, "of the stable step", above=True)
@@ -74,7 +74,7 @@ class Dem(Section):
 
 @definition
 class Tolerance(Section):
-    """How close the two models must be for ``compare`` to pass."""
+    """Allowed differences between the two models in ``compare``."""
 
     state_jump_relative: float = parameter(0.005, "-", 0, 1, CHOICE, above=True)
     event_temperature_K: float = parameter(0.5, "K", 0, 1e3, CHOICE, above=True)
@@ -112,12 +112,13 @@ class SpringSliderCase(Case):
 
     @cached_property
     def bar_program(self) -> Thermal | MemberProgram:
-        """What warms the bar: with an [expansion] strain over coefficient, see :mod:`statejump.core.expansion`."""
+        """Program that heats the bar; with an [expansion] strain over coefficient, see
+        :mod:`statejump.core.expansion`."""
         return self.thermal if self.expansion is None else followed(self.expansion, self.thermal, self.period_s)
 
     @property
     def turning_changes_K(self) -> tuple[float, ...]:
-        """Temperature changes [K] of the program among which the bar is longest and shortest."""
+        """Temperature changes [K] of the program that include those of the longest and the shortest bar."""
         coldest, hottest = self.temperature_range_K
         zeros = () if self.expansion is None else self.expansion.zeros_K
         return (coldest, *(change for change in zeros if coldest < change < hottest), hottest)
@@ -150,7 +151,8 @@ class SpringSliderCase(Case):
         return start + (stop - pad) * temperature_change_K
 
     def held_m(self, place_m: float, stiffness_N_per_m: float) -> float:
-        """Return where the block comes to, which without stops would be at a place, held by a spring [m]."""
+        """Return the position of the block [m], held by a spring that without stops would keep it at a given
+        position."""
         joint = self.joint
         inside = min(max(place_m, -joint.clearance_minus_m), joint.clearance_plus_m)
         if joint.stop_stiffness_N_per_m is None:
@@ -179,7 +181,7 @@ class SpringSliderCase(Case):
                                  code="link_without_length", at_K=change)
 
     def check(self) -> None:
-        """Raise StatejumpError for what is wrong between several keys."""
+        """Raise StatejumpError for a contradiction between several keys."""
         link, joint = self.link, self.joint
         self._check_expansion()
         for side, key in ((-1, "clearance_minus_m"), (1, "clearance_plus_m")):

@@ -13,13 +13,13 @@ from statejump.kinds.spring_slider.case import SpringSliderCase
 from statejump.kinds.spring_slider.result import AT_END
 from statejump.kinds.spring_slider.why_missed import why_missed
 
-# Of the largest stored energy: friction that does less work holds a block that does not slip.
+# Fraction of the largest stored energy. If friction does less work, the block does not slip.
 NO_SLIP = 1e-6
 COMPARED_EVENTS = ("first_slip", "stop_reached", "stop_left")
 
 
 def dem_event_temperatures(dem: Run, samples_per_cycle: int) -> dict[str, float | None]:
-    """Return the temperature changes [K] of the events of the first cycle, each half-way between two samples."""
+    """Return the temperature changes [K] of the events of the first cycle, each midway between two samples."""
     first = slice(0, samples_per_cycle + 1)
     temperature = dem["temperature_change_K"][first]
 
@@ -32,9 +32,9 @@ def dem_event_temperatures(dem: Run, samples_per_cycle: int) -> dict[str, float 
 
     slips = starts("slipping")
     reached = starts("stop_contact")
-    reached = reached[reached > 0]  # a block that starts at a stop has not reached it
+    reached = reached[reached > 0]  # a block that starts at a stop does not reach it
     left = None
-    if len(reached):  # a cycle may reach both stops: the one left is the one reached first
+    if len(reached):  # a cycle may reach both stops; the first one counts
         push = dem["stop_force_N"][first]
         others = reached[0] + np.flatnonzero(push[reached[0]:] * push[reached[0]] < 0)
         end = others[0] if len(others) else len(push)
@@ -63,13 +63,14 @@ def loop_drift(dem: Run, samples_per_cycle: int, cycles: int) -> float:
 
 
 def first_cycle_events(case: SpringSliderCase, run: Run) -> dict[str, float | None]:
-    """Return the temperature change [K] of the first of every compared event in the first cycle; None: none."""
+    """Return the temperature change [K] of the first event of each compared kind in the first cycle; None: it did not
+    happen."""
     found = {kind: run.events.first(kind, case.period_s) for kind in COMPARED_EVENTS}
     return {kind: None if event is None else event.temperature_change_K for kind, event in found.items()}
 
 
 def _jump_row(case: SpringSliderCase, first: Run, second: Run) -> Quantity:
-    """Compare state jumps; where the program does not return, displacements at its end."""
+    """Compare state jumps, or, if the program does not return, displacements at its end."""
     tolerance = case.tolerance
     # A jump of zero is compared on the scale of jumps, f/(k + k_p).
     stiffness = stable_step.link_stiffness(case) + case.joint.preload_stiffness_N_per_m
@@ -83,7 +84,7 @@ def _jump_row(case: SpringSliderCase, first: Run, second: Run) -> Quantity:
 def _displacement_row(case: SpringSliderCase, exact: Run, other: Run) -> Quantity:
     x, y = exact["displacement_m"], other["displacement_m"]
     allowed = case.tolerance.displacement_rms_relative
-    # A block that hardly moves is compared as absolutely as its jump is.
+    # If the block hardly moves, its displacement has the absolute tolerance of the jump.
     largest = max(float(np.max(np.abs(x))), case.tolerance.state_jump_absolute_m / allowed)
     rms = float(np.sqrt(np.mean((y - x) ** 2)))
     return models("displacement_rms_over_largest", "-", 0.0, share(rms, largest), allowed)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Control of the state jump of a ``spring_slider`` case: exact, with the closed form beside it."""
+"""Control of the state jump of a ``spring_slider`` case: exact results beside the closed form."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -48,17 +48,17 @@ class Jump:
 
 
 def jump_of(case: SpringSliderCase) -> Jump:
-    """Solve a case for its jump. :raises StatejumpError: a changed case is out of range"""
+    """Return the jump of a case. :raises StatejumpError: a changed case is out of range"""
     with engine():
         path = reduced.solve(case, np.array([0.0]))
-    # A block that does not slide in the first cycle meets the second as it met the first.
+    # If the block does not slide in the first cycle, the second cycle is equal to the first.
     slips = any(segment.motion == "slide" for segment in path.segments)
     last = path.segments[-1]
     start = path.segments[0].start_displacement_m
     free = all(-case.joint.clearance_minus_m < place < case.joint.clearance_plus_m
                for place in (start, last.end_displacement_m))
     closed = free and last.motion == "slide" and last.end_temperature_change_K == 0
-    # A block that has not moved keeps the place that it started from.
+    # A block that has not moved is still at its start.
     return Jump(abs(path.state_jump_m), closed_form_m(path) if closed else None, slips)
 
 
@@ -68,7 +68,7 @@ def closed_form_m(path: _engine.SpringSliderPath) -> float:
 
 
 def closed_force_N(case: SpringSliderCase) -> float:
-    """Return the closed form times k + k_p [N]: f, or how far friction of the start is from that of the end."""
+    """Return the closed form times k + k_p [N]: f, or the difference of friction between start and end."""
     with engine():
         path = reduced.solve(case, np.array([0.0]))
     direction = path.segments[-1].direction or -1
@@ -81,15 +81,15 @@ class Spring:
 
     stiffness_N_per_m: float
     jump_m: float  # solved with the spring
-    by: str  # none, closed form, bisection
+    by: str  # "none", "closed form" or "bisection"
 
 
 def smallest_preload(case: SpringSliderCase, wanted_m: float) -> Spring | None:
-    """Return the spring, or None if the largest allowed one is too soft.
+    """Return the spring, or None if the stiffest allowed one is too soft.
 
-    The jump never grows with k_p, for a stiffer spring slides less far and back earlier, unless a preload force presses
-    the block on a stop: then it grows until the stop carries nothing, and falls from there. So it passes any value that
-    it exceeds without a spring once.
+    Without a preload force against a stop the jump never grows with k_p, because a stiffer spring lets the block slide
+    less far and back earlier. With such a force the jump grows until the stop carries nothing, and then falls. It
+    therefore passes any value that it exceeds without a spring exactly once.
     """
 
     def solved(stiffness: float) -> Jump:
@@ -103,7 +103,7 @@ def smallest_preload(case: SpringSliderCase, wanted_m: float) -> Spring | None:
     largest = highest(case, PRELOAD)
     closed = closed_force_N(case) / wanted_m - link_stiffness(case)
     if 0 < closed <= largest and solved(closed).closed_form_m is not None:
-        # A few roundings up, so that the solved jump is not above the wanted one.
+        # A few steps of rounding upwards, so that the solved jump does not exceed the wanted one.
         stiffness = closed
         for _ in range(8):
             if passes(stiffness):
@@ -166,12 +166,12 @@ def control(
     case: SpringSliderCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
     tell: Tell = lambda share: None, places: Places = Places(),
 ) -> Study:
-    """Sweep, search and, if wanted, check by DEM.
+    """Sweep, search and, if wanted, check with the DEM.
 
-    :param jump_below: wanted largest jump [m]; None: half of what the case has
-    :param runs: there is one exact path: None
-    :param places: there is nothing to choose from: none
-    :raises StatejumpError: bad input, or a run failed
+    :param jump_below: largest allowed jump [m]; None: half of that of the case
+    :param runs: must be None: there is one exact path
+    :param places: must be empty: a case has one jump
+    :raises StatejumpError: invalid input, or a run failed
     """
     check_wanted(jump_below, "m")
     refuse_places(places, case)
@@ -195,7 +195,7 @@ def control(
 
 
 def answer(case: SpringSliderCase, **settings: Any) -> Study:
-    """Return what makes the state jump smaller, with notes on the temperature program."""
+    """Return the control study, with notes on the temperature program."""
     return with_notes(control, case, **settings)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the YADE script needs of a ``spring_slider`` case."""
+"""Input of the YADE script for a ``spring_slider`` case."""
 from __future__ import annotations
 
 import math
@@ -15,7 +15,7 @@ from statejump.kinds.spring_slider.case import SpringSliderCase
 
 
 def number_of_steps(case: SpringSliderCase) -> int:
-    """Return the steps of the whole run: a multiple of the samples, so that the last sample is the end."""
+    """Return the number of steps of the whole run: a multiple of the samples, so that the last sample is the end."""
     wanted = case.dem_settings.time_step_s
     if wanted is None:
         wanted = case.dem_settings.time_step_fraction * stable_step.stable_time_step(case)
@@ -24,12 +24,12 @@ def number_of_steps(case: SpringSliderCase) -> int:
 
 
 def time_step(case: SpringSliderCase) -> float:
-    """Return the time step [s]: the wanted one or a little less, so that steps fill the program exactly."""
+    """Return the time step [s]: the wanted one or slightly less, so that steps fill the program exactly."""
     return case.duration_s / number_of_steps(case)
 
 
 def dem_input(case: SpringSliderCase) -> dict[str, Any]:
-    """Return everything that the YADE script needs, as plain values."""
+    """Return the input of the YADE script, as plain values."""
     values = common_values(case, number_of_steps(case))
     values["link"]["thermal_expansion_per_K"] = case.thermal_expansion_per_K
     values["bar_program"] = parameters(case.bar_program, case.period_s)
@@ -45,7 +45,7 @@ def dem_input(case: SpringSliderCase) -> dict[str, Any]:
 
 
 def start_displacement(case: SpringSliderCase) -> float:
-    """Return where the block starts [m]: as in the reduced model; a stop in its way gives by Hertz."""
+    """Return the start position of the block [m]: that of the reduced model; a stop in contact yields by Hertz."""
     joint = case.joint
     model = reduced.spring_slider(case)
     if joint.stop_stiffness_N_per_m is not None:
@@ -65,8 +65,8 @@ def start_displacement(case: SpringSliderCase) -> float:
 
 
 def start_slide(case: SpringSliderCase) -> float:
-    """Return the slide [m] by which the floor's contact carries the friction of the start; none with a play, whose
-    friction is not the floor's."""
+    """Return the slide [m] by which the floor's contact carries the friction of the start; 0 with a play, whose
+    friction is not that of the floor."""
     if case.joint.play_m:
         return 0.0
     load_N = reduced.spring_slider(case).start_load_N

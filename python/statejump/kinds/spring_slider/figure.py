@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figure of runs of a ``spring_slider`` case: models on top of each other, stages and events marked."""
+"""Figure of runs of a ``spring_slider`` case: models in one figure, with marked stages and events."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -17,10 +17,10 @@ from statejump.kinds.spring_slider.case import SpringSliderCase
 STAGE_NAMES = {"at_stop_plus": "stop", "at_stop_minus": "stop", "in_play": "play"}
 STAGE_SHADES = {"S1": "0.94", "S2": "1.0", "S3": "0.94", "S4": "0.90", "S5": "1.0", "play": "0.97"}
 STOP_SHADE = "0.82"
-MOST_NAMED_CYCLES = 3  # beyond it names of stages would cover each other
+MOST_NAMED_CYCLES = 3  # with more cycles the names of stages would overlap
 
 
-DENSE = 4001  # points of the exact path, its events besides
+DENSE = 4001  # points of the exact path, in addition to its events
 QUANTITIES = (("displacement_m", 1e3, "Displacement of the slider [mm]"),
               ("axial_force_N", 1.0, "Axial force, compression positive [N]"))
 ABSCISSAE = (("temperature_change_K", "Temperature change [K]"), ("time_s", "Time [s]"))
@@ -60,7 +60,7 @@ def sheet(case: SpringSliderCase, runs: Sequence[Run]) -> Sheet:
 
 
 def _dense(path: _engine.SpringSliderPath, run: Run) -> dict[str, np.ndarray]:
-    """Return the exact path as a curve without corners cut off."""
+    """Return the exact path as a curve that includes its corners."""
     times = np.linspace(0, run.time_s[-1], DENSE)
     return path.sample(np.unique(np.concatenate((times, [event.time_s for event in path.events]))))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a campaign records of a run of a ``spring_slider`` case."""
+"""Outcomes of a ``spring_slider`` case for campaigns."""
 from __future__ import annotations
 
 import numpy as np

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs of a ``spring_slider`` case, from the columns of either model; and what to draw of it."""
+"""Runs of a ``spring_slider`` case, from the columns of either model; and its scene for drawings."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
@@ -21,10 +21,11 @@ from statejump.results.events import from_states
 from statejump.schema.fields import evolved
 
 CONTACTS = ("floor", "stop_minus", "stop_plus")
-# Displacement at the end of the program's rows, from the start: what a program that ends off the reference has.
+# Displacement at the end of the program's rows, from the start, for a program that does not end at the reference
+# temperature.
 AT_END = "displacement_at_program_end_m"
 SLIDING_STAGES = ("S2", "S5")
-# A rigid stop is touched to rounding; a sample that stands off further does not touch it.
+# A block at a rigid stop touches it to rounding. A sample at a larger distance does not touch it.
 TOUCHING = 1e-9
 
 
@@ -138,7 +139,7 @@ def _run(
 
 
 def _summary(case: SpringSliderCase, jump_m: float, there_m: float) -> dict[str, float]:
-    """Return the state jump, NaN where the program does not return, and the displacement where its rows end.
+    """Return the state jump, NaN if the program does not return, and the displacement at the end of its rows.
 
     :param jump_m: displacement at the end less that at the start
     :param there_m: displacement at the end of the program's rows less that at the start

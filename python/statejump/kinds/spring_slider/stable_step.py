@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Stable time step of the spring-slider scene.
 
-The limit of leapfrog for one oscillator is the kernel's, ``_engine.critical_time_step_s``. The slider moves
-along two axes:
+The limit of leapfrog for one oscillator is the kernel's, ``_engine.critical_time_step_s``. The slider moves along two
+axes:
 
-- across the floor (y): the floor's normal stiffness k_n, and k_t of a stop that it touches;
+- across the floor (y): the floor's normal stiffness k_n, and k_t of a touching stop;
 - along the bar (x): the link, k_t of the floor and k_n of a stop.
 
-Contacts are Hertz-Mindlin at the largest force they can see: the floor at twice the normal force (a load
-applied at once overshoots to twice its value), a stop at the force that would hold the whole thermal
-overlap and the preload rigidly, doubled for impact. A stop of a stiffness of its own has that one. Dashpots
-of all contacts of an axis are added.
+Contacts are Hertz-Mindlin contacts at their largest force. For the floor it is twice the normal force, because a sudden
+load overshoots to twice its value. For a stop it is twice the force that would hold the whole thermal overlap and the
+preload rigidly, because of impact. A stop with its own stiffness has that stiffness. Dashpots of all contacts of an
+axis are added.
 """
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where friction holds the block of a ``spring_slider`` case: its rest set at the temperatures of the program.
+"""Rest set of the block of a ``spring_slider`` case, at the temperatures of the program.
 
-The bar pushes with k_T (x_T - x), a preload spring pulls back with P + k_p x, and friction takes up to f. So the block
-rests wherever |k_T x_T - P - (k_T + k_p) x| <= f, a segment of half-length f/(k_T + k_p) about the place of zero
-force, as far as the stops let it; beyond a stop the wall takes what is left, and the block rests at the stop. At
-the reference temperature the two ends of the segment are as far apart as a state jump can be.
+The bar pushes with k_T (x_T - x), a preload spring pulls back with P + k_p x, and friction carries up to f. The block
+therefore rests wherever |k_T x_T - P - (k_T + k_p) x| <= f. This is a segment of half-length f/(k_T + k_p) about the
+position of zero force, within the stops. Beyond a stop the wall carries the remainder, and the block rests at the stop.
+At the reference temperature the length of the segment is the largest possible state jump.
 """
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ _DRAWN, _SAVED = Later("statejump.kinds.spring_slider.statics_figure:drawn"), La
 
 @dataclass(frozen=True)
 class Segment:
-    """Places at which the block rests at one temperature."""
+    """Positions at which the block rests at one temperature."""
 
     temperature_change_K: float
     from_m: float
     to_m: float
-    zero_force_m: float  # where neither friction nor a stop is needed
+    zero_force_m: float  # position without friction and stop force
 
     @property
     def length_m(self) -> float:
-        """How far apart two places of rest can be [m]."""
+        """Largest distance of two rest positions [m]."""
         return self.to_m - self.from_m
 
 
@@ -95,7 +95,7 @@ class RestSets:
         return str(self.frame().to_html(index=False))
 
 
-DENSE = 401  # temperatures of the picture
+DENSE = 401  # number of temperatures of the picture
 
 
 def segment(case: SpringSliderCase, friction_force_N: float, temperature_change_K: float) -> Segment:
@@ -113,7 +113,7 @@ def segment(case: SpringSliderCase, friction_force_N: float, temperature_change_
 
 
 def rest_sets(case: SpringSliderCase, friction_force_N: float, temperatures: int | None = None) -> RestSets:
-    """Return the rest sets at the ends of the program and at ΔT = 0, or at so many evenly spaced temperatures."""
+    """Return the rest sets at the ends of the program and at ΔT = 0, or at a number of evenly spaced temperatures."""
     coldest, hottest = case.temperature_range_K
     changes: Sequence[float] = sorted({coldest, 0.0, hottest})
     if temperatures is not None:
@@ -122,9 +122,9 @@ def rest_sets(case: SpringSliderCase, friction_force_N: float, temperatures: int
 
 
 def statics(case: SpringSliderCase, friction_coefficient: float | None = None) -> RestSets:
-    """Return where the block can rest.
+    """Return the rest positions of the block.
 
-    :param friction_coefficient: instead of the case's own
+    :param friction_coefficient: replaces that of the case
     """
     mu = case.joint.friction_coefficient if friction_coefficient is None else friction_coefficient
     return rest_sets(case, mu * case.joint.normal_force_N)

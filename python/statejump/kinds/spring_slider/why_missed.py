@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Why both models of a ``spring_slider`` case may have missed a tolerance."""
+"""Possible reasons why the models of a ``spring_slider`` case missed a tolerance."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -33,7 +33,7 @@ def why_missed(case: SpringSliderCase, exact: Run, dem: Run, rows: Sequence[Quan
 
 
 def _events(case: SpringSliderCase, dem: Run) -> list[str]:
-    """Return what moves events: samples, and contacts that give."""
+    """Return the reasons for a shift of events: samples, and the compliance of contacts."""
     found, allowed = [], case.tolerance.event_temperature_K
     between = float(np.abs(np.diff(dem["temperature_change_K"])).max())
     if between > allowed:

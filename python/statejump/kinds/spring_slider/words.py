@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A ``spring_slider`` case in words, and what a command prints of its runs."""
+"""Texts of a ``spring_slider`` case, and what a command prints of its runs."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ WORDS = {
     "floor": "Floor", "stop_plus": "Stop +", "stop_minus": "Stop −", "bar": "Bar", "at_stop_plus": "stop +",
     "at_stop_minus": "stop −", "in_play": "play", "displacement_m": "Displacement of the slider",
     "axial_force_N": "Axial force, compression positive", AT_END: "Displacement at the end of the program",
-    # What the stages of the reduced model mean.
+    # Meaning of the stages of the reduced model.
     "stage S1": "stick, never slid yet", "stage S2": "slip in the sense of the first slide",
     "stage S3": "stick, the link unloads", "stage S4": "stick, the link loads the other way",
     "stage S5": "slip against the first slide", "stage at_stop_plus": "at the stop, + side",
@@ -26,7 +26,8 @@ WORDS = {
 
 
 def describe(case: SpringSliderCase) -> list[str]:
-    """Return the case in sentences; its temperature program is told for all kinds alike."""
+    """Return the description of the case in sentences, without the temperature program, which all kinds describe
+    alike."""
     link, joint = case.link, case.joint
     minus, plus = joint.clearance_minus_m, joint.clearance_plus_m
     both = f"{text(minus, 'm')} and {text(plus, 'm')} away"
@@ -63,7 +64,8 @@ def _start(case: SpringSliderCase) -> str:
 
 
 def told(case: SpringSliderCase, runs: Mapping[str, Run]) -> list[Shown | str]:
-    """Return what a command prints of the runs: exact events of the first cycle, the jump of a model alone."""
+    """Return the lines that a command prints of the runs: exact events of the first cycle, and the jump of a single
+    model."""
     if len(runs) > 1:
         return []
     found: list[Shown | str] = []
@@ -87,7 +89,7 @@ def told(case: SpringSliderCase, runs: Mapping[str, Run]) -> list[Shown | str]:
 
 
 def event_reason(case: SpringSliderCase, event: Event, model: str, runs: Mapping[str, Run]) -> str:
-    """Return why only one of both models has an event; "" where it is not known."""
+    """Return the reason why only one of the models has an event; "" if it is unknown."""
     if event.kind in ("stop_unloaded", "force_sign_change", "cycle_end", "play_opened", "play_closed") and (
             model == "reduced"):
         return "a stage of the reduced model; no contact of the DEM changes its state"

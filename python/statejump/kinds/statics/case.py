@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cases of kind ``statics``: where a loaded clearance joint can rest, the paper's section 2.
+"""Cases of kind ``statics``: rest positions of a loaded clearance joint, the paper's section 2.
 
-Forces that depend on temperature, F0 + rate dT, are taken at the listed temperatures. Friction cones
-are convex, so what holds at the first and the last temperature holds between them: the intersection
-is exact with the two ends of the range. The union is that of the listed temperatures only.
+Forces that depend on temperature, F0 + rate dT, are evaluated at the listed temperatures. Friction cones are convex, so
+a condition that holds at the first and the last temperature also holds between them: the intersection is exact with the
+two ends of the range. The union is that of the listed temperatures only.
 """
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ KEYS_OF_TYPES = {
     "mesh_file": ("mesh",),
     "mesh_unit_m": ("mesh",),
 }
-# What a key of a [[force]] must be.
+# Conditions for a key of a [[force]].
 NEEDS: dict[str, dict[str, Any]] = {
     "name": {"code": "not_string"},
     "force_N": {"code": "force_components", "largest_N": LARGEST_FORCE_N},
@@ -80,7 +80,7 @@ class Force(Section):
 
 
 def read_forces(name: str, value: Any) -> list[Force]:
-    """Return the forces of ``[[force]]``; they need no names, so that messages count them.
+    """Return the forces of ``[[force]]``. They need no names, so messages number them.
 
     :raises StatejumpError: one failure, without the file's name
     """
@@ -106,7 +106,7 @@ def read_forces(name: str, value: Any) -> list[Force]:
 
 @definition
 class StaticsJoint(Section):
-    """The joint: what its clearance leaves free, and friction."""
+    """The joint: geometry of its clearance, and friction."""
 
     GOES_WITH = {"type": KEYS_OF_TYPES}
 
@@ -123,7 +123,7 @@ class StaticsJoint(Section):
 
 @definition
 class Picture(Section):
-    """What is drawn besides the case's own friction coefficient."""
+    """Friction coefficients for drawings, besides that of the case."""
 
     friction_coefficients: list[float] = numbers([], "-", 0, 100, "one panel each, two dimensions")
 
@@ -138,7 +138,7 @@ class LoadCase:
 
 @definition
 class StaticsCase(Case):
-    """Where a loaded joint can rest: its position under given forces, friction included."""
+    """Rest positions of a loaded joint under given forces, friction included."""
 
     KIND: ClassVar[str] = "statics"
     NOT_IN_FILE: ClassVar[Mapping[str, str]] = {
@@ -148,14 +148,14 @@ class StaticsCase(Case):
     joint: StaticsJoint = section(StaticsJoint, required=True)
     force: list[Force] = tables(Force, "sections [[force]]", required=True, read=read_forces)
     picture: Picture = section(Picture)
-    # The common part of all kinds; forces carry their temperatures themselves.
+    # The section that all kinds have; here forces have their own temperatures.
     thermal: CaseThermal = section(
         CaseThermal, made=lambda: CaseThermal(shape="triangle", temperature_change_max_K=0.0)
     )
 
     @property
     def load_cases(self) -> list[LoadCase]:
-        """Every force, one per temperature where it depends on it."""
+        """Every force; one per temperature if it depends on temperature."""
         return [
             load for number, force in enumerate(self.force, start=1)
             for load in force.at_temperatures(force.name or f"F{number}")
@@ -167,7 +167,7 @@ class StaticsCase(Case):
         return self.joint.type in ("slot", "journal", "lobed")
 
     def check(self) -> None:
-        """Raise StatejumpError for what is wrong between several keys."""
+        """Raise StatejumpError for a contradiction between several keys."""
         self._check_joint()
         self._check_forces()
 

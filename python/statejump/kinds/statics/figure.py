@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of rest sets: where the centre of a component can be, under which force."""
+"""Pictures of rest sets: positions of the centre of a component, with the forces that hold it."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ from statejump.kinds.statics.solve import Statics
 
 COLOURS = ("#E69F00", "#0072B2", "#009E73", "#CC79A7", "#D55E00", "#56B4E9")
 EVERY = "#000000"
-MOST_DRAWN = len(COLOURS)  # of more forces only union and intersection are drawn
+MOST_DRAWN = len(COLOURS)  # with more forces only union and intersection are drawn
 SURFACE, HELD, HELD_BY_ALL = "#C9CED3", "#E69F00", "#0072B2"
 MICRO = 1e6
 
@@ -120,7 +120,7 @@ def _name(panel: Axes, text: str, place: np.ndarray) -> None:
 
 
 def _cone(panel: Axes, apex: np.ndarray, axis: np.ndarray, mu: float, size: float, colour: str = "0.5") -> None:
-    """Friction cone: of the reactions that the surface can give, or of directions to the contact."""
+    """Draw a friction cone: of the possible reactions of the surface, or of directions to the contact."""
     if mu == 0:
         return
     middle, half = degrees(atan2(axis[1], axis[0])), degrees(atan(mu))
@@ -169,7 +169,7 @@ def _ring(panel: Axes, case: StaticsCase, statics: Statics) -> None:
             _arrow(panel, np.zeros(2), 0.5 * c * force, colour)
             _name(panel, load.name, 0.6 * c * force)
         if not several and statics.any["parts"]:
-            # At the end of a part the reaction lies on the edge of the cone.
+            # At the end of a part the reaction is on the boundary of the cone.
             longest = max(statics.any["parts"], key=lambda part: part["length_m"])
             apex = longest["points_m"][-1, :2] * MICRO
             force = np.array(statics.loads[0].force_N[:2]) / hypot(*statics.loads[0].force_N)
@@ -221,7 +221,7 @@ def _slot(panel: Axes, case: StaticsCase, statics: Statics) -> None:
 def spatial(statics: Statics) -> Figure:
     """Draw the surface of positions, shaded, the rest sets on it."""
     with style():
-        drawing = Drawing(figsize=(7.0, 6.4), dpi=160)  # of the picture inside the SVG
+        drawing = Drawing(figsize=(7.0, 6.4), dpi=160)  # resolution of the picture inside the SVG
         panel = drawing.add_axes((0.0, 0.08, 1.0, 0.84), projection="3d", computed_zorder=False)
         handles = _space(panel, statics)
         drawing.legend(handles=handles, loc="lower center", ncol=2, fontsize=8, framealpha=1)
@@ -230,7 +230,7 @@ def spatial(statics: Statics) -> Figure:
 
 
 def _space(panel: Any, statics: Statics) -> list[Any]:
-    """Draw positions in space into three-dimensional axes; return what the legend shows."""
+    """Draw positions in space into three-dimensional axes; return the entries of the legend."""
     polygons = [polygon * MICRO for polygon in statics.pieces["polygons_m"]]
     points = np.concatenate(polygons)
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
@@ -251,7 +251,7 @@ def _space(panel: Any, statics: Statics) -> list[Any]:
 
 
 def _viewpoint(statics: Statics, middle: np.ndarray) -> tuple[float, float]:
-    """Return azimuth and elevation [°] from outside, somewhat beside the middle of the rest set."""
+    """Return azimuth and elevation [°] of a view from outside, slightly beside the middle of the rest set."""
     forces = np.array([load.force_N for load in statics.loads])
     mean = (forces / np.linalg.norm(forces, axis=1)[:, None]).sum(axis=0)
     centre = np.mean([part["representative_m"] for part in statics.any["parts"]] or [mean], axis=0) * MICRO
@@ -261,7 +261,7 @@ def _viewpoint(statics: Statics, middle: np.ndarray) -> tuple[float, float]:
 
 
 def _shaded_surface(panel: Any, statics: Statics, polygons: list[np.ndarray], view: np.ndarray) -> list[Any]:
-    """Draw the positions, coloured by the forces that hold them; return what the legend shows."""
+    """Draw the positions, coloured by the forces that hold them; return the entries of the legend."""
     counts = np.array(statics.pieces["polygon_forces"])
     every = len(statics.loads)
     colours = np.where((counts == 0)[:, None], _rgb(SURFACE), np.where(
@@ -282,7 +282,7 @@ def _shaded_surface(panel: Any, statics: Statics, polygons: list[np.ndarray], vi
 
 
 def _rest_sets(panel: Any, statics: Statics, middle: np.ndarray, view: np.ndarray) -> list[Any]:
-    """Draw the outlines of the rest sets and their farthest two positions; return what the legend shows."""
+    """Draw the outlines of the rest sets and their two farthest positions; return the entries of the legend."""
     for part in statics.any["parts"]:
         line = part["points_m"] * MICRO
         if len(line):
@@ -302,7 +302,7 @@ def _rest_sets(panel: Any, statics: Statics, middle: np.ndarray, view: np.ndarra
 
 
 def _forces_around(panel: Any, statics: Statics, middle: np.ndarray, reach: float) -> list[Any]:
-    """Draw the forces as arrows outside the surface; return what the legend shows."""
+    """Draw the forces as arrows outside the surface; return the entries of the legend."""
     every, handles = len(statics.loads), []
     shown = statics.loads if every <= MOST_DRAWN else [statics.loads[0], statics.loads[-1]]
     for index, load in enumerate(shown, start=1):

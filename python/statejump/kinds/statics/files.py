@@ -57,8 +57,8 @@ def write_statics_json(statics: Statics, folder: Path) -> Path:
 def write_vtp(statics: Statics, folder: Path) -> Path:
     """Write ``<case>.vtp`` for ParaView: the surface of positions, cut along the rest sets.
 
-    Cell arrays: ``stable`` (1 if at least one force allows rest), ``forces`` (how many do). Point
-    array: ``cone_angle_rad``, the smallest angle(-F, N) over the forces.
+    Cell arrays: ``stable`` (1 if at least one force allows rest), ``forces`` (number of such forces). Point array:
+    ``cone_angle_rad``, the smallest angle(-F, N) over the forces.
     """
     target = folder / f"{statics.case.name}.vtp"
     try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces of positions as triangles: of a cylinder in its bore, from a file; their normals."""
+"""Surfaces of positions as triangles, of a cylinder in its bore or from a file, and their normals."""
 from __future__ import annotations
 
 from math import cos, pi, sin
@@ -11,11 +11,11 @@ from statejump import _engine
 from statejump.core.errors import NotAllowed, StatejumpError, shown
 from statejump.kinds.statics.case import StaticsCase
 
-SIDES = 96  # of the can that stands for a cylinder's positions
+SIDES = 96  # sides of the cylinder of positions
 
 
 def can_mesh(clearance_m: float, axial_play_m: float) -> _engine.RestMesh:
-    """Positions of a cylinder's centre: wall and two discs, each with normals of its own."""
+    """Positions of a cylinder's centre: wall and two discs, each with its own normals."""
     vertices: list[tuple[float, float, float]] = []
     normals: list[tuple[float, float, float]] = []
     triangles: list[tuple[int, int, int]] = []
@@ -55,11 +55,11 @@ class MeshUnusable(StatejumpError):
 
 
 def read_mesh(case: StaticsCase) -> _engine.RestMesh:
-    """Read the mesh of a case through VTK: STL, OBJ, PLY or VTP; points that coincide are one.
+    """Read the mesh of a case through VTK: STL, OBJ, PLY or VTP. Coincident points are merged.
 
-    A relative path is looked for in the folder of the case file.
+    A relative path begins in the folder of the case file.
 
-    :raises StatejumpError: it cannot be read, or holds no triangles
+    :raises StatejumpError: it cannot be read, or has no triangles
     """
     joint, name = case.joint, case.joint.mesh_file
     assert name is not None and joint.mesh_unit_m is not None
@@ -84,13 +84,13 @@ def read_mesh(case: StaticsCase) -> _engine.RestMesh:
     if joint.mesh_free_side == "left_hand":
         triangles = triangles[:, ::-1]
     extent = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
-    # Two units in the last place of the largest coordinate, one for each of two roundings of one vertex.
+    # Two units in the last place of the largest coordinate: one for each rounding of a vertex that is written twice.
     rounding = 2 * float(np.finfo(stored.dtype).eps) * float(np.abs(points).max())
     return _engine.welded(_engine.RestMesh(points, triangles.tolist()), max(1e-9 * extent, rounding))
 
 
 def vertex_normals(mesh: _engine.RestMesh) -> np.ndarray:
-    """Normals at the vertices, unit; of a mesh without, the mean that the engine takes."""
+    """Unit normals at the vertices; for a mesh without normals, the mean that the engine computes."""
     if len(mesh.normals):
         return mesh.normals / np.linalg.norm(mesh.normals, axis=1)[:, None]
     points, triangles = mesh.vertices_m, np.array(mesh.triangles)

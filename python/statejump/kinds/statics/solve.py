@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a loaded clearance joint can rest: the rest sets of a case."""
+"""Rest sets of a loaded clearance joint."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -35,8 +35,8 @@ FRICTION = "joint.friction_coefficient"
 class Statics:
     """Rest sets of a case: one per force, the union (``any``), the intersection (``all``).
 
-    A set is a dict: ``parts`` that are apart, its ``length_m`` and ``area_m2``, its largest distance
-    ``diameter_m``, the largest jump that friction allows, and the two positions that far apart, ``farthest_m``.
+    A set is a dict: separate ``parts``, its ``length_m`` and ``area_m2``, its largest distance ``diameter_m``, which
+    bounds every state jump, and two positions at this distance, ``farthest_m``.
 
     :param curve: curve of the centre of a journal in a lobed bearing
     :param mesh: surface of the positions in space, for pictures
@@ -61,8 +61,8 @@ class Statics:
         return sets
 
     def frame(self) -> pandas.DataFrame:
-        """Return a row per part of every set, units in the names of the columns; of an empty set a row without
-        numbers. ``set_diameter_m`` is that of the whole set: the largest jump."""
+        """Return one row per part of every set, with units in the column names; an empty set has a row without numbers.
+        ``set_diameter_m`` is that of the whole set: the largest jump."""
         pandas = libraries.pandas()
 
         rows = []
@@ -82,21 +82,21 @@ class Statics:
         return pandas.DataFrame(rows, columns=list(columns))
 
     def plot(self, axes: Axes | None = None) -> Figure:
-        """Draw the rest sets where they are.
+        """Draw the rest sets.
 
-        :param axes: axes to draw into, of positions in space three-dimensional ones; None: a new figure
-        :return: the figure; matplotlib's backend is left alone
+        :param axes: axes to draw into, three-dimensional for positions in space; None: a new figure
+        :return: the figure; matplotlib's backend does not change
         """
         return _DRAWN(self, axes)
 
     def told(self) -> list[Shown | str]:
-        """Return what a command prints of it, tables and lines."""
+        """Return the tables and lines that a command prints."""
         return _TOLD(self)
 
     def write(self, folder: Path) -> list[Path]:
-        """Write ``statics.json``, the picture and, of positions in space, a ParaView file; return their paths.
+        """Write ``statics.json``, the picture and, for positions in space, a ParaView file; return their paths.
 
-        On a curve the picture has a panel for each friction coefficient that the case names besides its own.
+        On a curve the picture has a panel for each further friction coefficient of the case.
         """
         return _WRITTEN(self, folder)
 
@@ -111,9 +111,9 @@ class Statics:
 def solve(case: StaticsCase, friction_coefficient: float | None = None) -> Statics:
     """Return the rest sets of a case.
 
-    :param friction_coefficient: instead of the case's own
-    :raises NotAllowed: there is no such friction coefficient
-    :raises StatejumpError: the mesh of the case cannot be used
+    :param friction_coefficient: replaces that of the case
+    :raises NotAllowed: the friction coefficient is invalid
+    :raises StatejumpError: the mesh of the case is unusable
     """
     joint, loads = case.joint, case.load_cases
     mu = joint.friction_coefficient

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a ``statics`` case and its rest sets say: in sentences, in the table of the command, in a notebook."""
+"""Texts of a ``statics`` case and its rest sets: sentences, the table of the command, a notebook."""
 from __future__ import annotations
 
 from html import escape
@@ -47,7 +47,7 @@ def rows(statics: Statics) -> list[tuple[str, ...]]:
 
 
 def notes(statics: Statics) -> list[str]:
-    """Return what the table alone does not say."""
+    """Return the facts that the table does not contain."""
     found = []
     if not statics.all["parts"] and len(statics.loads) > 1:
         found.append(NOWHERE)

@@ -21,24 +21,24 @@ from statejump.schema.texts import BLOCK, Names
 ArraysType = TypeVar("ArraysType")
 
 GROUND = -1
-# Directions that differ by less are equal: far above rounding, far below any intended difference.
+# Directions with a smaller difference are equal: far above rounding, far below any intended difference.
 SAME_DIRECTION = 1e-6
 
 
 def none_of(joints: Any) -> Any:
-    """Return arrays of the same type without any joint."""
+    """Return arrays of the same type without any item."""
     return type(joints)(**{key: value[:0] for key, value in vars(joints).items()})
 
 
 def column(items: Sequence[Item], key: str) -> np.ndarray:
-    """Return one number of every item; NaN where it is not given."""
+    """Return one number of every item; NaN if it is missing."""
     if isinstance(items, ItemColumns):
         return items.numbers(key)
     return np.array([getattr(item, key) for item in items], dtype=float)
 
 
 def values(items: Sequence[Any], key: str) -> Iterable[Any]:
-    """Return a key of every item, None where it is not given."""
+    """Return a key of every item, None if it is missing."""
     return items.values(key) if isinstance(items, ItemColumns) else (getattr(item, key) for item in items)
 
 
@@ -58,8 +58,8 @@ def names(items: Sequence[Item]) -> Sequence[str]:
 
 
 def given_or(given: np.ndarray, other: np.ndarray | float) -> np.ndarray:
-    """Return numbers of items, where one is not given, NaN, the other. Not to be written to: as far as they are all of
-    one kind they are not copied."""
+    """Return numbers of items, with a replacement for missing ones (NaN). Do not write to the result, because it may be
+    the argument itself."""
     none = np.isnan(given)
     if none.all():
         return np.broadcast_to(other, given.shape)
@@ -67,7 +67,7 @@ def given_or(given: np.ndarray, other: np.ndarray | float) -> np.ndarray:
 
 
 def said(items: Sequence[Any], key: str) -> np.ndarray:
-    """Return the items (n,) for which a number or a vector of a key is given."""
+    """Return the items (n,) that have a number or a vector for a key."""
     if not isinstance(items, ItemColumns):
         return np.array([getattr(item, key) is not None for item in items], dtype=bool)
     given = ~np.isnan(items.numbers(key))
@@ -75,7 +75,7 @@ def said(items: Sequence[Any], key: str) -> np.ndarray:
 
 
 def having(items: Sequence[Any], key: str, text: str) -> np.ndarray:
-    """Return which items (n,) have this text, or a list with it."""
+    """Return the items (n,) that have this text, or a list with it."""
     if isinstance(items, ItemColumns):
         return items.texts(key).has(text)
     return np.array([text == value if isinstance(value, str) else text in (value or ())
@@ -83,7 +83,8 @@ def having(items: Sequence[Any], key: str, text: str) -> np.ndarray:
 
 
 def vectors(items: Sequence[Item], key: str, dimension: int) -> np.ndarray:
-    """Return a vector of every item (n, 3), of 2 or 3 numbers each, zero where there is none. Not to be written to."""
+    """Return a vector of every item (n, 3) from 2 or 3 numbers each; zero if it is missing. Do not write to the
+    result."""
     if isinstance(items, ItemColumns):
         given = items.numbers(key)
         none = np.isnan(given)
@@ -107,7 +108,7 @@ def in_space(given: Sequence[float] | None, dimension: int) -> np.ndarray:
 
 
 def unit(given: np.ndarray) -> np.ndarray:
-    """Return vectors (n, 3) of length 1; a zero vector stays."""
+    """Return vectors (n, 3) of length 1; a zero vector stays zero."""
     if not given.any():
         return given
     lengths = np.linalg.norm(given, axis=-1, keepdims=True)
@@ -125,7 +126,7 @@ def distances(position_m: np.ndarray, pairs: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class References:
-    """What names of a case stand for. References must be right: ``checks`` sees to it when a case is read."""
+    """Indices of the names in a case. References must be valid: ``checks`` verifies them when a case is read."""
 
     dimension: int
     position_m: np.ndarray  # (n, 3) of the nodes
@@ -150,12 +151,13 @@ class References:
 
 
 def indices(items: Sequence[Any], key: str, among: Places) -> np.ndarray:
-    """Return what a key of every item names (items,), GROUND where it names none."""
+    """Return the index of the item that a key of every item names (items,); GROUND if it names none."""
     return among.of(items, key)
 
 
 def pairs(items: Sequence[Any], key: str, among: Places) -> np.ndarray:
-    """Return the one or two that a key of every item names (items, 2), GROUND in place of the second."""
+    """Return the indices of the one or two items that a key of every item names (items, 2); GROUND for a missing
+    second."""
     found = np.full((len(items), 2), GROUND, dtype=np.int32)
     if len(items):
         given = among.of(items, key)[:, :2]
@@ -165,12 +167,12 @@ def pairs(items: Sequence[Any], key: str, among: Places) -> np.ndarray:
 
 def arrays_of(made: type[ArraysType], model: type[Item], items: Sequence[Any], known: References, **own: Any
               ) -> ArraysType:
-    """Return items as a dataclass of arrays. A field has the name of a key and its values; ``names`` are those of the
-    items.
+    """Return items as a dataclass of arrays. A field has the name of a key and its values; ``names`` has the names of
+    the items.
 
     :param made: the dataclass
-    :param model: what an item is
-    :param own: arrays of fields that are not a key as it is given
+    :param model: class of an item
+    :param own: arrays of fields that differ from the given keys
     """
     given = {field.name: names(items) if field.name == "names" else _of_key(field.name, model, items, known)
              for field in fields(made) if field.name not in own}  # type: ignore[arg-type]  # it is a dataclass
@@ -178,7 +180,7 @@ def arrays_of(made: type[ArraysType], model: type[Item], items: Sequence[Any], k
 
 
 def _of_key(key: str, model: type[Item], items: Sequence[Any], known: References) -> Any:
-    """Return the values of a key: names of nodes, links and programs as indices, axes as unit vectors."""
+    """Return the values of a key: indices for names of nodes, links and programs, unit vectors for axes."""
     rule = rule_of(fields_of(model)[key])
     if key == "program":
         return known.programs_of(items)

@@ -21,8 +21,8 @@ class TrussCase(TrussSections):
         return resolve(self)
 
     def resolve(self) -> ResolvedTruss:
-        """Return the truss as arrays: names turned into indices, defaults filled in, axes of length 1. It is made
-        once and not to be written to."""
+        """Return the truss as arrays: names as indices, with defaults, axes of length 1. It is computed once; do not
+        write to it."""
         return self._resolved
 
     @property
@@ -30,5 +30,5 @@ class TrussCase(TrussSections):
         return implausible(self.resolve())
 
     def check(self) -> None:
-        """Raise StatejumpError for what is wrong between several keys."""
+        """Raise StatejumpError for a contradiction between several keys."""
         checks.check(self, self.resolve)

@@ -12,7 +12,7 @@ from statejump.kinds.truss.sections import TrussSections
 
 
 def check_constraints(case: TrussSections, nodes: Mapping[str, Any]) -> None:
-    """Raise NotAllowed for the first constraint whose terms do not fit."""
+    """Raise NotAllowed for the first constraint with inconsistent terms."""
     for item in case.constraint:
         where = {"item": f"constraint {item.name!r}"}
         if not item.nodes:

@@ -18,7 +18,7 @@ from statejump.schema.item_tables import ItemColumns, where_wrong
 
 
 def check(case: TrussSections, links: Mapping[str, Any]) -> None:
-    """Raise StatejumpError for gravity, bodies and drives that do not fit."""
+    """Raise StatejumpError for invalid gravity, bodies or drives."""
     dimension = case.truss.dimension
     vector("truss.gravity_m_per_s2", case.truss.gravity_m_per_s2, "m/s2", dimension, False)
     heavy, lumped = any(case.truss.gravity_m_per_s2 or ()), case.motion.masses == "lumped"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks of references between the items of a truss: names exist, ends fit, no two keys exclude each other."""
+"""Checks of references between the items of a truss: names exist, ends match, no two keys exclude each other."""
 from __future__ import annotations
 
 import difflib
@@ -27,7 +27,7 @@ _WITH_TEMPERATURE = [joint for joint in JOINTS if joint.has_temperature]
 
 
 def check_references(case: TrussSections) -> None:
-    """Raise StatejumpError for the first name that does not exist or does not fit."""
+    """Raise StatejumpError for the first name that does not exist or does not match."""
     nodes, links = by_name(case.node), by_name(case.link)
     node_places, link_places = Places(case.node), Places(case.link)
     for link in where_wrong(case.link, lambda items: wrong_ends(node_places.of(items, "nodes"), 2)):
@@ -62,7 +62,7 @@ def _held(case: TrussSections) -> np.ndarray:
 
 
 def _followers(case: TrussSections) -> Iterator[tuple[Any, dict[str, Any], bool]]:
-    """Return what follows a temperature: the item, how failures name it, whether it expands."""
+    """Return the items that follow a temperature: item, name in messages, whether it expands."""
     yield from ((link, {"item": f"link {link.name!r}"}, True)
                 for link in each(case.link, "name", "program", "temperature_fraction"))
     yield from ((item, joint.where(item.name), joint.expands(item)) for joint in _WITH_TEMPERATURE
@@ -82,7 +82,7 @@ def _programs(case: TrussSections) -> None:
 
 
 def _expansions(case: TrussSections) -> None:
-    """Every link has a coefficient or names one that follows the temperature."""
+    """Check that every link has a coefficient, or names one that depends on temperature."""
     expansions, places = by_name(case.expansion), Places(case.expansion)
 
     def wrong(links: ItemColumns[Link]) -> np.ndarray:
@@ -101,7 +101,8 @@ def _expansions(case: TrussSections) -> None:
 
 
 def _members(case: TrussSections) -> None:
-    """Every link has a column of the histories of members or names a program; every column is of a member."""
+    """Check that every link has a column of the histories of members or names a program, and that every column belongs
+    to a member."""
     members = case.thermal.members
     if members is None:
         return

@@ -32,9 +32,9 @@ SECTIONS = ("node", "link", "program", "expansion", *(joint.section for joint in
 
 
 def check(case: TrussSections, resolve: Callable[[], ResolvedTruss]) -> None:
-    """Raise StatejumpError for the first fault of a truss as a whole, without the name of the file.
+    """Raise StatejumpError for the first fault of a truss, without the name of the file.
 
-    :param resolve: returns its arrays; called when its references are valid
+    :param resolve: returns its arrays; called after its references are checked
     """
     if case.tables is not None:
         raise NotAllowed("section [tables]", code="tables_of_case_file")

@@ -20,7 +20,7 @@ def energy_residual(energy: Mapping[str, Column]) -> float:
     """Return supplied minus stored minus dissipated energy over the whole run [J]."""
     undamped = energy_residue_J(energy, ("thermal_work_J", "external_work_J"), ("elastic_energy_J", "kinetic_energy_J"),
                                 ("friction_dissipation_J",))
-    # Subtracted last: the residue is a small difference, and another order would round differently.
+    # Subtracted last, because the residue is a small difference, and another order would round differently.
     return undamped - change(energy, "damping_dissipation_J") - change(energy, "impact_dissipation_J")
 
 
@@ -31,8 +31,9 @@ def jumps_m(run: Run) -> np.ndarray:
 
 
 def loop_width_m(case: TrussCase, run: Run, hung: np.ndarray | None = None) -> float:
-    """Width of the first cycle's loop [m]: largest motion of a node between heating and cooling at one
-    temperature. 0 where these are not one branch each, as in a sine. Nodes that hang at a sample are left out."""
+    """Width of the first cycle's loop [m]: largest difference of a node between heating and cooling at one temperature.
+    It is 0 if the cycle does not consist of one heating and one cooling branch, as for a sine. Nodes that hang slack at
+    a sample are omitted."""
     end = case.samples_per_cycle + 1
     change = run["temperature_change_K"][:end]
     displacement = run["displacement_m"][:end]
@@ -57,10 +58,10 @@ def scales_of(case: TrussCase, run: Run) -> Scales:
 
 
 def jump_scale_m(case: TrussCase, run: Run, hung: np.ndarray) -> float:
-    """What differences of jumps are measured by [m]: the largest jump or the loop's width, the larger. Where both are
-    NO_JUMP of the difference of displacements that the case allows, or less, it is COMPARED of the motion.
+    """Scale of differences of jumps [m]: the larger of the largest jump and the width of the loop. If both are at most
+    NO_JUMP of the allowed difference of displacements, it is COMPARED of the motion.
 
-    :param hung: at which samples nodes hang (samples, nodes), see :func:`hanging`
+    :param hung: samples at which nodes hang slack (samples, nodes), see :func:`hanging`
     """
     jumps, tolerance = np.linalg.norm(_jumps_m(run, hung), axis=1), case.tolerance
     allowed = tolerance.displacement_relative * scales(case.resolve(), _displacement_m(run, hung)).motion_m
@@ -75,22 +76,22 @@ def _relative(name: str, difference: float, scale: float, tolerance: float) -> Q
 
 
 def _displacement_m(run: Run, hung: np.ndarray) -> np.ndarray:
-    """Displacements [m] (samples, nodes, 3), zero where nodes hang."""
+    """Displacements [m] (samples, nodes, 3), zero for nodes that hang slack."""
     return np.where(hung[:, :, None], 0.0, run["displacement_m"])
 
 
 def _jumps_m(run: Run, hung: np.ndarray) -> np.ndarray:
-    """State jump of every node [m] (nodes, 3), zero of those that hang at the start or at the end."""
+    """State jump of every node [m] (nodes, 3), zero for nodes that hang slack at the start or at the end."""
     return np.where(hung[[0, -1]].any(axis=0)[:, None], 0.0, jumps_m(run))
 
 
 def hung_nodes(case: TrussCase, run: Run) -> np.ndarray:
-    """Return at which samples nodes hang slack (samples, nodes)."""
+    """Return the samples at which nodes hang slack (samples, nodes)."""
     return hanging(case, run, COMPARED * scales_of(case, run).force_N)
 
 
 def difference(case: TrussCase, first: Run, second: Run) -> list[Quantity]:
-    """Compare two runs at the same times; the first gives the scales. Nodes that hang slack in it are left out."""
+    """Compare two runs at the same times; the first gives the scales. Nodes that hang slack in it are omitted."""
     tolerance, hung = case.tolerance, hung_nodes(case, first)
     ours, other = (_displacement_m(run, hung) for run in (first, second))
     of = scales(case.resolve(), ours)
@@ -121,13 +122,13 @@ def difference(case: TrussCase, first: Run, second: Run) -> list[Quantity]:
 
 
 def reduced_name(run: Run) -> str:
-    """Return what the reduced model of a run is: the solver of quasi-static paths, or motion."""
+    """Return the name of the reduced model of a run: the quasi-static solver, or motion."""
     return "reduced model in motion" if "velocity_m_per_s" in run.history else "quasi-static solver"
 
 
 def loop_drift_m(case: TrussCase, run: Run, hung: np.ndarray | None = None) -> float:
-    """Largest distance of a node in any later cycle from where it was in the second at the same phase [m]. Nodes that
-    hang at a sample are left out."""
+    """Largest distance of a node in any later cycle from its position in the second cycle at the same phase [m]. Nodes
+    that hang slack at a sample are omitted."""
     samples, displacement = case.samples_per_cycle, run["displacement_m"]
     if hung is not None:
         displacement = displacement[:, ~hung.any(axis=0)]
@@ -136,8 +137,8 @@ def loop_drift_m(case: TrussCase, run: Run, hung: np.ndarray | None = None) -> f
 
 
 def _energy_row(case: TrussCase, dem: Run) -> Quantity:
-    """Residue over the work of friction; without friction over the energy that is stored and spent. An energy is of
-    second order in the motion, so its least scale is that of forces squared."""
+    """Compare the energy residue with the work of friction; without friction, with stored and supplied energy. An
+    energy is of second order in the motion, so its smallest scale is the square of that of forces."""
     residual = energy_residual(dem.energy)
     scale = change(dem.energy, "friction_dissipation_J")
     name, least = "energy_residual_over_friction_work", COMPARED**2 * scales_of(case, dem).energy_J
@@ -164,7 +165,7 @@ def compare(case: TrussCase, reduced: Run, dem: Run) -> Comparison:
 
 
 def jump_table(case: TrussCase, run: Run, most: int = 8) -> list[tuple[Any, ...]]:
-    """Return name, jump along x, y, z and its length [m] of the nodes that jump most. Rounding is no jump."""
+    """Return name, jump along x, y, z and its length [m] of the nodes with the largest jumps. Rounding is no jump."""
     jumps, rounding_m = jumps_m(run), scales_of(case, run).rounding_m
     length = np.linalg.norm(jumps, axis=1)
     order = np.argsort(-length, kind="stable")[:most]

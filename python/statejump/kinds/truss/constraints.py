@@ -13,15 +13,15 @@ from statejump.schema.item_tables import Places
 from statejump.schema.items import Item
 
 AXES = ("x", "y", "z")
-# Below this fraction of the largest coefficient of its constraint the solver cannot tell one from rounding: it counts
-# what 1e-12 of two coefficients is left where they cancel as none.
+# The solver cannot distinguish a coefficient below this fraction of the largest one of its constraint from rounding: a
+# sum of two coefficients that cancel to 1e-12 counts as zero.
 LEAST_COEFFICIENT = 1e-9
 
 
 @definition
 class Constraint(Item):
-    """A sum of displacements that is always zero: a coefficient times the displacement of a node along an axis, for
-    each term. As ``MPC`` of Nastran and ``*EQUATION`` of CalculiX."""
+    """A sum of displacements that is always zero: for each term a coefficient times the displacement of a node along an
+    axis. The same as ``MPC`` of Nastran and ``*EQUATION`` of CalculiX."""
 
     nodes: list[str] = texts(..., "the node of each term")
     directions: list[str] = texts(..., "the direction of each term", AXES)
@@ -42,8 +42,8 @@ class Constraints:
         return np.concatenate(found) if found else np.zeros((0, 2), dtype=np.int32)
 
     def grounded(self) -> np.ndarray:
-        """Return the nodes of constraints that a translation of the whole truss violates: they hold it as supports
-        do."""
+        """Return the nodes of constraints that a translation of the whole truss violates. These constraints act as
+        supports."""
         found = [nodes for nodes, of in zip(self.nodes, self.coefficients)
                  if np.linalg.norm(of.sum(axis=0)) > LEAST_COEFFICIENT * np.abs(of).max()]
         return np.concatenate(found) if found else np.zeros(0, dtype=np.int32)

@@ -15,7 +15,7 @@ from statejump.kinds.truss.solve import settings, whole_path
 from statejump.schema.rules import WHOLE, Rule
 
 NUMBER = Rule(WHOLE, allowed=Range(1, 10_000))
-# W is dense: 2 rows a joint. 2000 joints make 128 MB of each problem.
+# W is dense, with 2 rows per joint. For 2000 joints each problem has 128 MB.
 MOST_JOINTS = 2000
 
 
@@ -23,10 +23,10 @@ MOST_JOINTS = 2000
 class ContactProblem:
     """The frictional contact problem of one step.
 
-    :param problem: u = W r + q of the joints that can be contacts, the path's own reactions as what is stored
-    :param velocities: the path's motions of the step [m]: gap at its end, slide of the step
+    :param problem: u = W r + q of the joints that can be contacts, with the reactions of the path as stored solution
+    :param velocities: motions of the path in the step [m]: gap at its end, slide of the step
     :param joints: the joint of every contact
-    :param merit: of the path's reactions
+    :param merit: of the reactions of the path
     """
 
     time_s: float
@@ -41,7 +41,7 @@ def contact_problems(case: TrussCase, number: int, tell: Tell = lambda share: No
     """Return the problems of a number of steps, evenly spaced over the path; fewer if the path has fewer steps.
 
     :raises NotAllowed: the number is out of its range
-    :raises StatejumpError: the truss has no joints that are contacts, or too many for a dense W; they slip in part
+    :raises StatejumpError: no joint is a contact, there are too many for a dense W, or they have partial slip
     :raises FailedRun: the solver finds no path
     """
     NUMBER.check("number", number)

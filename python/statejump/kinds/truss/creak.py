@@ -24,17 +24,17 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-SEGMENTS = 16  # of the record, averaged after Welch: the density is known to about 1/sqrt(2 · 16) of itself
-LEAST_PERIODS = 16  # of a band's lowest frequency in the record
-ORDER = 4  # of the Butterworth filters that take a band out of the record
+SEGMENTS = 16  # segments for Welch's average: the relative error of the density is about 1/sqrt(2 · 16)
+LEAST_PERIODS = 16  # periods of a band's lowest frequency in the record
+ORDER = 4  # order of the Butterworth filters of the bands
 
 
 @dataclass(frozen=True)
 class Creak:
-    """Slips of the joints of a truss in motion and the acceleration of one node.
+    """Slips of the joints of a truss in motion, and the acceleration of one node.
 
-    ``slips``: joint, start_s, duration_s, temperature_change_K, heat_J of every slip; one that lasts to the end of
-    the record ends there. ``bands``: low_Hz, high_Hz, rms_m_per_s2, peak_m_per_s2 of octaves below half the rate of
+    ``slips``: joint, start_s, duration_s, temperature_change_K, heat_J of every slip. A slip that continues at the end
+    of the record ends there. ``bands``: low_Hz, high_Hz, rms_m_per_s2, peak_m_per_s2 of octaves below half the rate of
     steps.
     """
 
@@ -46,7 +46,7 @@ class Creak:
     slips: Sequence[Mapping[str, Any]]
     bands: Sequence[Mapping[str, Any]]
     frequency_Hz: np.ndarray
-    density_m2_per_s4_per_Hz: np.ndarray  # of all directions together
+    density_m2_per_s4_per_Hz: np.ndarray  # sum over all directions
 
     @property
     def peak_m_per_s2(self) -> float:
@@ -59,13 +59,13 @@ class Creak:
         return float(np.sqrt((self.acceleration_m_per_s2**2).sum(axis=1).mean()))
 
     def frame(self, table: str) -> pandas.DataFrame:
-        """Return ``slips`` or ``bands`` as a table, units in the names of the columns."""
+        """Return ``slips`` or ``bands`` as a table, with units in the column names."""
         pandas = libraries.pandas()
 
         return pandas.DataFrame(getattr(self, table))
 
     def plot(self) -> Figure:
-        """Draw which joints slip when, what the node feels, and at which frequencies."""
+        """Draw the slips of joints over time, the acceleration of the node, and its spectrum."""
         with figures.style():
             figure, places = figures.panels(3, 1, (9.5, 9.0), height_ratios=(1.4, 1, 1))
             self._raster(places[0])
@@ -129,9 +129,9 @@ def creak(case: TrussCase, node: str, tell: Tell = lambda share: None) -> Creak:
     """Return the acceleration of a node while a truss moves through its program.
 
     :param node: name of the node
-    :param tell: takes the finished share, 0 to 1
-    :raises NotAllowed: there is no such node, or steps are not equal
-    :raises FailedRun: as of the motion
+    :param tell: called with the finished fraction, 0 to 1
+    :raises NotAllowed: the node does not exist, or steps are not equal
+    :raises FailedRun: as for the motion
     """
     names = case.resolve().nodes.names
     if node not in names:
@@ -158,12 +158,12 @@ def _density(acceleration: np.ndarray, rate: float) -> tuple[np.ndarray, np.ndar
 
 
 def _bands(acceleration: np.ndarray, rate: float) -> list[dict[str, float]]:
-    """Return octaves below half the rate, the highest first and what is left below them last."""
+    """Return octaves below half the rate, the highest first, and the remaining low frequencies last."""
     found: list[dict[str, float]] = []
     high, least = rate / 2, LEAST_PERIODS * rate / len(acceleration)
     while high > least:
         low = high / 2 if high / 2 > least else 0.0
-        # Causal: before the start everything is at rest, as the filter is.
+        # The filter is causal and starts at rest, as the truss does.
         kind, edges = (("lowpass", high) if low == 0 else ("highpass", low) if high == rate / 2
                        else ("bandpass", (low, high)))
         filtered = acceleration if low == 0 and high == rate / 2 else signal.sosfilt(

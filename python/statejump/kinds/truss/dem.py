@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The data of a truss for the YADE script: bodies, masses, contact groups, time step, loaded start.
+"""Input of the YADE script for a truss: bodies, masses, contact groups, time step, loaded start.
 
-Nodes are bodies with lumped masses, see :mod:`~statejump.kinds.truss.masses`. The supports
-of the node hold the pad of a slider at the depth at which its floor carries the normal force. The friction limit then
-equals that of the quasi-static model, independent of other loads on the supports.
+Nodes are bodies with lumped masses, see :mod:`~statejump.kinds.truss.masses`. The supports of the node hold the pad of
+a slider at the depth at which its floor carries the normal force. The friction limit then equals that of the
+quasi-static model, independent of other loads on the supports.
 """
 from __future__ import annotations
 
@@ -48,10 +48,10 @@ def refuse(case: TrussCase, code: str, why: str, **fields: Any) -> StatejumpErro
 def stable_time_step(case: TrussCase, path: Course) -> float:
     """Return a stable time step [s] for the largest forces of the quasi-static path.
 
-    The square of a spring's stretch is at most the number of its ends that move times the sum of their
-    squares. With k the sum over one body of stiffness times that number over its mass, and c that of the
-    dashpots, the largest eigenvalue is at most the largest k: every body is as stable as an oscillator of its k
-    and c.
+    The square of a spring's stretch is at most the number of its moving ends times the sum of the squares of their
+    displacements. For each body, let k be the sum of stiffness times that number over its mass, and c the same sum for
+    the dashpots. The largest eigenvalue is at most the largest k. Every body is therefore as stable as an oscillator
+    with its k and c.
     """
     truss, mass = path.truss, lumped_mass_kg(path.truss)
     mass = np.append(mass, 0)  # of GROUND
@@ -74,7 +74,7 @@ def stable_time_step(case: TrussCase, path: Course) -> float:
     for ends, along in zip(truss.ends()[1:], truss.element_stiffnesses_N_per_m()):
         touch(ends, along, ratio)
     for ends, moment in zip(torsion.links, torsion.stiffness_N_m_per_rad):
-        # The angle is a sum over all ends of both links.
+        # The angle depends on all ends of both links.
         turned = ends[ends != GROUND]
         moving = (inverse[links.nodes[turned]] > 0).sum()
         for link in turned:
@@ -93,10 +93,10 @@ def number_of_steps(case: TrussCase, path: Course) -> int:
 
 
 def _contact_groups(truss: ResolvedTruss, case: TrussCase, reach_m: np.ndarray) -> np.ndarray:
-    """Return a number per contact (of all types in turn), different for joints whose bodies could meet; -1 where no
-    bodies touch.
+    """Return a number per contact (of all types in turn), different for joints whose bodies could meet; -1 if no bodies
+    touch.
 
-    YADE looks for contacts between all bodies that are near; only those of one joint may touch.
+    YADE searches contacts between all near bodies, but only bodies of one joint may touch.
     """
     own = np.concatenate([joint.bodies_touch(truss.joints[joint.section]) for joint in JOINTS])
     touching = [nodes for joint in JOINTS for nodes in joint.contact_nodes(truss.joints[joint.section]).tolist()]
@@ -117,7 +117,7 @@ def _contact_groups(truss: ResolvedTruss, case: TrussCase, reach_m: np.ndarray) 
         return found
     group = found[own]
     tree = cKDTree(where)
-    # Boxes of YADE's collider are cubes, on each side a tenth of the smallest radius larger than the parts.
+    # Boxes of YADE's collider are cubes. On each side they exceed the parts by a tenth of the smallest radius.
     near = tree.query_ball_point(where, 2.3 * reach_m.max(), p=inf)
     for place, others in enumerate(near):
         if group[place] >= 0:
@@ -186,7 +186,7 @@ def check(case: TrussCase) -> None:
 
 
 def _torsion(truss: ResolvedTruss) -> Torsion:
-    """Return the moments of elements and joints between links; names with their sections."""
+    """Return the moments of elements and joints between links, with names that contain their sections."""
     parts = [(element.section, element.torsion(truss.elements[element.section])) for element in ELEMENTS]
     parts += [(joint.section, joint.torsion(truss.joints[joint.section])) for joint in JOINTS]
     return Torsion(
@@ -197,7 +197,8 @@ def _torsion(truss: ResolvedTruss) -> Torsion:
 
 
 def _refuse_tilted_torsion(case: TrussCase, truss: ResolvedTruss) -> None:
-    """A torsion spring of the DEM acts in the plane across its axis, of the solver on views of links."""
+    """Refuse torsion springs that leave their plane: that of the DEM acts across its axis, that of the solver on
+    projections of links."""
     torsion, links, position = _torsion(truss), truss.links, truss.nodes.position_m
     for name, ends, axis in zip(torsion.names, torsion.links, torsion.axis):
         for link in ends[ends != GROUND]:
@@ -208,7 +209,7 @@ def _refuse_tilted_torsion(case: TrussCase, truss: ResolvedTruss) -> None:
 
 
 def _refuse_far_turns(case: TrussCase, path: Course) -> None:
-    """Beyond a quarter of a turn the DEM cannot distinguish an angle from its opposite."""
+    """Refuse rotations beyond a quarter of a turn, where the DEM cannot distinguish an angle from its opposite."""
     for joint in JOINTS:
         joints = path.truss.joints[joint.section]
         turned = joint.largest_turn_rad(path, joints) if joints.names else np.zeros(0)
@@ -219,7 +220,7 @@ def _refuse_far_turns(case: TrussCase, path: Course) -> None:
 
 
 def blocked_directions(truss: ResolvedTruss) -> np.ndarray:
-    """Return along which axes (n, 3) a node does not move: supports, and guides along an axis."""
+    """Return the axes (n, 3) along which a node does not move, because of supports, and guides along an axis."""
     return truss.nodes.fixed | (np.abs(truss.nodes.guide_normal) >= 1 - SAME_DIRECTION)
 
 
@@ -234,9 +235,9 @@ def _lists(part: Any, **more: Any) -> dict[str, Any]:
 
 
 def resolved(case: TrussCase, path: Course) -> dict[str, Any]:
-    """Return the data for the YADE script as plain values.
+    """Return the input of the YADE script as plain values.
 
-    :param path: the quasi-static path of the case, or its motion. Its first state is the start; its forces determine
+    :param path: the quasi-static path of the case, or its motion. Its first state is the start, its forces determine
         the time step, its slides the size of the floors
     :raises StatejumpError: the DEM cannot represent an item; the message names it
     """
@@ -264,16 +265,17 @@ def resolved(case: TrussCase, path: Course) -> dict[str, Any]:
 
 
 def dem_input(case: TrussCase, tell: Tell = lambda share: None) -> dict[str, Any]:
-    """Compute the path or the motion, and return the data for the YADE script, see :func:`resolved`.
+    """Compute the path or the motion, and return the input of the YADE script, see :func:`resolved`.
 
-    :param tell: receives the finished fraction of the path
+    :param tell: called with the finished fraction of the path
     """
     check(case)
     return resolved(case, course(case, tell))
 
 
 def course(case: TrussCase, tell: Tell) -> Course:
-    """Return the quasi-static path. For a case that snaps, return its motion: a path ends at its limit point."""
+    """Return the quasi-static path. For a case that snaps through, return its motion, because the path ends at its
+    limit point."""
     try:
         return solve(case, tell)
     except EngineFailed as failure:

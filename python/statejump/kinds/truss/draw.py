@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drawings of trusses as in the case file; nothing is solved.
+"""Drawings of trusses in the reference configuration; nothing is solved.
 
 The size of symbols depends on the number of nodes, not on the size of the parts. The legend has the clearances.
 """
@@ -21,8 +21,8 @@ def draw(case: TrussCase, axes: Axes | None = None, names: bool = False) -> Figu
     """Return the drawing of a truss.
 
     :param names: write the names of all nodes, even if they cover the drawing
-    :param axes: axes to draw into, of a spatial truss with projection ``3d``; None: a new figure
-    :raises StatejumpError: the axes are not those of three dimensions
+    :param axes: axes to draw into, with projection ``3d`` for a spatial truss; None: a new figure
+    :raises StatejumpError: the axes are not three-dimensional
     """
     truss = case.resolve()
     most_named = len(truss.nodes.names) if names else MOST_NAMED

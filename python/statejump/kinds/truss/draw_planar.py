@@ -19,8 +19,8 @@ from statejump.kinds.truss.resolved import ResolvedTruss
 
 MOST_ZIGZAGS = 60
 LEAST_LEGIBLE = 4.5  # size of symbols [pt] below which a detail is drawn as well
-DETAIL_GAPS = 8  # places along the detail's shorter side, or along half of the longer
-WIDTH_IN, HEIGHT_IN = 8.0, 7.0  # of the panel, at most
+DETAIL_GAPS = 8  # positions along the detail's shorter side, or along half of the longer one
+WIDTH_IN, HEIGHT_IN = 8.0, 7.0  # largest size of the panel
 
 
 def _bowed(truss: ResolvedTruss) -> list[np.ndarray]:
@@ -135,7 +135,7 @@ def _frame(panel: Axes, middle: np.ndarray, extent: np.ndarray) -> None:
 
 def _draw(panel: Axes, truss: ResolvedTruss, lines: list[np.ndarray], colours: Any, size: float,
           scale: float, most_named: int) -> None:
-    """Draw a planar truss with symbols of that size [pt] on a panel of that scale [inch/m]."""
+    """Draw a planar truss on a panel of the given scale [inch/m], with symbols of the given size [pt]."""
     nodes = truss.nodes
     panel.add_collection(LineCollection(lines, colors=colours, linewidths=float(np.clip(size / 5, 0.8, 2.4)), zorder=2,
                                         rasterized=len(lines) > 5000))
@@ -161,7 +161,7 @@ def _draw(panel: Axes, truss: ResolvedTruss, lines: list[np.ndarray], colours: A
 
 
 def _draw_symbol(panel: Axes, symbol: Symbol, size: float) -> None:
-    """Symbols, all that point one way at once."""
+    """Draw symbols that all point in one direction at once."""
     style = dict(linestyle="none", color=symbol.colour, markerfacecolor=symbol.face, markersize=symbol.size * size,
                  markeredgewidth=0 if symbol.face == symbol.colour else max(0.4, size / 10), zorder=symbol.order)
     if symbol.up is None:
@@ -204,7 +204,7 @@ def _draw_loads(panel: Axes, truss: ResolvedTruss, size: float) -> None:
     largest = sizes.max() if len(sizes) else 0.0
     for index in np.flatnonzero(sizes > 0):
         offset = forces[index] / largest * (2.6 * size)
-        shortest = 1.3 * size  # an arrow that is still one
+        shortest = 1.3 * size  # shortest visible arrow
         if np.linalg.norm(offset) < shortest:
             offset *= shortest / np.linalg.norm(offset)
         # The arrow ends at the node, where the load acts.

@@ -16,7 +16,7 @@ from statejump.kinds.truss.draw_symbols import (
 from statejump.kinds.truss.joints.protocol import Symbol
 from statejump.kinds.truss.resolved import ResolvedTruss
 
-MOST_TICKS = 8  # of the longest axis
+MOST_TICKS = 8  # ticks of the longest axis
 
 
 def spatial(truss: ResolvedTruss, most_named: int = MOST_NAMED) -> Figure:
@@ -39,11 +39,11 @@ def spatial(truss: ResolvedTruss, most_named: int = MOST_NAMED) -> Figure:
 
 
 def _fit(drawing: Figure, axes: Axes3D, below: float) -> None:
-    """Scale the drawing to the room above the legend and centre it. Labels and edges in three dimensions may exceed the
-    limits of their axes."""
+    """Scale the drawing to the room above the legend and centre it. In three dimensions, labels and edges may exceed
+    the limits of their axes."""
     room = axes.get_position()
-    for _ in range(2):  # sizes of labels do not grow with the axes: the second time for what is left
-        drawing.canvas.draw()  # only then the axes know where things are
+    for _ in range(2):  # sizes of labels do not scale with the axes, so a second pass uses the remaining room
+        drawing.canvas.draw()  # only now the positions in the axes are known
         drawn = axes.get_tightbbox(drawing.canvas.get_renderer()).transformed(drawing.transFigure.inverted())
         share = min(room.width / drawn.width, room.height / drawn.height)
         place = axes.get_position()
@@ -133,7 +133,7 @@ def _name(axes: Axes3D, truss: ResolvedTruss, middle: np.ndarray, span: float, m
     named = names(truss)
     if len(named) <= most_named:
         for place, text, _ in named:
-            # Many ribs end at one place: one name stands for all.
+            # If many ribs end at one position, one name stands for all.
             short = text if text.count(",") < 2 else text.split(",")[0] + ", ..."
             away = place - middle
             away = away / max(float(np.linalg.norm(away)), 1e-12) * 0.06 * span

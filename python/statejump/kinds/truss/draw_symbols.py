@@ -23,7 +23,8 @@ from statejump.kinds.truss.joints.protocol import Strokes, Symbol
 from statejump.kinds.truss.joints.words import scaled
 from statejump.kinds.truss.resolved import ResolvedTruss
 
-# Cold is pale, hot is red, and ever darker: reads in grey and for colour-blind eyes. The palest are lost on white.
+# Cold is pale, hot is dark red. The colours differ in grey and for colour-blind eyes too. The palest ones are invisible
+# on white and omitted.
 COLOURS = ListedColormap(colormaps["YlOrRd"](np.linspace(0.2, 1.0, 256)))
 LINK, LOAD, SURFACE = "#0072B2", "#D55E00", "#E69F00"
 DASHES = (0, (5, 2))
@@ -46,13 +47,13 @@ ROLLER: Strokes = (((0, 0), (-0.5, -0.7), (0.5, -0.7), (0, 0)), ((-0.9, -0.95), 
 
 
 def gap_m(truss: ResolvedTruss) -> float:
-    """Distance of neighbouring positions [m]. A few nearer ones may touch, so that not all symbols are tiny."""
+    """Distance of neighbouring positions [m]. A few nearer ones may overlap, so that not all symbols are tiny."""
     places = np.unique(np.round(truss.nodes.position_m, 9), axis=0)
     return float(np.quantile(cKDTree(places).query(places, k=2)[0][:, 1], 0.1))
 
 
 def symbol_size(gap_pt: float) -> float:
-    """Size of symbols [pt] for places that far apart on the drawing [pt]."""
+    """Size of symbols [pt] for positions at the given distance on the drawing [pt]."""
     return float(np.clip(0.6 * gap_pt, 2.0, 13.0))
 
 
@@ -65,7 +66,7 @@ def link_colours(truss: ResolvedTruss) -> tuple[Any, ScalarMappable | None]:
 
 
 def legend(truss: ResolvedTruss) -> list[Line2D]:
-    """Return what each symbol means, with the numbers that the drawing cannot show."""
+    """Return the meaning of each symbol, with the numbers that the drawing cannot show."""
 
     def entry(label: str, **style: Any) -> Line2D:
         return Line2D([], [], **{"linestyle": "none", "markersize": 9, **style}, label=label)
@@ -119,7 +120,7 @@ def styled_lines(truss: ResolvedTruss) -> list[tuple[np.ndarray, Lines]]:
 
 
 def guided(truss: ResolvedTruss) -> np.ndarray:
-    """Which nodes (n,) of a planar truss are held in one direction and carry no slider on ground."""
+    """Return the nodes (n,) of a planar truss that are held in one direction and have no slider on ground."""
     nodes = truss.nodes
     held = (nodes.fixed[:, :2].sum(axis=1) == 1) | (
         ~nodes.fixed[:, :2].any(axis=1) & nodes.guide_normal.any(axis=1))
@@ -129,9 +130,9 @@ def guided(truss: ResolvedTruss) -> np.ndarray:
 
 
 def marker(given: str | Strokes, up: np.ndarray | None = None) -> MarkerStyle:
-    """Return a marker of matplotlib's.
+    """Return a marker of matplotlib.
 
-    :param up: (2,) to where its top points; None: as drawn
+    :param up: (2,) direction of its top; None: unrotated
     """
     if isinstance(given, str):
         return MarkerStyle(given)
@@ -149,13 +150,15 @@ def symbols(truss: ResolvedTruss) -> list[Symbol]:
 
 
 def covered(truss: ResolvedTruss) -> np.ndarray:
-    """Return the nodes that symbols of joints stand for, of each joint the first one first."""
+    """Return the nodes that symbols of joints replace, the first node of each joint first."""
     return np.concatenate([joint.covered_nodes(truss.joints[joint.section]) for joint in JOINTS]).astype(int)
 
 
 def names(truss: ResolvedTruss) -> list[tuple[np.ndarray, str, np.ndarray]]:
-    """Place, names of the nodes there, and for planar trusses the direction (2,) that is farthest from
-    links, elements and the ground of supports."""
+    """Return a position, the names of its nodes, and the direction in which to write them, for every position.
+
+    In a planar truss the direction (2,) is the one farthest from links, elements and the ground of supports.
+    """
     positions = truss.nodes.position_m
     places: dict[tuple[float, ...], list[int]] = {}
     for index, place in enumerate(positions):

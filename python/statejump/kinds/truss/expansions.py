@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class LinkTemperatures:
-    """Programs of a truss and which one a link follows (m); see :mod:`statejump.core.expansion`."""
+    """Programs of a truss, and the program of each link (m); see :mod:`statejump.core.expansion`."""
 
     programs: tuple[TrussThermal | MemberProgram, ...]
     program_names: tuple[str, ...]
@@ -27,7 +27,7 @@ class LinkTemperatures:
     temperature_fraction: np.ndarray
     expanding: np.ndarray  # bool: it has an [[expansion]]
     largest_per_K: np.ndarray  # of the [[expansion]], else 0
-    shown_program: np.ndarray  # of the temperature itself
+    shown_program: np.ndarray  # program of the temperature itself
     shown_fraction: np.ndarray
 
 
@@ -36,7 +36,7 @@ def link_temperatures(case: TrussSections, shown: np.ndarray, names: tuple[str, 
 
     :param shown: the program of the temperature of every link
     :param names: of the programs of the case
-    :raises NotAllowed: a program leaves the table of an expansion or has no straight pieces
+    :raises NotAllowed: a program leaves the table of an expansion, or is not piecewise linear
     """
     programs, named = case.programs, list(names)
     expansions = {expansion.name: expansion for expansion in case.expansion}

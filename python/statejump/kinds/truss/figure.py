@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figure of a comparison of a ``truss`` case: loops of the nodes that move and jump most, joint forces. A loop that is
-thin beside its reversible part is drawn again without it."""
+"""Figure of a comparison of a ``truss`` case: loops of the nodes that move and jump most, joint forces. A thin loop
+with a large reversible part is drawn again without this part."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -29,7 +29,7 @@ def _shown(case: TrussCase, run: Run) -> list[tuple[int, int]]:
     others[first[0]] = -1
     if others.max() < 0:
         return [(int(first[0]), int(first[1]))]
-    # Of a row of nodes the neighbour would show the same: one that moves about half as much shows more.
+    # In a row of nodes the neighbour would show the same curve. A node that moves about half as much shows more.
     half = np.abs(others - 0.5 * motion.max())
     half[others <= 0.01 * motion.max()] = np.inf
     second = np.unravel_index(np.argmin(half), motion.shape)
@@ -37,8 +37,8 @@ def _shown(case: TrussCase, run: Run) -> list[tuple[int, int]]:
 
 
 def sheet(case: TrussCase, runs: Sequence[Run]) -> Sheet:
-    """Return loops of two nodes, of the axial force that changes most, and the work of friction over time. The
-    first run decides which nodes and link."""
+    """Return loops of two nodes and of the axial force with the largest change, and the work of friction over time. The
+    first run determines the nodes and the link."""
     first = runs[0]
     shown = _shown(case, first)
     scale, unit = (1e3, "mm") if np.abs(first["displacement_m"]).max() > 2e-3 else (1e6, "µm")

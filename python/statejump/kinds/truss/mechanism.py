@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parts of a mechanism, for a truss in motion: bodies that are no rods, weights, driven links."""
+"""Items of a mechanism, for a truss in motion: bodies other than rods, weights, driven links."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -16,8 +16,8 @@ from statejump.schema.items import Item
 
 @definition
 class Drive(Item):
-    """A link of a planar truss in motion whose turning is prescribed, anticlockwise: at a constant angular velocity
-    after a ramp, or by a table, straight between its rows. A couple on the link's two nodes turns it."""
+    """A link of a planar truss in motion with prescribed rotation, anticlockwise: at a constant angular velocity after
+    a ramp, or by a table, linear between its rows. A couple on the link's two nodes rotates it."""
 
     link: str = text(..., "name of the link")
     angular_velocity_rad_per_s: float | None = parameter(None, "rad/s", -1e6, 1e6, "this or a table")
@@ -38,11 +38,11 @@ class Drives:
 
 @dataclass(frozen=True)
 class Bodies:
-    """Shapes of links, in shares of the way from the first to the second node and of its left normal."""
+    """Shapes of links, as fractions of the vector from the first to the second node, and of its left normal."""
 
-    centre: np.ndarray  # (m, 2) of mass
-    moment_kg_m2: np.ndarray  # (m,) of inertia about it
-    own: np.ndarray  # (m,) bool: not that of a rod
+    centre: np.ndarray  # (m, 2) centre of mass
+    moment_kg_m2: np.ndarray  # (m,) moment of inertia about it
+    own: np.ndarray  # (m,) bool: whether it differs from a rod
 
 
 def resolve_drives(items: list[Drive], known: References) -> Drives:
@@ -65,7 +65,7 @@ def resolve_bodies(links: Sequence[Any], length_m: np.ndarray, mass_kg: np.ndarr
     own_centre = said(links, "centre_of_mass_m")
     middle = np.stack((length_m / 2, np.zeros(len(links))), axis=1)
     given = vectors(links, "centre_of_mass_m", 2)[:, :2]
-    length = np.where(length_m > 0, length_m, np.nan)  # a link without one is refused where geometry is checked
+    length = np.where(length_m > 0, length_m, np.nan)  # the check of the geometry refuses a link without length
     return Bodies(
         once(np.where(own_centre[:, None], given, middle) / length[:, None]),
         given_or(moment, mass_kg * length_m**2 / 12), own_centre | ~np.isnan(moment),

@@ -24,8 +24,8 @@ def warnings(links: Links, time_s: np.ndarray, temperature_change_K: np.ndarray,
     places = np.arange(len(links.names))
 
     def sentence(at: np.ndarray, load: np.ndarray, told: Sequence[str]) -> list[str]:
-        """Return the sentence on links whose load is above 1, reached at these samples; ``told`` is what the worst one
-        bears, what it exceeds, and what the models make of it."""
+        """Return the sentence about links whose load is above 1 at these samples. ``told`` has the load of the worst
+        link, the exceeded limit, and the behaviour of the models."""
         beyond = np.flatnonzero(load > 1)
         if not len(beyond):
             return []

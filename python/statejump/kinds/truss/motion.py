@@ -28,7 +28,7 @@ class TrussMotion:
     truss: ResolvedTruss
     states: dict[str, np.ndarray]
     events: TrussEvents
-    event_heat_J: np.ndarray  # of all joints in the step of each event
+    event_heat_J: np.ndarray  # heat of all joints in the step of each event
     watched_velocity_m_per_s: np.ndarray  # (steps + 1, 3)
     complete: bool
     time_step_s: float  # the shortest one
@@ -40,14 +40,15 @@ class TrussMotion:
     unknowns: int
     largest_contact_merit: float
     negative_dissipation_J: float
-    undetermined: tuple[float, list[str]] | None  # first step [s] whose reactions are not unique, and the joints
-    jammed: tuple[float, list[str]] | None  # first step [s] that ends a slide which could not go on, and the joint
+    undetermined: tuple[float, list[str]] | None  # first time [s] with reactions that are not unique, and the joints
+    # First time [s] at which a slide ends because it cannot continue, and the joint.
+    jammed: tuple[float, list[str]] | None
     regularised: bool = False
-    equal: bool = False  # steps, rather than as long as a tolerance allows
+    equal: bool = False  # equal steps, instead of steps by tolerance
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences on reactions that the motion does not determine."""
+        """Sentences about reactions that the motion does not determine."""
         found = []
         if self.inexact_steps and self.regularised:
             found.append(f"in {self.inexact_steps} of {self.steps} steps a contact was stiffer than explicit steps of "
@@ -75,7 +76,7 @@ class TrussMotion:
 
 def dashpots_N_s_per_m(nodes: np.ndarray, stiffness_N_per_m: np.ndarray, ratio: float, mass_kg: np.ndarray
                        ) -> np.ndarray:
-    """Return c = 2 ζ sqrt(k m) of parts between two nodes, m the mass of both in series, as the DEM has them.
+    """Return c = 2 ζ sqrt(k m) of elements between two nodes, with the mass m of both in series, as in the DEM.
 
     :param mass_kg: of every node; 0 for one that does not move
     """
@@ -86,8 +87,8 @@ def dashpots_N_s_per_m(nodes: np.ndarray, stiffness_N_per_m: np.ndarray, ratio: 
 
 
 def joint_dashpots_sqrt_kg(truss: ResolvedTruss, ratio: float, mass_kg: np.ndarray) -> np.ndarray:
-    """Return 2 ζ sqrt(m) of the contacts of all joints, type by type; m the mass of both bodies in series, as the DEM
-    has them, 0 where neither moves.
+    """Return 2 ζ sqrt(m) of the contacts of all joints, type by type, with the mass m of both bodies in series, as in
+    the DEM; 0 if neither moves.
 
     :param mass_kg: of every node; 0 for one that does not move
     """
@@ -125,10 +126,10 @@ def inertia(case: TrussCase) -> dict[str, Any]:
 def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int = -1) -> TrussMotion:
     """Return the motion of a case through its program.
 
-    :param tell: takes the finished share, 0 to 1
-    :param watched_node: number of a node whose velocity is kept at every step
+    :param tell: called with the finished fraction, 0 to 1
+    :param watched_node: index of a node whose velocity is recorded at every step
     :raises FailedRun: no start, or a step without solution: with joint and temperature
-    :raises Interrupted: Ctrl-C; its ``run`` is the motion so far, None if there is no sample beside the start
+    :raises Interrupted: Ctrl-C; its ``run`` is the motion so far, None if there is only the start
     """
     def going_on(share: float) -> bool:
         tell(share)
@@ -146,7 +147,8 @@ def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int
         raise NotAllowed("start.friction", case.start.friction, code="start_not_stuck", case=case.name)
     regularised = case.motion.scheme == "regularised"
     if regularised:
-        from statejump.kinds.truss import stable_steps  # explicit steps need the DEM's, which starts from a motion
+        # Explicit steps use the stable step of the DEM, which starts from a motion.
+        from statejump.kinds.truss import stable_steps
 
         stable_steps.check(case)
     steps_per_sample = ceil(case.motion.steps_per_cycle / samples)
@@ -184,7 +186,7 @@ def _drives(truss: ResolvedTruss) -> list[dict[str, Any]]:
 def _remedy(case: TrussCase, failure: _engine.EngineFailure) -> str | None:
     if str(failure.kind).endswith("mechanism"):
         return "a mechanism moves from where it is drawn with motion.start = 'drawn'"
-    equal = case.motion.displacement_tolerance_m is None  # others have been made as short as they can be
+    equal = case.motion.displacement_tolerance_m is None  # with a tolerance, steps are already as short as possible
     unfound = failure.kind in ("not_converged", "singular", "too_many_steps")
     stepped = equal and unfound and "no step" in str(failure.message)
     return "set motion.steps_per_cycle to more" if stepped else None

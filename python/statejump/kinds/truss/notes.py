@@ -9,11 +9,11 @@ import numpy as np
 
 from statejump.kinds.truss.resolved import ResolvedTruss
 
-MOST_NAMED = 8  # joints or nodes that a sentence names; it gives the number of further ones
+MOST_NAMED = 8  # names in a sentence; it also gives the number of further ones
 
 
 def sentences(truss: ResolvedTruss, notes: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:
-    """Return the notes of a path, as its ``notes`` has them, in their order."""
+    """Return the notes of a path as sentences, in their order."""
     return tuple(_sentence(truss, note) for note in notes)
 
 
@@ -40,6 +40,6 @@ def _named(joints: Sequence[tuple[str, str]]) -> str:
 
 
 def listed(names: Sequence[str]) -> str:
-    """Return the first names, and how many more there are."""
+    """Return the first names, and the number of the others."""
     first = ", ".join(names[:MOST_NAMED])
     return first if len(names) <= MOST_NAMED else f"{first} and {len(names) - MOST_NAMED} more"

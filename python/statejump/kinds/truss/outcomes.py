@@ -24,7 +24,7 @@ def quick(case: TrussCase) -> Run:
 
 
 def outcomes(case: TrussCase, run: Run) -> dict[str, float]:
-    """Return the outcomes of a run of the reduced model, jumps over all cycles."""
+    """Return the outcomes of a run of the reduced model; jumps are those over all cycles."""
     found: TrussPath = run.native
     truss, ends = found.truss, found.cycle_ends
     jumps = np.linalg.norm(node_jumps(found)[-1], axis=1)

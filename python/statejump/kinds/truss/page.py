@@ -28,15 +28,15 @@ from statejump.report import words
 from statejump.report.drawing import round_down
 from statejump.results.contents import Result
 
-SHOWN_JUMP = 0.12  # of the truss' size: how large the largest jump is drawn at first
-MOST_CYCLES = 12  # cycles that the drawing offers; if there are more, the first and the last ones
+SHOWN_JUMP = 0.12  # initial drawn size of the largest jump, as a fraction of the truss' size
+MOST_CYCLES = 12  # cycles in the drawing; of more cycles, the first and the last ones
 MOST_BARS = 15
 MOST_SENSITIVITIES = 20
 LEAST_PERCENT = 5e-3
-ROUNDED = 1e-9  # of the largest joint's: below is rounding, not a number to read
-ROUNDED_SURFACE = 1e-12  # of the truss' size, in metres and in radians
+ROUNDED = 1e-9  # fraction of the largest joint's value below which a value is rounding
+ROUNDED_SURFACE = 1e-12  # rounding, over the truss' size, in metres and in radians
 ROUNDING = "≈ 0"
-# What joints are ranked by where their first column is a rotation, and where it is not.
+# Quantities that rank joints whose first column is a rotation, and other joints.
 TURN, JUMP = "turn", "jump"
 Row = dict[str, Any]
 _TYPES: dict[str, Any] = {joint.section: joint for joint in JOINTS}
@@ -54,7 +54,7 @@ class Measure:
 
 
 def _vectors(rows: list[Row], cycles: int) -> np.ndarray:
-    """Return the jumps (cycles, items, 3) of rows in the order of cycles."""
+    """Return the jumps (cycles, items, 3), from rows in the order of cycles."""
     found = np.array([[row[f"jump_{axis}_m"] for axis in "xyz"] for row in rows], dtype=float)
     return found.reshape(cycles, -1, 3)
 
@@ -93,7 +93,7 @@ class TrussPart:
         self.columns = {model: self._curves(run) for model, run in result.models.items()}
 
     def _cycle_ends(self, run: Run) -> np.ndarray:
-        """Samples at the start and nearest to the ends of the cycles that the run has."""
+        """Return the samples at the start and nearest to the ends of the cycles of the run."""
         time, period = run.time_s, self.case.period_s
         whole = int(math.floor(float(time[-1]) / period + 1e-6))
         wanted = period * np.arange(min(self.cycles, whole) + 1) if whole else time[[0, -1]]
@@ -105,7 +105,8 @@ class TrussPart:
 
     @property
     def _first(self) -> int:
-        """Node whose jump the page reports: the output of the answers, if it is a node, else the most moved node."""
+        """Return the node whose jump the page reports: the output of the answers, if it is a node, else the node that
+        moves most."""
         named = self.answers.output.partition("node:")[2] if self.answers is not None else ""
         return self._number[named] if named in self._number else int(np.argmax(self._size_m))
 
@@ -136,7 +137,7 @@ class TrussPart:
         return found
 
     def _read_off(self, joints: list[Row]) -> None:
-        """Read from the histories how far joints are from their start, and the heat of their friction."""
+        """Return, from the histories, the distances of joints from their start, and the heat of their friction."""
         run = self._run
         contacts = self._since_start(run, "contacts", "dissipation_J") if "dissipation_J" in run.contacts else None
         first = 0
@@ -175,7 +176,7 @@ class TrussPart:
                 if measure.key in keys and any(joint.get(measure.key) for joint in self.joints)]
 
     def ranking(self) -> list[Row]:
-        """Rows of the table of joints, by the first measure, ready to print."""
+        """Rows of the table of joints, ranked by the first quantity, as texts."""
         if not self.measures:
             return []
         first = self.measures[0].key
@@ -206,7 +207,7 @@ class TrussPart:
 
     @property
     def verdict(self) -> str:
-        """Sentence of the answers on the cycles; "" without answers."""
+        """Sentence of the answers about the cycles; "" without answers."""
         told = "" if self.answers is None else self.answers.verdict_text
         return f"{told[:1].upper()}{told[1:]}." if told else ""
 
@@ -253,7 +254,7 @@ class TrussPart:
 
     @property
     def notes(self) -> list[str]:
-        """Remarks of the answers, without the warnings of the run, which the head of the page has."""
+        """Remarks of the answers, without the warnings of the run, which the head of the page shows."""
         return [] if self.answers is None else [
             note[:1].upper() + note[1:] + "." for note in self.answers.notes if note not in self.result.warnings]
 
@@ -284,7 +285,7 @@ class TrussPart:
         return any(row["focal_length_m"] is not None for row in rows)
 
     def sensitivities(self) -> tuple[list[Row], int]:
-        """Rows of the table of sensitivities, the strongest first, and how many were left off."""
+        """Rows of the table of sensitivities, the strongest first, and the number of omitted rows."""
         rows = self.answers.tables.get("sensitivities", []) if self.answers is not None else []
         ranked = sorted(rows, key=lambda row: -abs(row["elasticity"] or 0.0))
         most = max((abs(row["elasticity"] or 0.0) for row in ranked), default=0.0)
@@ -300,7 +301,7 @@ class TrussPart:
     # ---------------------------------------------------------------- curves
 
     def charts(self) -> list[Chart]:
-        """Loops: of the node, of the joint that comes first, of the link with the largest force."""
+        """Loops of the node, of the first joint in the ranking, and of the link with the largest force."""
         found = [Chart(TEMPERATURE, Axis("truss_node_m", f"Node {self.nodes[self._first]} along its jump"),
                        f"Loop of node {self.nodes[self._first]}", marks=True)]
         joint = self._leading()
@@ -313,7 +314,7 @@ class TrussPart:
         return found
 
     def _way(self, joint: Row) -> Chart:
-        """Return the chart of where a joint is."""
+        """Return the chart of a joint's position."""
         kind, name = _TYPES[joint["kind"]], joint["name"]
         if not kind.columns[0].vector:
             key, what = ("truss_turn_rad", "Rotation") if unit_of(kind.columns[0].name) == "rad" else (
@@ -364,7 +365,7 @@ class TrussPart:
     def payload(self, encoded: Callable[[np.ndarray], Any]) -> Row:
         """Data for the page's script.
 
-        :param encoded: makes a column of the page of an array
+        :param encoded: converts an array to a column of the page
         """
         start = self._run.history["position_m"].values[0]
         size = float(np.ptp(start, axis=0).max())
@@ -373,7 +374,7 @@ class TrussPart:
         between = [("link", truss.links.names), *(("spring", truss.elements[one.section].names) for one in ELEMENTS)]
         lines = [{"nodes": [int(node) for node in nodes], "kind": kind, "name": name}
                  for (kind, names), ends in zip(between, truss.ends()) for name, nodes in zip(names, ends)]
-        # The drawing magnifies jumps until journals leave their bearings: a line connects each pair.
+        # In the drawing, magnified jumps move journals out of their bearings, so a line connects each pair.
         for joint in (one for one in JOINTS if one.columns[0].vector):
             joints = truss.joints[joint.section]
             lines += [{"nodes": [int(node) for node in nodes], "kind": "journal", "name": name}
@@ -401,7 +402,7 @@ class TrussPart:
 
 
 def _some(count: int, most: int) -> list[int]:
-    """Return places of the first and the last of many, all if they are few."""
+    """Return the indices of the first and the last of many; all indices of a few."""
     return list(range(count)) if count <= most else [*range(most // 2), *range(count - most + most // 2, count)]
 
 

@@ -26,7 +26,7 @@ def listed(names: list[str]) -> str:
 
 
 def known_name(key: str, value: Any, name: str, known: Mapping[str, Any], what: str, **where: Any) -> None:
-    """Raise NotAllowed for an unknown name; the remedy is the most similar name."""
+    """Raise NotAllowed for an unknown name; the remedy is the most similar known name."""
     if name in known:
         return
     nearest = difflib.get_close_matches(name, list(known), n=1, cutoff=0.5)
@@ -39,7 +39,7 @@ def known_name(key: str, value: Any, name: str, known: Mapping[str, Any], what: 
 
 
 def known_nodes(names: list[str], least: int, nodes: Mapping[str, Any], where: Mapping[str, Any]) -> None:
-    """Raise NotAllowed unless ``nodes`` of an item are two different nodes, or one where the least is one."""
+    """Raise NotAllowed unless ``nodes`` of an item are two different nodes, or one if one is enough."""
     if not least <= len(names) <= 2:
         many = "2 nodes" if least == 2 else "1 node, on ground, or 2 nodes"
         raise NotAllowed("nodes", names, code="wrong_number_of_nodes", wanted=many, **where)
@@ -67,13 +67,13 @@ class Around:
     nodes: Places
     links: Places
     held: np.ndarray  # (nodes,) bool: it has a support
-    link_nodes: np.ndarray  # (links, k) places of the nodes that links name
+    link_nodes: np.ndarray  # (links, k) indices of the nodes of each link
 
 
 def wrong_ends(places: np.ndarray, least: int) -> np.ndarray:
-    """Return the items (n,) that do not name two different ones, or one if the least is one.
+    """Return the items (n,) that do not name two different ones, or one if one is enough.
 
-    :param places: what they name (n, k), as :class:`~statejump.schema.item_tables.Places` returns it
+    :param places: indices of the named items (n, k), as :class:`~statejump.schema.item_tables.Places` returns them
     """
     count = (places != NONE).sum(axis=1)
     ends = np.sort(places, axis=1)[:, -2:]
@@ -97,7 +97,7 @@ def wrong_axes(items: ItemColumns[Any], dimension: int) -> np.ndarray:
 
 
 def vector(key: str, value: list[float] | None, unit: str, dimension: int, direction: bool, **where: Any) -> None:
-    """Raise NotAllowed for a vector of another dimension than the truss', or for a direction that is zero."""
+    """Raise NotAllowed for a vector whose length differs from the truss' dimension, or for a zero direction."""
     if value is None:
         return
     if len(value) != dimension:
@@ -107,7 +107,7 @@ def vector(key: str, value: list[float] | None, unit: str, dimension: int, direc
 
 
 def axis_of_rotation(axis: list[float] | None, dimension: int, where: Mapping[str, Any]) -> None:
-    """Raise an error unless an axis of rotation is absent in a planar truss and given in a spatial one."""
+    """Raise an error unless a spatial truss gives an axis of rotation and a planar truss gives none."""
     if dimension == 2 and axis is not None:
         raise NotAllowed("axis", axis, code="planar_axis", **where)
     if dimension == 3 and axis is None:
@@ -116,7 +116,7 @@ def axis_of_rotation(axis: list[float] | None, dimension: int, where: Mapping[st
 
 
 def turned_links(truss: ResolvedTruss, section: str, items: Any) -> None:
-    """Raise NotAllowed unless links that an item rotates against each other share a position and have an angle.
+    """Raise NotAllowed unless links that an item rotates against each other meet at a position and form an angle.
 
     :param items: arrays with names, links (k, 2) and axis (k, 3)
     """
@@ -126,7 +126,7 @@ def turned_links(truss: ResolvedTruss, section: str, items: Any) -> None:
 
 
 def _turned_links(truss: ResolvedTruss, section: str, items: Any, rows: slice, joined: np.ndarray) -> None:
-    """Do the same for some rows; ``joined`` are the codes of all pairs of nodes that joints hold together."""
+    """The same check for some rows; ``joined`` has the codes of all pairs of nodes that joints constrain."""
     links, pairs, axes = truss.links, items.links[rows], items.axis[rows]
     turned = pairs != GROUND
     ends = links.nodes[pairs]  # (k, 2 links, 2 ends)
@@ -153,5 +153,5 @@ def _turned_links(truss: ResolvedTruss, section: str, items: Any, rows: slice, j
 
 
 def _pair_codes(truss: ResolvedTruss, ones: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Return one number for every pair of nodes, whichever comes first."""
+    """Return one number for every pair of nodes, independent of their order."""
     return np.minimum(ones, others, dtype=np.int64) * len(truss.nodes.names) + np.maximum(ones, others)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The drawn surface of the nodes that [reflector] names."""
+"""The reference surface of the nodes that [reflector] names."""
 from __future__ import annotations
 
 import numpy as np

@@ -18,12 +18,12 @@ from statejump.kinds.truss.arrays import GROUND
 from statejump.kinds.truss.constraints import Constraints
 from statejump.kinds.truss.mechanism import Bodies, Drives
 
-# Euler's load over that of pinned ends, by how the ends of a link are held: 4.493... is the first root of tan x = x.
+# Euler's load over that of pinned ends, by the supports of the link's ends: 4.493... is the first root of tan x = x.
 FIXITY = {
     "pinned_pinned": 1.0, "clamped_pinned": (4.493409457909064 / np.pi) ** 2, "clamped_clamped": 4.0, "guided": inf,
 }
 
-# How contacts stick: rigidly, as springs, or with partial slip that begins at the rim.
+# Models of sticking contacts: rigid, as springs, or with partial slip that begins at the rim.
 STICKING = ("rigid", "elastic", "partial_slip")
 
 
@@ -35,8 +35,8 @@ class Nodes:
     position_m: np.ndarray  # (n, 3), assembled shape at ΔT = 0
     fixed: np.ndarray  # (n, 3) bool: no motion along x, y, z; planar trusses: z everywhere
     guide_normal: np.ndarray  # (n, 3) unit, no motion along it; zero: none
-    force_N: np.ndarray  # (n, 3) dead load, weights included
-    mass_kg: np.ndarray  # (n,) of bodies at nodes, beside those of links
+    force_N: np.ndarray  # (n, 3) dead load, including weights
+    mass_kg: np.ndarray  # (n,) masses at nodes, in addition to those of links
 
 
 @dataclass(frozen=True)
@@ -47,17 +47,17 @@ class Links:
     nodes: np.ndarray  # (m, 2) int
     young_modulus_Pa: np.ndarray
     cross_section_area_m2: np.ndarray
-    thermal_expansion_per_K: np.ndarray  # with an [[expansion]] its largest |α|, the program then has ε/α
+    thermal_expansion_per_K: np.ndarray  # with an [[expansion]] its largest |α|; the program is then that of ε/α
     stress_free_length_m: np.ndarray  # at ΔT = 0
-    mass_kg: np.ndarray  # from the density: density · area · stress-free length; NaN: neither is given
+    mass_kg: np.ndarray  # from the density: density · area · stress-free length; NaN: missing
     poisson_ratio: np.ndarray
-    temperature_fraction: np.ndarray  # of the program's ΔT
+    temperature_fraction: np.ndarray  # fraction of the program's ΔT
     program: np.ndarray  # int, index into ResolvedTruss.programs
-    shown_program: np.ndarray  # of the temperature itself, where that of an [[expansion]] has the strain
+    shown_program: np.ndarray  # program of the temperature itself; for an [[expansion]] `program` has the strain
     shown_fraction: np.ndarray
     second_moment_of_area_m4: np.ndarray  # smallest one of the section
     ends: Sequence[str]  # keys of FIXITY
-    yield_strength_Pa: np.ndarray  # inf: none is given
+    yield_strength_Pa: np.ndarray  # inf: missing
 
     @property
     def axial_stiffness_N(self) -> np.ndarray:
@@ -67,7 +67,7 @@ class Links:
 
     @property
     def euler_load_N(self) -> np.ndarray:
-        """Compression [N] at which each buckles by itself, inf of a guided one: fixity · π² E I/l0²."""
+        """Compression [N] at which each link buckles alone, fixity · π² E I/l0²; infinite for a guided one."""
         fixity = np.array([FIXITY[ends] for ends in self.ends])
         return fixity * np.pi**2 * self.young_modulus_Pa * self.second_moment_of_area_m4 / self.stress_free_length_m**2
 
@@ -102,7 +102,7 @@ class JoinsNodes(Protocol):
     section: ClassVar[str]
 
     def joined(self, joints: Any) -> np.ndarray:
-        """Return the pairs of nodes (k, 2) that the joints hold together."""
+        """Return the pairs of nodes (k, 2) that the joints constrain."""
 
 
 @dataclass(frozen=True)
@@ -116,15 +116,15 @@ class ResolvedTruss:
     links: Links
     bodies: Bodies  # shapes of the links
     joints: Mapping[str, Any]  # by section: the arrays of every type of joint
-    elements: Mapping[str, Any]  # by section: the arrays of every type of element beside links
+    elements: Mapping[str, Any]  # by section: the arrays of every type of element except links
     constraints: Constraints
     drives: Drives
     programs: tuple[Thermal | MemberProgram, ...]
     program_names: tuple[str, ...]  # "thermal", those of the file, those of members, "EXPANSION of PROGRAM"
     reflector: ReflectorSurface | None
-    sticking: str  # one of STICKING: contacts of the reduced model
+    sticking: str  # one of STICKING: model of sticking contacts
     start_friction: str  # stuck or frictionless
-    types: Sequence[JoinsNodes]  # of joints, in the order in which results list them
+    types: Sequence[JoinsNodes]  # types of joints, in the order of results
     element_types: Sequence[PullsNodes]  # likewise
 
     @property
@@ -148,7 +148,7 @@ class ResolvedTruss:
         return self.elements["spring"]
 
     def with_elements(self, **changed: Any) -> ResolvedTruss:
-        """Return the truss with other elements of the sections that are named."""
+        """Return the truss with other elements in the named sections."""
         return replace(self, elements={**self.elements, **changed})
 
     def ends(self) -> list[np.ndarray]:
@@ -164,15 +164,15 @@ class ResolvedTruss:
         return [-states["axial_force_N"], *(element.tension_N(states) for element in self.element_types)]
 
     def with_joints(self, **changed: Any) -> ResolvedTruss:
-        """Return the truss with other joints of the sections that are named."""
+        """Return the truss with other joints in the named sections."""
         return replace(self, joints={**self.joints, **changed})
 
     def joined(self) -> np.ndarray:
-        """Return the pairs of nodes (k, 2) that joints hold together."""
+        """Return the pairs of nodes (k, 2) that joints constrain."""
         return np.concatenate([joint.joined(self.joints[joint.section]) for joint in self.types])
 
     def number_of_joints(self) -> int:
-        """How many joints it has, of all types."""
+        """Number of its joints, of all types."""
         return sum(len(joints.names) for joints in self.joints.values())
 
     def turning_places(self, links: np.ndarray) -> np.ndarray:

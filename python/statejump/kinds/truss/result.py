@@ -32,11 +32,12 @@ STATES = np.array([STICK, SLIP, SLIP, AT_STOP, AT_STOP, SEPARATED], dtype=np.uin
 STATE_OF = {"stick": STICK, "slip_plus": SLIP, "slip_minus": SLIP, "stop_plus": AT_STOP, "stop_minus": AT_STOP,
             "open": SEPARATED}
 TYPES: tuple[ElementType[Any, Any] | JointType[Any, Any], ...] = (*ELEMENTS, *JOINTS)
-# Columns by item: what it is of, whether it is a vector. Names and order are those of the DEM's samples.
+# Columns by item: the list of the items, and whether the values are vectors. Names and order are those of the DEM's
+# samples.
 ITEMS = {"displacement_m": ("nodes", True), "axial_force_N": ("links", False)} | {
     column.name: (kind.items, column.vector) for kind in TYPES for column in kind.columns}
 TOUCHING = [joint for joint in JOINTS if joint.has_contacts]
-# Of these the DEM samples states; those of contacts are among the contacts of a result.
+# Types whose states the DEM samples; those of contacts are among the contacts of a result.
 STICKING = [joint for joint in JOINTS if joint.has_contacts or not joint.not_in_dem]
 # Displacement at the end of a program that does not end at the reference temperature.
 AT_END = "largest_displacement_at_program_end_m"
@@ -130,7 +131,7 @@ def _run(
     events: Callable[[], list[Event]], summary: Mapping[str, float], warnings: tuple[str, ...] = (),
     dense: tuple[np.ndarray, np.ndarray] | None = None, **more: Any,
 ) -> Run:
-    """Return a run. ``dense``: times and displacements, if there are more of them than samples."""
+    """Return a run. ``dense``: times and displacements, if they are denser than the samples."""
     truss, time = case.resolve(), plain["time_s"].values
     history = dict(plain)
     for key, (of, _) in ITEMS.items():
@@ -192,7 +193,7 @@ def _start_friction(truss: ResolvedTruss, items: Mapping[str, np.ndarray]) -> di
 
 def _switches(truss: ResolvedTruss, time: np.ndarray, change: np.ndarray, items: Mapping[str, np.ndarray]
               ) -> list[Event]:
-    """Return the events at which elements switch, each at the middle between two samples."""
+    """Return the events at which elements switch, each midway between two samples."""
     others = set(every_joint_name(truss).values())
     found = []
     for element in ELEMENTS:
@@ -233,7 +234,7 @@ def _contacts(
 
 
 def _states(states: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return the states of contacts by the names of their columns, from the engine's statuses."""
+    """Return the states of contacts by the names of their columns, converted from the engine's statuses."""
     return {joint.state_column: STATES[states[f"{joint.section}_status"].astype(int)] for joint in TOUCHING}
 
 
@@ -243,7 +244,7 @@ def _heat(states: Mapping[str, np.ndarray]) -> np.ndarray:
 
 
 def _heat_without_contact(states: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return friction's heat since the start [J] (states, joints) of types whose joints are no contacts."""
+    """Return friction's heat since the start [J] (states, joints), for types of joints that are no contacts."""
     heats = {f"{joint.section}_dissipation_J": joint for joint in JOINTS if not joint.has_contacts}
     return {key: states[key] for key in heats if states[key].shape[1]}
 
@@ -301,9 +302,9 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
 
 
 def _taken_together(case: TrussCase, path: TrussPath) -> tuple[str, ...]:
-    """Warnings of a path without location of events. If two joints change within one increment, the path does not know
-    their order, nor whether a third joint slipped to and fro between them."""
-    # Some changes are located nevertheless, within 1.5 tolerances of a branch.
+    """Warnings of a path without location of events. If two joints change within one increment, their order is unknown.
+    A third joint may have slipped back and forth between them."""
+    # Some changes are located even then, within 1.5 tolerances of a branch.
     located = 2 * case.reduced_settings.event_tolerance * float(path.states["time_s"][-1])
     found = path.events
     within = found.interval_s > located
@@ -352,7 +353,7 @@ def _events(case: TrussCase, path: TrussPath | TrussMotion) -> list[Event]:
     for event in path.events:
         name = joints[event.joint_kind, event.name]
         before, after = STATE_OF[event.before], STATE_OF[event.after]
-        # A path that does not locate all events knows some of them to an increment only.
+        # A path that does not locate all events knows the time of some of them only to an increment.
         half = event.interval_s / 2 if event.interval_s > LOCATED * case.period_s else 0.0
         if before != after:
             change = float(np.interp(event.time_s - half, at, path.states["temperature_change_K"])) if half else (
@@ -389,6 +390,6 @@ def dem_run(case: TrussCase, columns: Columns, about: Mapping[str, Any]) -> Run:
 
 
 def _beyond(case: TrussCase, plain: Mapping[str, Column], items: Mapping[str, np.ndarray]) -> tuple[str, ...]:
-    """Warnings for links that cannot carry the forces at the samples."""
+    """Warnings of links that cannot carry the forces at the samples."""
     return members.warnings(case.resolve().links, plain["time_s"].values, plain["temperature_change_K"].values,
                             items["axial_force_N"])

@@ -30,7 +30,7 @@ def dynamic(case: TrussCase, tell: Tell) -> Run:
 
 
 def check_dem(case: TrussCase) -> None:
-    """Raise StatejumpError where the DEM cannot run a case, before anything is solved."""
+    """Raise StatejumpError if the DEM cannot run a case, before anything is solved."""
     scene.check(case)
     find_yade()
 

@@ -12,18 +12,19 @@ import numpy as np
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.resolved import ResolvedTruss
 
-# Changes of status are located within 1e-9 of a branch, and a slender truss enlarges the rounding of coordinates by the
-# square of its slenderness: 40 bays to one part in 1e9 of the motion.
+# Changes of status are located within 1e-9 of a branch. A slender truss amplifies the rounding of coordinates by the
+# square of its slenderness: 40 bays to 1e-9 of the motion.
 ROUNDING = 1e-9
-# Of the coordinates: a length is a difference of coordinates, and a state is some hundred solutions with such lengths.
+# Relative to the coordinates: a length is a difference of coordinates, and a state results from some hundred solutions
+# with such lengths.
 COORDINATES = 1e3 * float(np.finfo(float).eps)
-# Of the scales: least reference of a comparison. With a tenth of the critical damping the DEM lags and swings by
-# some 1e-5 of the motion, where the natural period is 1e-3 of that of the temperature. The usual tolerance, 1 % of it,
-# leaves ten times as much.
+# Smallest reference of a comparison, relative to the scales. With a tenth of the critical damping, and a natural period
+# of 1e-3 of that of the temperature, the DEM lags and swings by some 1e-5 of the motion. The usual tolerance, 1 % of
+# this reference, is ten times as large.
 COMPARED = 1e-2
-# Of the difference of displacements that a case allows: a jump below it is none for a comparison with the DEM.
+# A jump below this fraction of the allowed difference of displacements counts as zero in a comparison with the DEM.
 NO_JUMP = 1e-4
-# Times the rounding of coordinates: a hundredth of COMPARED of it is still that rounding.
+# Multiple of the rounding of coordinates: a hundredth of COMPARED of it still exceeds that rounding.
 LEAST_MOTION = 1e4
 
 
@@ -31,11 +32,11 @@ LEAST_MOTION = 1e4
 class Scales:
     """References for differences.
 
-    :param motion_m: largest displacement or free expansion over the program, or deflection of the stiffest part under
-        the largest load; at least that of LEAST_MOTION
+    :param motion_m: largest displacement or free expansion over the program, or deflection of the stiffest element
+        under the largest load; at least that of LEAST_MOTION
     :param rounding_m: a displacement at or below it is rounding of the motion
-    :param force_N: largest force of a link whose expansion is held, or load
-    :param energy_J: elastic energy of all links whose expansion is held, or of that deflection
+    :param force_N: largest force of a link with prevented expansion, or load
+    :param energy_J: elastic energy of all links with prevented expansion, or of that deflection
     """
 
     motion_m: float
@@ -50,7 +51,7 @@ def scales(truss: ResolvedTruss, displacement_m: np.ndarray) -> Scales:
     :param displacement_m: of the nodes over the program (states, nodes, 3)
     """
     kept = vars(truss)
-    if "_scales" not in kept:  # a truss never changes, and may have a program for every link
+    if "_scales" not in kept:  # cached, because a truss is immutable and may have a program for every link
         kept["_scales"] = _at_rest(truss)
     still: Scales = kept["_scales"]
     motion = max(still.motion_m, float(np.linalg.norm(displacement_m, axis=-1).max(initial=0.0)))

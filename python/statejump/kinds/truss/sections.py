@@ -38,7 +38,7 @@ MOST_DENSITY_KG_PER_M3 = 1e5
 
 @definition
 class Truss(Section):
-    """What holds for the truss as a whole."""
+    """Settings of the truss as a whole."""
 
     dimension: int = whole(..., 2, 3, "2: x and y; 3: x, y and z")
     gravity_m_per_s2: list[float] | None = numbers(None, "m/s2", -1e6, 1e6, "on all masses; none")
@@ -46,7 +46,7 @@ class Truss(Section):
 
 @definition
 class Node(Item):
-    """A point that moves, where bars, joints and springs end. Positions are those at ΔT = 0."""
+    """A point that moves, at which bars, joints and springs end. Positions are those at ΔT = 0."""
 
     position_m: list[float] = numbers(..., "m", -LARGEST_LENGTH_M, LARGEST_LENGTH_M, USER)
     fixed: list[str] = texts([], "directions without motion", AXES)
@@ -88,7 +88,7 @@ class Link(Item):
 
 @definition
 class TrussExpansion(Item, Expansion):
-    """A coefficient of thermal expansion that follows the temperature, for links that name it."""
+    """A coefficient of thermal expansion that depends on temperature, for the links that name it."""
 
 
 @definition
@@ -103,7 +103,7 @@ class TrussThermal(CaseThermal):
 
 @definition
 class Program(Item, Thermal):
-    """Another temperature program, for links and joints that name it; it lasts as long as the common one."""
+    """A further temperature program, for the links and joints that name it; it has the duration of the common one."""
 
     cycles: int | None = whole(None, 1, 100_000, "as [thermal]")  # type: ignore[assignment]
     period_s: float | None = parameter(  # type: ignore[assignment]
@@ -111,9 +111,9 @@ class Program(Item, Thermal):
     )
 
     def completed(self, common: TrussThermal) -> TrussThermal:
-        """Return the program with cycles and period, those of the common one where it says nothing of them.
+        """Return the program with cycles and period; missing ones are those of the common program.
 
-        :raises NotAllowed: it is a table that lasts otherwise than ``period_s`` says
+        :raises NotAllowed: it is a table with another duration than ``period_s``
         """
         given = self.to_dict()
         del given["name"]
@@ -140,7 +140,7 @@ Tables = section_class(
 
 
 def sections_in_files() -> tuple[str, ...]:
-    """Return the lists that may stand in files beside a case."""
+    """Return the lists that may be in files beside a case."""
     return tuple(fields_of(Tables))
 
 
@@ -159,7 +159,7 @@ class TrussReduced(Section):
 
 @definition
 class TrussMotion(Section):
-    """How a truss in motion is stepped: ``statejump reduced --dynamic``. Its dashpots are those of links, pins and
+    """Time steps of a truss in motion: ``statejump reduced --dynamic``. Its dashpots are those of links, pins and
     contacts in [dem]."""
 
     scheme: str = choice("set_valued", ("set_valued", "regularised"),
@@ -190,7 +190,7 @@ class TrussDem(Section):
 
 @definition
 class Reflector(Section):
-    """The nodes that carry a reflecting surface: its error is that against the best-fit paraboloid."""
+    """The nodes of a reflecting surface: its error is that against the best-fit paraboloid."""
 
     nodes: list[str] = texts(..., "nodes of the surface")
     axis: list[float] = numbers(..., "-", -1e9, 1e9, "of the paraboloid; of any length")
@@ -199,7 +199,7 @@ class Reflector(Section):
 
 @definition
 class TrussTolerance(Section):
-    """How close the two models must be for ``compare`` to pass."""
+    """Allowed differences between the two models in ``compare``."""
 
     displacement_relative: float = parameter(0.01, "-", 0, 1, CHOICE, above=True)
     jump_relative: float = parameter(0.01, "-", 0, 1, CHOICE, above=True)
@@ -243,12 +243,12 @@ class TrussSections(ElementLists, JointLists, TrussParts):
 
     @property
     def member_histories(self) -> Histories | None:
-        """Temperature histories of members, where the case has a file of them."""
+        """Temperature histories of members, if the case has a file of them."""
         return self.thermal.members
 
     @property
     def programs(self) -> list[TrussThermal | MemberProgram]:
-        """The temperature programs, the common one first, cycles and period filled in; then those of members."""
+        """The temperature programs with cycles and period: the common one, named ones, then those of members."""
         members = self.thermal.members
         of_members = [] if members is None else members.programs(self.thermal.cycles, self.period_s)
         return [self.thermal, *(program.completed(self.thermal) for program in self.program), *of_members]
@@ -259,5 +259,5 @@ class TrussSections(ElementLists, JointLists, TrussParts):
         return [self.thermal, *self.program, *of_members]
 
     def returns_s(self) -> NDArray[np.float64]:
-        """Return the times [s] at which all parts have their first temperature again."""
+        """Return the times [s] at which all items have their first temperature again."""
         return returns_s(self.programs, self.period_s)

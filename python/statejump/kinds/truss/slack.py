@@ -13,13 +13,13 @@ from statejump.kinds.truss.joints.round_parts import RoundParts
 from statejump.kinds.truss.notes import listed
 from statejump.kinds.truss.resolved import ResolvedTruss
 
-# Of the largest force. The solver leaves 1e-9 of it in an element without contact: the rounding of coordinates times
-# the stiffness. Comparisons distinguish 1e-4 of it.
+# Fraction of the largest force. The solver leaves 1e-9 of it in an element without contact, which is the rounding of
+# coordinates times the stiffness. Comparisons distinguish 1e-4 of it.
 NO_FORCE = 1e-6
 
 
 def sentence(case: TrussCase, hung: np.ndarray) -> tuple[str, ...]:
-    """Return the nodes that hang slack at some sample (samples, nodes)."""
+    """Return a sentence about the nodes that hang slack at some sample (samples, nodes)."""
     names = [repr(case.node[node].name) for node in np.flatnonzero(hung.any(axis=0))]
     if not names:
         return ()
@@ -28,13 +28,13 @@ def sentence(case: TrussCase, hung: np.ndarray) -> tuple[str, ...]:
 
 
 def hanging(case: TrussCase, run: Run, least_force_N: float) -> np.ndarray:
-    """Return at which samples nodes hang slack (samples, nodes).
+    """Return the samples at which nodes hang slack (samples, nodes).
 
-    A node hangs if its links carry nothing and fewer parts hold it than it has directions. A link whose other end hangs
-    holds nothing, nor does a joint with clearance whose contact carries nothing. Parts of several links that hang
-    together are not recognised where each of their nodes has as many links as directions.
+    A node hangs slack if its links carry nothing and fewer items hold it than it has directions. A link whose other end
+    hangs slack holds nothing; neither does a joint with clearance whose contact carries nothing. A group of links that
+    hangs slack together is not recognised if each of its nodes has as many links as directions.
 
-    :param least_force_N: the largest force counts as this at least
+    :param least_force_N: lower bound of the largest force
     """
     truss = case.resolve()
     ends, force = truss.links.nodes, np.abs(run.links["axial_force_N"].values)
@@ -57,8 +57,8 @@ def hanging(case: TrussCase, run: Run, least_force_N: float) -> np.ndarray:
 
 
 def _pins_hold(truss: ResolvedTruss, run: Run, none_N: float, holding: np.ndarray) -> bool:
-    """Add the directions that joints with clearance constrain at nodes (samples, nodes). Return whether a joint carries
-    nothing at some sample."""
+    """Add the directions that joints with clearance constrain at nodes (samples, nodes). Return whether some joint
+    carries nothing at a sample."""
     place, idle = 0, False
     for joint in JOINTS:
         if not joint.has_contacts:

@@ -23,7 +23,7 @@ from statejump.kinds.truss.joints.protocol import JointType
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.schema.texts import InBlocks
 
-# Bytes of the states of a whole path beyond which only the ends of cycles are kept.
+# Size of the states of a whole path [bytes] above which only the ends of cycles are kept.
 LARGEST_PATH = 1 << 30
 
 
@@ -42,14 +42,15 @@ class TrussEvent:
 
 @dataclass(frozen=True, eq=False)
 class TrussEvents(Sequence[TrussEvent]):
-    """The events of a path in the order of their times. They are columns; an event is made when it is read."""
+    """The events of a path in the order of their times. They are stored as columns; an event object is created on
+    access."""
 
     truss: ResolvedTruss
     time_s: np.ndarray
     interval_s: np.ndarray
     temperature_change_K: np.ndarray
-    kind: np.ndarray  # places in kinds
-    joint: np.ndarray  # numbers among the joints of the kind
+    kind: np.ndarray  # indices in kinds
+    joint: np.ndarray  # indices among the joints of the kind
     before: np.ndarray  # keys of statuses
     after: np.ndarray
     kinds: Sequence[str]
@@ -77,8 +78,8 @@ class TrussEvents(Sequence[TrussEvent]):
 
 @dataclass(frozen=True)
 class TrussPath:
-    """Result of the solver. ``states`` and ``cycle_ends`` map a name with unit to an array whose first
-    axis is the state: (states, nodes, 3), (states, links), ... Axial force is positive in compression."""
+    """Result of the solver. ``states`` and ``cycle_ends`` map a name with unit to an array whose first axis is the
+    state: (states, nodes, 3), (states, links), ... Axial force is positive in compression."""
 
     truss: ResolvedTruss
     states: dict[str, np.ndarray]
@@ -113,7 +114,7 @@ def engine_program(program: Thermal | MemberProgram) -> _engine.ThermalProgram:
 
 
 def engine_programs(truss: ResolvedTruss) -> list[_engine.ThermalProgram]:
-    """Return all programs of a truss. They are made once, because a truss is immutable."""
+    """Return all programs of a truss. They are created once, because a truss is immutable."""
     kept = vars(truss)
     if "_engine_programs" not in kept:
         kept["_engine_programs"] = [engine_program(program) for program in truss.programs]
@@ -166,12 +167,12 @@ def path(
     """Return the quasi-static path of a truss.
 
     :param increments_per_branch: points of the path per monotone branch of the temperature
-    :param locate_events: locate every change of a joint's status, else only those that matter
+    :param locate_events: locate every change of a joint's status, else only those that affect the state
     :param event_tolerance: fraction of a branch within which a change is located
     :param energy_tolerance: allowed energy error, as a fraction of the work of the temperature. If events are located,
         increments with a larger error are divided; 1: none is
-    :param cycle_ends_only: keep the states at the ends of cycles only
-    :param problem_times: when the frictional contact problem of a step is kept, in order [s]
+    :param cycle_ends_only: keep only the states at the ends of cycles
+    :param problem_times: ascending times at which the frictional contact problem of a step is stored [s]
     :param progress: called with the finished fraction; returning False ends the path
     :param trace: called with each Newton iteration, see :data:`statejump.kinds.truss.trace.COLUMNS`
     :raises FailedRun: mechanism, unloaded joint or no equilibrium; with names and temperature
@@ -217,12 +218,12 @@ def _failed(truss: ResolvedTruss, failure: _engine.EngineFailure) -> EngineFaile
 
 def solve(case: TrussCase, tell: Tell = lambda fraction: None,
           trace: Callable[[tuple[Any, ...]], object] | None = None) -> TrussPath:
-    """Return the path of a case, with the settings of its [reduced]. A case is immutable, so its path is found once:
-    the DEM begins where the reduced model does. A trace needs a new solution.
+    """Return the path of a case, with the settings of its [reduced]. The path of an immutable case is computed once and
+    cached, because the DEM starts from it. A trace needs a new solution.
 
-    :param tell: takes the finished fraction, 0 to 1
-    :param trace: as of :func:`path`
-    :raises FailedRun: for a mechanism, an unloaded joint, no equilibrium: with names and temperature
+    :param tell: called with the finished fraction, 0 to 1
+    :param trace: as for :func:`path`
+    :raises FailedRun: mechanism, unloaded joint or no equilibrium; with names and temperature
     :raises Interrupted: Ctrl-C
     """
     kept = vars(case)

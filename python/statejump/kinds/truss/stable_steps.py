@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether explicit steps of a truss in motion (``motion.scheme = "regularised"``) are short enough."""
+"""Check that explicit steps of a truss in motion (``motion.scheme = "regularised"``) are short enough."""
 from __future__ import annotations
 
 from math import ceil
@@ -20,7 +20,7 @@ def _refuse(case: TrussCase, why: str, **fields: Any) -> StatejumpError:
 
 
 def _moves_along(truss: ResolvedTruss, node: int, axis: np.ndarray) -> bool:
-    """Whether supports and guide leave a node free to move along an axis, at least in part."""
+    """Return whether supports and guide leave a node a motion with a component along an axis."""
     held = np.vstack((np.eye(3)[truss.nodes.fixed[node]], truss.nodes.guide_normal[node]))
     held = held[np.abs(held).any(axis=1)]
     across = axis - (np.linalg.lstsq(held.T, axis, rcond=None)[0] @ held if len(held) else 0)
@@ -30,15 +30,15 @@ def _moves_along(truss: ResolvedTruss, node: int, axis: np.ndarray) -> bool:
 def least_steps_per_cycle(case: TrussCase) -> int:
     """Return the number of stable steps of a cycle, by the bound of the DEM.
 
-    It is that of a leapfrog, 2/ω; steps of Runge and Kutta's method may be √2 times as long where nothing is damped,
-    and no longer where dashpots are stiff.
+    The bound is that of leapfrog, 2/ω. Runge-Kutta steps may be √2 times as long without damping, and no longer with
+    stiff dashpots.
     """
     return ceil(case.period_s / dem.stable_time_step(case, dem.course(case, lambda share: None)))
 
 
 def check(case: TrussCase) -> None:
-    """Raise StatejumpError for a joint that has no such contact, NotAllowed for steps that are too long for the largest
-    forces of the quasi-static path."""
+    """Raise StatejumpError for a joint without such a contact. Raise NotAllowed for steps that are too long for the
+    largest forces of the quasi-static path."""
     truss = case.resolve()
     for joint in JOINTS:
         refused = joint.regularised_refuses(truss.joints[joint.section])

@@ -20,9 +20,9 @@ from statejump.kinds.truss.solve import solve
 COLUMNS = (
     "branch",  # monotone branch of the temperature programs, from 1; 0: the start
     "increment",  # within the branch; 0: the short first step
-    "step",  # of the path, tried or done, from 1; 0: the start
+    "step",  # of the path, attempted or done, from 1; 0: the start
     "solve",  # Newton solve of the path, from 1
-    "joints",  # pins, frictionless or friction: what stands for the joints
+    "joints",  # friction; at the start also pins or frictionless
     "opening",  # fraction of the clearances that is open
     "time_s",
     "temperature_change_K",

@@ -24,7 +24,7 @@ from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.scales import COMPARED, scales
 from statejump.kinds.truss.solve import TrussPath, engine_program, solve
 
-# Of the stiffest part: a motion that is held by less is held by nothing but rounding.
+# Fraction of the stiffness of the stiffest element. A motion with less stiffness is held by rounding only.
 LEAST_STIFFNESS = 1e-12
 
 
@@ -68,7 +68,7 @@ def slowest_natural_period_s(path: TrussPath) -> float:
         return 0.0
     stiffness = _stiffness(path)[free][:, free]
     largest = float(abs(stiffness).max())
-    # An eigenvalue that rounding made negative is above the shift.
+    # The shift keeps an eigenvalue positive that rounding made negative.
     shift = -LEAST_STIFFNESS * largest / float(mass[free].max())
     if len(free) <= 2:  # too few for Lanczos
         scaled = diags(mass[free] ** -0.5)

@@ -36,7 +36,7 @@ class Umbrella(Kind):
         "eccentricity_y_m",
         "penetration_depth_m",  # negative: gap
         "normal_force_N",
-        "tangential_force_N",  # friction on the journal, along the normal turned by +90 degrees
+        "tangential_force_N",  # friction on the journal, along the normal rotated by +90 degrees
         "slipping",
         "kinetic_energy_J",
         "axial_energy_J",

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Cases of kind ``umbrella``: one rib of the umbrella antenna, the paper's section 4.
 
-Links AB and BC are pinned to the frame at A = (0, 0) and C = (length_m, 0). At B the journal of BC
-plays in the bearing of AB. Angles are anticlockwise from AC: theta2 of AB from A to B, theta4 of BC
-from C to B; the flare angle is theta4 - theta2.
+Links AB and BC are pinned to the frame at A = (0, 0) and C = (length_m, 0). At B the journal of BC has clearance in the
+bearing of AB. Angles are anticlockwise from AC: theta2 of AB from A to B, theta4 of BC from C to B; the flare angle is
+theta4 - theta2.
 """
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ NONE = "none in the paper's case"
 
 @definition
 class Frame(Section):
-    """What carries the pins; it does not expand."""
+    """The frame of the pins; it does not expand."""
 
     length_m: float = parameter(..., "m", 0, 1e3, PAPER + ": |AC|", above=True)
 
 
 @definition
 class UmbrellaLink(Section):
-    """A bar pinned to the frame at one end; it also gives its half of the joint its material."""
+    """A bar pinned to the frame at one end; its half of the joint is of its material."""
 
     mass_kg: float = parameter(..., "kg", 0, 1e6, PAPER, above=True)
     young_modulus_Pa: float = parameter(..., "Pa", 0, 1e13, PAPER, above=True)
@@ -141,7 +141,7 @@ class Ensemble(Section):
 
 @definition
 class UmbrellaTolerance(Section):
-    """How close the two models must be for ``compare`` to pass."""
+    """Allowed differences between the two models in ``compare``."""
 
     first_contact_reduced_K: float = parameter(1e-6, "K", 0, 1e3, CHOICE, above=True)
     first_contact_dem_K: float = parameter(1e-3, "K", 0, 1e3, CHOICE, above=True)
@@ -197,7 +197,7 @@ class UmbrellaCase(Case):
 
     @property
     def ideal_position_m(self) -> tuple[float, float]:
-        """Where the unstrained links meet at ΔT = 0, above AC: x and y of B [m]."""
+        """Position x and y of B [m] at which the unstrained links meet at ΔT = 0, above AC."""
         x, y = apex_m(*self.link_lengths_m(0.0), self.frame.length_m)
         return float(x), float(y)
 
@@ -220,7 +220,7 @@ class UmbrellaCase(Case):
 
     @property
     def free_flare_angle_rad(self) -> float:
-        """Flare angle at which the torsion spring is free [rad]."""
+        """Flare angle at which the torsion spring has no moment [rad]."""
         return self.flare_angle_rad + self.torsion_spring.bias_rad
 
     @property
@@ -235,8 +235,8 @@ class UmbrellaCase(Case):
 
     @property
     def is_reproducible(self) -> bool:
-        """Whether the whole history, not only the heating, can be compared point by point: with damping of the links
-        and of the pins small differences die out; without they grow to the size of the play."""
+        """Whether the whole history, and not only the heating, can be compared point by point. With damping of the
+        links and of the pins small differences decay; without it they grow to the size of the play."""
         return self.damping.axial_damping_ratio > 0 and self.damping.pin_damping_N_m_s_per_rad > 0
 
     @property
@@ -248,7 +248,7 @@ class UmbrellaCase(Case):
         )
 
     def check(self) -> None:
-        """Raise StatejumpError for what is wrong between several keys."""
+        """Raise StatejumpError for a contradiction between several keys."""
         self._check_laws()
         self._check_geometry()
         self._check_joint()
@@ -259,7 +259,7 @@ class UmbrellaCase(Case):
         for part in ("link_ab", "link_bc"):
             no_length_left(f"{part}.thermal_expansion_per_K", getattr(self, part).thermal_expansion_per_K, self)
         frame = self.frame.length_m
-        # The sum is linear in ΔT and the difference convex: the ends of the program decide.
+        # The sum is linear in ΔT and the difference is convex, so the ends of the program are decisive.
         for change in (0.0, *self.temperature_range_K):
             ab, bc = self.link_lengths_m(change)
             if not abs(ab - bc) < frame < ab + bc:
@@ -274,7 +274,7 @@ class UmbrellaCase(Case):
                           ("tangential_velocity", "tangential_velocity")):
             name = getattr(self.joint, key)
             problem = _engine.law_problem(kind, name)
-            if problem:  # a law of one's own that is known and cannot be used
+            if problem:  # a user law that is known and unusable
                 raise NotAllowed(f"joint.{key}", name, problem, code="bad_law")
         dissipation = laws.law("dissipation", self.joint.dissipation_law)
         may_be_zero = any(p.name == "restitution" and p.allows(0) for p in dissipation.parameters)

@@ -7,7 +7,8 @@ from statejump.kinds.umbrella.case import UmbrellaCase
 
 
 def charts(case: UmbrellaCase) -> list[Chart]:
-    """Return both deflections over temperature, the way of the journal in its clearance, the contact force."""
+    """Return both deflections over temperature, the trajectory of the journal in its clearance, and the contact
+    force."""
     return [
         Chart(TEMPERATURE, Axis("theta2_rad", "Deflection of AB, θ2 − θ2(0)", from_start=True),
               "Deflection-temperature loop", marks=True),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""DEM runs of an ``umbrella`` case in YADE: what the script needs, several runs at a time, ensembles."""
+"""DEM runs of an ``umbrella`` case in YADE: input of the script, several runs at a time, ensembles."""
 from __future__ import annotations
 
 import os
@@ -23,9 +23,9 @@ def number_of_steps(case: UmbrellaCase) -> int:
 
 
 def dem_input(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> dict[str, Any]:
-    """Return everything that the YADE script needs; the start as positions and velocities of the tips.
+    """Return the input of the YADE script, with the start as positions and velocities of the tips.
 
-    :param offset_m: added to the journal's place in the play (2) [m]
+    :param offset_m: added to the journal's position in the clearance (2) [m]
     """
     values = common_values(case, number_of_steps(case))
     state = reduced.start_state(case, offset_m)
@@ -43,7 +43,7 @@ def execute(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> Samples:
 
 
 def execute_all(cases: Sequence[UmbrellaCase], progress: Callable[[], None] = lambda: None) -> list[Run]:
-    """Run several cases, as many at a time as there are cores; results in the order given."""
+    """Run several cases, as many at a time as there are cores; results in the given order."""
 
     def one(case: UmbrellaCase) -> Run:
         done = execute(case)
@@ -57,7 +57,7 @@ def execute_all(cases: Sequence[UmbrellaCase], progress: Callable[[], None] = la
 def ensemble(
     case: UmbrellaCase, runs: int | None = None, progress: Callable[[], None] = lambda: None
 ) -> reduced.EnsembleOfRuns:
-    """Run the case from ``runs`` starts (default: as the case says), as many as cores at a time."""
+    """Run the case from ``runs`` starts (default: the number in the case), as many at a time as there are cores."""
     offsets = list(reduced.start_offsets(case, runs or case.ensemble.dem_runs))
     case = reduced.for_ensemble(case)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figure of runs of an ``umbrella`` case: the models on top of each other."""
+"""Figure of runs of an ``umbrella`` case: the models in one figure."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ ALONG = {"time_s": "Time [s]", "temperature_change_K": "Temperature change [K]"}
 
 
 def sheet(case: UmbrellaCase, runs: Sequence[Run]) -> Sheet:
-    """Return the deflection over time and over temperature, the way in the play, and the normal force."""
+    """Return the deflection over time and over temperature, the trajectory in the clearance, and the normal force."""
 
     def deflection(along: str) -> Panel:
         def draw(axes: Axes) -> None:

@@ -41,7 +41,7 @@ def linkage(case: UmbrellaCase) -> _engine.Linkage:
 def start_state(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> _engine.LinkageState:
     """Return the state at t = 0.
 
-    :param offset_m: added to the journal's place in the play (2) [m]; not for ``loaded``
+    :param offset_m: added to the journal's position in the clearance (2) [m]; not for ``loaded``
     """
     model, start = linkage(case), case.start
     if start.mode == "loaded":
@@ -79,7 +79,8 @@ def run(case: UmbrellaCase, tell: Tell = lambda share: None, offset_m: np.ndarra
 
 
 def quasi_static(case: UmbrellaCase, samples: int = 400) -> _engine.JointLoop | None:
-    """Return the path of the loaded joint, rigid links and exact friction; None if statics leaves it open."""
+    """Return the path of the loaded joint with rigid links and exact friction; None if statics does not determine
+    it."""
     try:
         return _engine.joint_loop(
             linkage(case), case.thermal_program(), case.start.contact_angle_rad, samples
@@ -89,8 +90,8 @@ def quasi_static(case: UmbrellaCase, samples: int = 400) -> _engine.JointLoop | 
 
 
 def start_offsets(case: UmbrellaCase, count: int) -> Iterator[np.ndarray]:
-    """Yield places of the journal near the start (2) [m], evenly spread over a disc; the same for
-    the same seed, each independent of how many are asked for."""
+    """Yield positions of the journal near the start (2) [m], evenly spread over a disc. They depend on the seed alone,
+    and each is independent of their number."""
     for index in range(count):
         generator = np.random.default_rng([case.ensemble.seed, index])
         radius = case.ensemble.start_spread_m * np.sqrt(generator.random())
@@ -119,7 +120,7 @@ class EnsembleOfRuns:
 
     @property
     def jump_rad(self) -> np.ndarray:
-        """θ2 at the end less at the start of every run (runs)."""
+        """θ2 at the end minus θ2 at the start of every run (runs)."""
         return self.deflection_rad[:, -1]
 
 
@@ -148,7 +149,7 @@ def gather(runs: Sequence[Columns | Run]) -> EnsembleOfRuns:
 def ensemble(
     case: UmbrellaCase, runs: int | None = None, progress: Callable[[], None] = lambda: None
 ) -> EnsembleOfRuns:
-    """Run the reduced model from ``runs`` starts (default: as the case says), on all cores.
+    """Run the reduced model from ``runs`` starts (default: the number in the case), on all cores.
 
     The result does not depend on the number of cores.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An ``umbrella`` case in words, and what a command prints of its runs."""
+"""Texts of an ``umbrella`` case, and what a command prints of its runs."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -20,7 +20,7 @@ WORDS = {
 
 
 def describe(case: UmbrellaCase) -> list[str]:
-    """Return the case in sentences; its temperature program is told for all kinds alike."""
+    """Return the case in sentences, without its temperature program, which all kinds describe alike."""
     ab, bc, joint = case.link_ab, case.link_bc, case.joint
     sentences = [
         f"One rib of an umbrella antenna: link AB, {text(ab.stress_free_length_m, 'm')}, {ab.mass_kg:g}\u202fkg, "
@@ -37,7 +37,8 @@ def describe(case: UmbrellaCase) -> list[str]:
 
 
 def told(case: UmbrellaCase, runs: Mapping[str, Run]) -> list[Shown | str]:
-    """Return what a command prints of a model alone: first contact, jump, and what the reduced model says of itself."""
+    """Return the lines that a command prints of a single model: first contact, jump, and remarks of the reduced
+    model."""
     if len(runs) > 1:
         return []
     found: list[Shown | str] = []

@@ -92,7 +92,6 @@ struct MindlinEnergy {
 /// Limits: a single spring for the whole contact; Mindlin and Deresiewicz's partial-slip loops
 /// below the limit are not resolved. A cyclic normal load reduces a stuck force, because loading
 /// keeps it and unloading scales it down.
-/// on unloading.
 inline MindlinEnergy mindlin_step(double stiffness, double limit, const Vector3& slide,
                                   ContactHistory& history) {
   const Vector3 old_force = history.tangential_force;

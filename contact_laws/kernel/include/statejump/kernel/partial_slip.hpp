@@ -376,8 +376,9 @@ class PartialSlipStep {
     old_.append(point_.data(), size_);
   }
 
-  /// Makes sticking points the prefix if they will stick for about `steps` more steps like this
-  /// one. The prefix must gain `least` points, because it costs a pass over all of them.
+  /// Extends the prefix, the first points, whose common motion is stored once. It gains the points
+  /// that would still stick after `steps` steps like this one. It needs a gain of `least` points,
+  /// because the change costs a pass over all points.
   void update_prefix() {
     constexpr int least = 4;
     constexpr int loose = 2;  // next to the others: they come and go with these

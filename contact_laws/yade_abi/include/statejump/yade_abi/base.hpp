@@ -29,7 +29,7 @@
 #include <string>
 #include <vector>
 
-// YADE's Eigen settings: they decide the size and the alignment of every vector member.
+// YADE's Eigen settings. They determine the size and the alignment of every vector member.
 #ifndef EIGEN_DONT_ALIGN
 #error "compile with -DEIGEN_DONT_ALIGN -DEIGEN_DONT_VECTORIZE, as YADE was"
 #endif
@@ -40,7 +40,7 @@
 #error "STATEJUMP_YADE_VARIANT is set by the build: the interface variant of the YADE that it found"
 #endif
 
-// A class template of YADE that lives in the global namespace; instance() is exported.
+// A class template of YADE in the global namespace; instance() is exported.
 template <class T>
 class Singleton {
  public:
@@ -64,8 +64,8 @@ using Se3r = Se3<Real>;
 
 class Scene;
 
-// Place of members that are not used. Zeros are what YADE's defaults amount to (null pointers)
-// where we construct the object; elsewhere YADE does.
+// Bytes of unused members. Zeros correspond to YADE's defaults (null pointers) where the plugin
+// constructs the object; elsewhere YADE constructs it.
 template <std::size_t size, std::size_t alignment = alignof(void*)>
 struct alignas(alignment) Unused {
   std::array<char, size> bytes{};
@@ -99,8 +99,8 @@ class Serializable : public Factorable {
   void serialize(Archive& archive, unsigned int version);
 };
 
-// Multiple dispatch: each derived class owns a static index, taken once in its constructor. YADE
-// does not export the table of this class, so its functions are defined here; every class below
+// Multiple dispatch: each derived class has a static index, assigned once in its constructor. YADE
+// does not export the table of this class, so its functions are defined here. Every derived class
 // overrides them.
 class Indexable {
   [[noreturn]] static void no_dispatch_index() {

@@ -60,7 +60,7 @@ class Bound : public Serializable, public Indexable {
   void incrementMaxCurrentlyUsedClassIndexOfKin() override;
 };
 
-// Built through Aabb's exported constructor only; YADE exports none of Bound.
+// Constructed only through Aabb's exported constructor, because YADE exports no function of Bound.
 class Aabb : public Bound {
  public:
   Aabb();
@@ -138,7 +138,7 @@ class ElastMat : public Material {
   Real poisson;
 
  protected:
-  // FrictMat's exported constructor builds this part; never built on its own here.
+  // FrictMat's exported constructor constructs this part. The plugin never constructs it alone.
   ElastMat();
   ~ElastMat() override;
 };
@@ -179,8 +179,8 @@ class IGeom : public Serializable, public Indexable {
   void incrementMaxCurrentlyUsedClassIndexOfKin() override;
 };
 
-// YADE's time stepper and its recorders read every interaction geometry through this type,
-// unchecked.
+// YADE's time stepper and its recorders cast every interaction geometry to this type without a
+// check.
 class GenericSpheresContact : public IGeom {
  public:
   Vector3r normal = Vector3r::Zero();
@@ -228,7 +228,7 @@ class NormPhys : public IPhys {
   Vector3r normalForce;
 
  protected:
-  // FrictPhys's exported constructor builds this part and the next.
+  // FrictPhys's exported constructor constructs this part and the next.
   NormPhys();
   ~NormPhys() override;
 };
@@ -323,7 +323,7 @@ class BodyContainer : public Serializable {
   std::vector<shared_ptr<Body>> body;
   Unused<152> listsAndMutex;
 
-  // Null pointers are the places of erased bodies.
+  // Null pointers stand for erased bodies.
   std::size_t size() const { return body.size(); }
   const shared_ptr<Body>& operator[](unsigned int id) const { return body[id]; }
   bool exists(int id) const {

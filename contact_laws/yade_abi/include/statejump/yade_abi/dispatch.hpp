@@ -27,8 +27,8 @@ class Functor : public Serializable {
   virtual std::vector<std::string> getFunctorTypes() const;
 };
 
-// One virtual overload of go and goReverse for each number of arguments up to seven. Arguments
-// beyond the real ones have the type that boost::mpl gives past the end of a vector.
+// One virtual overload of go and goReverse for each number of arguments up to seven. Further
+// arguments have the type that boost::mpl returns beyond the end of a vector.
 template <class Result, class Arguments>
 class FunctorWrapper {
   template <int i>
@@ -138,10 +138,10 @@ class LawFunctor
   void pyRegisterClass(boost::python::object scope) override;
 };
 
-// Passed on by the renderer; the plugin does not look into it.
+// The renderer passes it on; the plugin does not use it.
 class GLViewInfo;
 
-// Draws a shape, already moved to its body's place, in YADE's 3-D view.
+// Draws a shape in YADE's 3-D view. The origin is already at the body's position.
 class GlShapeFunctor
     : public Functor1D<Shape, void,
                        boost::mpl::vector<const shared_ptr<Shape>&, const shared_ptr<State>&, bool,
@@ -160,8 +160,8 @@ class GlShapeFunctor
   virtual void initgl();
 };
 
-// The 3-D view. It looks for classes that draw once, when YADE's user interface starts; with the
-// flag down it looks again before it draws the next picture.
+// The 3-D view. When YADE's user interface starts, it searches once for classes that draw. If the
+// flag is reset, it searches again before the next picture.
 class OpenGLRenderer {
  public:
   static bool initDone;

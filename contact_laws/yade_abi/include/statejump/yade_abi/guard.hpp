@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks that the interface that the plugin was compiled with is the one of the running YADE.
+// Compares the interface for which the plugin was compiled with that of the running YADE.
 #pragma once
 
 #include <boost/python/object.hpp>
@@ -10,8 +10,8 @@
 namespace statejump::yade_abi {
 
 struct GuardOptions {
-  // The build identifiers of the libraries are the only check that covers every member; tests that
-  // deliberately declare something else switch it off to see the others work.
+  // Whether to compare build identifiers, the only check that covers every member. Tests that
+  // deliberately declare a wrong interface switch it off, so that the other checks run.
   bool check_build_ids = true;
 };
 

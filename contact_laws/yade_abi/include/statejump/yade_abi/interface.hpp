@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The interface that the plugin was compiled with, as data: what the guard compares with the
-// running libraries. It knows nothing of how the classes are declared, so the checks do not depend
-// on the declarations that they check.
+// The interface for which the plugin was compiled, as data. The guard compares it with the running
+// libraries. It does not depend on the declarations of the classes, so neither do the checks.
 #pragma once
 
 #include <cstddef>
@@ -26,8 +25,8 @@ struct DeclaredMember {
 struct DeclaredInterface {
   std::vector<DeclaredClass> classes;
   std::vector<DeclaredMember> members;
-  // Classes whose table of virtual functions is compared, each with the mangled name of a child
-  // that does nothing.
+  // Classes whose table of virtual functions is compared, each with the mangled name of a
+  // do-nothing child.
   struct Table {
     std::string class_name, mangled_child;
   };
@@ -39,10 +38,10 @@ struct DeclaredInterface {
   const DeclaredMember* find_member(const std::string& class_name, const std::string& name) const;
 };
 
-// From the declarations, or from YADE's own headers where the plugin is built against those.
+// Made from the declarations, or from YADE's own headers if the plugin is built against those.
 DeclaredInterface declared_interface();
 
-// A mangled name of a type as the C++ runtime spells it; the name itself where it is none.
+// The readable form of a mangled type name; the name itself if it is not mangled.
 std::string demangled(const char* mangled);
 
 }  // namespace statejump::yade_abi

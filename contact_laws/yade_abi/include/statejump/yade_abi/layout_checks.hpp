@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The measured sizes and offsets of the declared variant, held against the declarations at compile
-// time. The running libraries are held against them by the guard.
+// Compares the measured sizes and offsets of the declared variant with the declarations, at compile
+// time. The guard compares them with the running libraries.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 namespace statejump::yade_abi {
 
 #pragma GCC diagnostic push
-// The classes have virtual functions; GCC lays out their single bases as offsetof assumes.
+// The classes have virtual functions. GCC lays out their single bases as offsetof assumes.
 #pragma GCC diagnostic ignored "-Winvalid-offsetof"
 
 static_assert(sizeof(yade::Vector3r) == 24 && alignof(yade::Vector3r) == 8);
@@ -20,7 +20,7 @@ static_assert(sizeof(yade::Factorable) == 24);
 static_assert(sizeof(yade::Serializable) == 24);
 static_assert(sizeof(yade::Indexable) == 8);
 
-// measured_layout.inc is made by the build from variants/<variant>_members.csv; offsetof takes no
+// The build makes measured_layout.inc from variants/<variant>_members.csv. offsetof accepts no
 // function.
 #define STATEJUMP_CLASS(Class, bytes, allocated) static_assert(sizeof(yade::Class) == (bytes));
 #define STATEJUMP_MEMBER(Class, member, place, bytes, getter) \
@@ -32,7 +32,7 @@ static_assert(sizeof(yade::Indexable) == 8);
 #undef STATEJUMP_MEMBER
 #undef STATEJUMP_PRIVATE_MEMBER
 
-// The second base of a functor, where multiple dispatch calls it.
+// The second base of a functor, through which multiple dispatch calls it.
 static_assert(sizeof(yade::Functor) == 80 && sizeof(yade::BoundFunctor) == 80 + sizeof(void*));
 
 #pragma GCC diagnostic pop

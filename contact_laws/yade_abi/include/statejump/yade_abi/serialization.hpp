@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// YADE's own serialization of the base classes, used and not repeated: the (de)serializers of each
-// archive are instantiated in YADE's libraries and only declared here.
+// YADE's own serialization of the base classes. YADE's libraries instantiate the (de)serializers of
+// each archive; this header only declares them.
 #pragma once
 
 #include <boost/archive/binary_iarchive.hpp>
@@ -14,7 +14,7 @@
 
 namespace boost::archive::detail {
 
-// A list of explicit instantiations cannot be written as a template.
+// A macro, because a list of explicit instantiations cannot be a template.
 #define STATEJUMP_SERIALIZED_BY_YADE(Class)                                  \
   extern template class iserializer<boost::archive::binary_iarchive, Class>; \
   extern template class oserializer<boost::archive::binary_oarchive, Class>; \

@@ -26,18 +26,18 @@ struct TemperatureRange {
   double highest = 0.0;
 };
 
-/// State of the nodes and temperatures, at which elements are evaluated. The arguments must outlive
+/// State of the nodes and temperatures at which elements are evaluated. The arguments must outlive
 /// it.
 class ElementState {
  public:
-  /// @param drawn positions of the nodes at ΔT = 0 [m]
+  /// @param drawn positions of the nodes in the reference configuration, ΔT = 0 [m]
   /// @param moved displacements of the nodes [m]
   /// @param changes ΔT of the temperature programs [K]
   ElementState(const std::vector<Eigen::Vector3d>& drawn, const Eigen::Matrix3Xd& moved,
                const std::vector<double>& changes)
       : drawn_(&drawn), moved_(&moved), changes_(&changes) {}
 
-  /// From one node to another in the reference configuration [m].
+  /// Vector from one node to another in the reference configuration [m].
   Eigen::Vector3d drawn_between(int from, int to) const {
     return (*drawn_)[static_cast<std::size_t>(to)] - (*drawn_)[static_cast<std::size_t>(from)];
   }

@@ -7,52 +7,52 @@
 
 namespace statejump::truss {
 
-/// Ball joint with clearance and dry friction: a ball on the end of one link within a spherical
-/// socket on the end of another. What a revolute is in a plane, in space: the normal is a direction
-/// of space, friction has two directions, and its bound is a cone.
+/// Ball joint with clearance and dry friction: a ball on the end of one link in a spherical socket
+/// on the end of another. It generalises the revolute to space: the normal is a direction in space,
+/// friction has two components, and its limit is a cone.
 ///
-/// **Law.** With the offset e of the ball's centre from the socket's, normal n = e/|e|, radii r1,
-/// r2 less and plus half the depth (both surfaces meet in one point) and the rates ω1, ω2 at which
-/// the parts turn, surfaces slide by
+/// **Law.** Let e be the offset of the ball's centre from the socket's, n = e/|e| the normal, and
+/// ω1, ω2 the angular velocities of the parts. r1 and r2 are the radii less and plus half the
+/// depth, so that both surfaces meet in one point. The surfaces slide by
 ///
-///     dσ = (1 − n nᵀ) de + r1 ω1 dt × n − r2 ω2 dt × n
+///   dσ = (1 − n nᵀ) de + r1 ω1 dt × n − r2 ω2 dt × n
 ///
-/// in a tangent plane that turns with the contact: by the smallest rotation that takes n along, and
-/// about n by the mean spin of both parts, as the friction of a DEM does. With the force t of the
-/// contact along the slide that bends it, compliance C = 1/k_t, k_t = 8 G* √(R δ) (Mindlin):
+/// in a tangent plane that rotates with the contact: with the smallest rotation that takes the old
+/// normal to the new one, and about n with the mean spin of both parts. The friction of a DEM does
+/// the same. Let t be the force along the slide that deflects the contact, with the compliance C =
+/// 1/k_t, k_t = 8 G* √(R δ) (Mindlin):
 ///
-///     open    λ_n = 0, t = 0, |e| <= c    contact   |e| = c + (λ_n/K)^(2/3), λ_n >= 0
-///     stick   dσ = d(C t), |t| <= μ λ_n   slip      |t| = μ λ_n, dσ = d(C t) + t/|t| dγ, dγ >= 0
+///   open    λ_n = 0, t = 0, |e| <= c    contact   |e| = c + (λ_n/K)^(2/3), λ_n >= 0
+///   stick   dσ = d(C t), |t| <= μ λ_n   slip      |t| = μ λ_n, dσ = d(C t) + t/|t| dγ, dγ >= 0
 ///
-/// where load that is added to the contact keeps t, load that is taken away keeps C t. A slip has
-/// no sense of its own: it is told as `slip_plus`.
+/// Added normal load keeps t; removed normal load keeps C t. A slip in any direction has the status
+/// `slip_plus`.
 ///
-/// A straight link turns the part on its end without spinning about its own axis, as a DEM's does;
-/// the moment of friction about that axis has nothing to turn. Of several links at a node, the one
-/// that is named turns the part.
+/// A straight link rotates the part on its end without spin about its own axis, as in a DEM. The
+/// moment of friction about that axis therefore rotates nothing. If several links end at a node,
+/// the named one rotates the part.
 ///
-/// **Step.** Slide and turns of a step are taken at its middle. Friction that slips turns into the
-/// slide as it does where the slide is straight and the bound constant, along a tractrix; where a
-/// slip begins it is projected onto the cone (radial return [1]). All of it is of second order in
-/// the increment.
+/// **Step.** Slide and rotations of a step are evaluated at its middle. Friction that slips rotates
+/// towards the slide along a tractrix, which is exact for a straight slide and a constant limit.
+/// Where a slip begins, friction is projected onto the cone (radial return [1]). The joint is
+/// second-order accurate in the increment.
 ///
 /// With partial slip t is the force of kernel::partial_slip_plane() for the slide of the step, the
-/// stiffness k_t of the depth and the limit μ λ_n, along directions that are carried as friction
-/// is: one row for stick and slip. What is remembered is what kernel::partial_slip_step() leaves,
-/// whose chords differ from t by up to 1e-4 of the limit where the direction turns. A slip then
-/// says that the whole contact slides.
+/// stiffness k_t of the depth and the limit μ λ_n. The directions rotate as those of friction do.
+/// One row covers stick and slip. The memory is updated by kernel::partial_slip_step(), whose
+/// chords differ from t by up to 1e-4 of the limit where the direction rotates. The status slip
+/// means that the whole contact slides.
 ///
-/// **Unknowns.** The force on the ball as a vector along fixed directions, λ_n n + t. Then no
-/// direction of the tangent plane is chosen anywhere, and pins, contact and open joint have the
-/// same unknowns.
+/// **Unknowns.** The force on the ball, λ_n n + t, along fixed directions. No direction in the
+/// tangent plane has to be chosen, and pins, contact and open joint have the same unknowns.
 ///
 /// [1] J. C. Simo, T. J. R. Hughes, Computational Inelasticity, Springer 1998, ch. 3.3.
 struct BallJoint {
   std::string name;
   int ball_node = 0;
   int socket_node = 0;
-  int ball_link = -1;                   ///< Turns the ball; −1: it does not turn.
-  int socket_link = -1;                 ///< Turns the socket; −1: it does not turn.
+  int ball_link = -1;                   ///< Rotates the ball; −1: none.
+  int socket_link = -1;                 ///< Rotates the socket; −1: none.
   double ball_radius = 0.0;             ///< R1 at ΔT = 0 [m], > 0.
   double radial_clearance = 0.0;        ///< c = R2 − R1 at ΔT = 0 [m], > 0.
   double ball_thermal_expansion = 0;    ///< [1/K].
@@ -63,7 +63,7 @@ struct BallJoint {
   /// 8 G* √R of Mindlin's k_t = 8 G* √(R δ) [N/m^1.5], > 0; infinity: sticks rigidly, in motion
   /// only.
   double mindlin_stiffness = 0.0;
-  /// 1: slides at the rim of its contact first. Needs friction.
+  /// 1: partial slip, which starts at the rim of the contact. Needs friction.
   int partial_slip = 0;
   int program = 0;
   double temperature_fraction = 1;
@@ -78,7 +78,7 @@ struct BallJoint {
   void evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const;
   void warm(const Trial& trial, JointStatus status, double temperature_rate,
             JointWriter& writer) const;
-  /// Motion since the start of the step of a joint that is open [m].
+  /// Motion of an open joint since the start of the step [m].
   Eigen::Vector3d slack_motion(const Trial& trial) const;
   JointStatus decide(const Trial& trial, JointStatus status) const;
   void begin(const Trial& trial, JointStatus status, double* now) const;
@@ -97,9 +97,9 @@ struct BallJoint {
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;
   JointStatus settled(const Trial& trial, JointStatus status) const;
-  /// Contact problems have one direction of friction: as a contact it is held.
+  /// Contact problems have one direction of friction. In them the joint keeps its status.
   std::optional<LocalContact> contact(const Trial&, JointStatus) const { return {}; }
-  /// Where the memory of a contact with partial slip begins in its history().
+  /// Index in history() at which the memory of a contact with partial slip begins.
   int slip_memory_begin() const;
   bool slips_smoothly() const { return partial_slip != 0; }
   double least_slide() const { return radial_clearance; }

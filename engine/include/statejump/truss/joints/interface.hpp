@@ -16,8 +16,8 @@ namespace statejump::truss {
 struct Model;
 class JointWriter;
 
-/// Which branch of a joint's equations is active. It is found, never given. Senses are those of the
-/// slide: of a slider along its axis, of a revolute the journal's surface over the bearing's,
+/// The active branch of a joint's equations. The solver finds it. The sign is that of the slide:
+/// for a slider along its axis, for a revolute that of the journal's surface over the bearing's,
 /// anticlockwise about the axis.
 enum class JointStatus : unsigned char {
   stick,
@@ -35,12 +35,12 @@ constexpr bool is_slip(JointStatus status) {
   return status == JointStatus::slip_plus || status == JointStatus::slip_minus;
 }
 
-/// What stands in for joints with play on the way to the first state: bilateral pins and
-/// frictionless contacts find the start, friction is the path.
+/// Replacement of joints with clearance while the solver seeks the first state. It starts with
+/// bilateral pins and continues with frictionless contacts. The path has friction.
 enum class JointModel : unsigned char { pins, frictionless, friction };
 
-/// A joint as a contact of a frictional contact problem: which of its rows, on the branch `stick`,
-/// are gap and slide.
+/// A joint as a contact of a frictional contact problem: its rows with the status `stick` that are
+/// gap and slide.
 struct LocalContact {
   int tangential = 0;                 ///< Row of the slide.
   int normal = -1;                    ///< Row of the gap; −1: the normal force is given.
@@ -51,9 +51,9 @@ struct LocalContact {
 constexpr int most_joint_nodes = 4;
 constexpr int most_joint_forces = 3;
 
-/// Where a joint sits in the truss: found once.
+/// Position of a joint in the truss, determined once.
 struct JointFrame {
-  /// Nodes that it moves or is turned by; −1: the ground, or none.
+  /// Nodes that the joint moves, or that rotate its parts; −1: the ground, or none.
   std::array<int, most_joint_nodes> nodes{-1, -1, -1, -1};
   int node_count = 0;
   int forces = 0;    ///< Unknown forces, each with a row of its own.
@@ -61,18 +61,18 @@ struct JointFrame {
   double temperature_fraction = 1.0;
   /// Right-handed frame of fixed directions.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
-  /// Whether a force holds the first two nodes together along each of them.
+  /// Whether a force constrains the first two nodes along each of them.
   std::array<bool, 3> holds{false, false, false};
 };
 
-/// State that a joint is asked about, and the one at the start of the step.
+/// State at which a joint is evaluated, and the state at the start of the step.
 struct Trial {
-  /// Places and displacements are left as they are, for who fills them: there is one of every joint
-  /// in every pass.
+  /// Leaves positions and displacements uninitialised, because the caller fills them. Each
+  /// evaluation constructs one Trial per joint.
   explicit Trial(const JointFrame& of) : frame(of) {}
 
   const JointFrame& frame;
-  std::array<Eigen::Vector3d, most_joint_nodes> drawn;  ///< Places of its nodes at ΔT = 0 [m].
+  std::array<Eigen::Vector3d, most_joint_nodes> drawn;  ///< Positions of its nodes, ΔT = 0 [m].
   std::array<Eigen::Vector3d, most_joint_nodes> moved;  ///< Their displacements [m].
   std::array<double, most_joint_forces> force{};        ///< Its unknowns [N].
   const double* history = nullptr;                      ///< Of the start of the step.
@@ -80,37 +80,37 @@ struct Trial {
   double temperature_change = 0.0;                      ///< [K]
   JointModel model = JointModel::friction;
   double opening = 1.0;  ///< Share of the clearances that is open (start).
-  /// Asked how fast it slides: the row of the slide is that of a contact of which nothing slips.
+  /// True for rates: the row of the slide is then that of a contact in which nothing slips.
   bool unslipped = false;
-  /// In motion contacts have the whole law of a play; the joint leaves out the springs of it.
+  /// True in motion: contacts there have the whole law of a play, so the joint omits its springs.
   bool in_motion = false;
-  /// What the slide of a joint that rolls lacks of the steps before and of this one [m], and its
-  /// rate [m/s]: along its way, or a vector in the tangent plane.
+  /// Accumulated error of the slide of a joint that rolls, from the earlier steps and this one [m],
+  /// and its rate [m/s]. Along the slide, or a vector in the tangent plane.
   Eigen::Vector3d owed = Eigen::Vector3d::Zero();
   Eigen::Vector3d owed_rate = Eigen::Vector3d::Zero();
-  /// Stiffness of a joint that carries nothing against its motion since the start of the step
-  /// [N/m], see System::slack_stiffness(); 0: none.
+  /// Stiffness of a joint without force against its motion since the start of the step [N/m], see
+  /// System::slack_stiffness(); 0: none.
   double slack_stiffness = 0.0;
-  /// Whether it holds joints that touch as well.
+  /// Whether this stiffness also acts on joints in contact.
   bool damps_contact = false;
-  /// What rounding may make of a length [m] and of a force [N]; 0 where inequalities are strict.
+  /// Rounding error of a length [m] and of a force [N]; 0 where inequalities are strict.
   double length_rounding = 0.0;
   double force_rounding = 0.0;
 
-  /// Stiffness that holds a contact against its motion in the step [N/m]: all of it
-  /// where the contact carries nothing, less the more it carries, so that the force is continuous.
+  /// Stiffness that damps the motion of a contact in the step [N/m]: all of it without normal
+  /// force, less with more force, so that the total force is continuous.
   double slack_held(double normal_force, double clearance) const {
     if (damps_contact || normal_force <= 0.0) return slack_stiffness;
     return std::max(0.0, slack_stiffness - normal_force / clearance);
   }
 
-  /// From one of its nodes to another, without the difference of two places [m].
+  /// Vector between two of its nodes [m], computed without the difference of two positions.
   Eigen::Vector3d between(std::size_t from, std::size_t to) const {
     return (drawn[to] - drawn[from]) + (moved[to] - moved[from]);
   }
 };
 
-/// A journal's way to where it touches, see Type::seat().
+/// Displacement of a journal to its first contact, see Type::seat().
 struct Seat {
   Eigen::Vector3d moved = Eigen::Vector3d::Zero();  ///< Step of the first node [m].
   std::array<double, most_joint_forces> force{};    ///< New forces [N].
@@ -124,41 +124,42 @@ struct Seat {
 /// |---|---|
 /// | `kind` | its table in the case and its name in messages |
 /// | `parameters()` | key, unit, range and source of each parameter |
-/// | `outputs()`, `describe()` | numbers that it has at every state |
-/// | `history()` | how many numbers it remembers from state to state |
+/// | `outputs()`, `describe()` | numbers that are output at every state |
+/// | `history()` | count of numbers that it stores from state to state |
 /// | `validate()` | rules beyond the ranges of single parameters |
 /// | `frame()` | nodes, directions, number of unknown forces |
 /// | `evaluate()` | forces on nodes and rows of a status, with all derivatives |
-/// | `warm()` | rates of these forces and rows where only its temperature moves |
-/// | `slide_row` | row that closes the slide where the joint sticks |
-/// | `decide()` | status that the inequalities require, from the status whose rows hold |
-/// | `begin()` | writes what it remembers at the very start |
-/// | `commit()` | writes what it remembers at the start of the next step |
-/// | `slip()` | slide of the step that friction turned into heat [m] |
+/// | `warm()` | rates of these forces and rows if only its temperature changes |
+/// | `slide_row` | row that closes the slide while the joint sticks |
+/// | `decide()` | status that the inequalities require, given the status whose rows hold |
+/// | `begin()` | writes its memory at the start of the path |
+/// | `commit()` | writes its memory at the start of the next step |
+/// | `slip()` | slide of the step that friction converted into heat [m] |
 /// | `dissipation()` | heat of the step [J] |
 /// | `elastic_energy()` | energy stored in it [J] |
-/// | `slide_rounding()` | rounding of the slide less what friction bends [m] |
-/// | `remembers_when()` | whether the state depends on when in a step the status changed |
+/// | `slide_rounding()` | rounding of the slide less the elastic deflection [m] |
+/// | `remembers_when()` | whether the state depends on the time in a step at which the status
+/// changed |
 /// | `slips_smoothly()` | whether its law has one row for stick and slip |
-/// | `settled()` | status at the end of a step; differs from the decided one only for such a law |
-/// | `contact()` | its rows as a frictional contact; none on a status that is not one |
-/// | `rest()` | status with which the path begins |
+/// | `settled()` | status at the end of a step; differs from that of decide() only for such a law |
+/// | `contact()` | its rows as a frictional contact; none if its status is no contact |
+/// | `rest()` | status at the begin of the path |
 /// | `has_play()` | whether the start has to find its contact |
-/// | `least_slide()` | least scale of its slides [m] |
+/// | `least_slide()` | smallest scale of its slides [m] |
 /// | `seat()`, `jumps()` | how the start finds contact; whether a step was a jump |
 ///
 /// Optional members:
 ///
 /// | member | meaning |
 /// |---|---|
-/// | `rolls()`, `lag()` | of a slide that is an integral: whether it is one; slide less bend [m] |
+/// | `rolls()`, `lag()` | whether the slide is an integral; slide less elastic deflection [m] |
 /// | `clearance_growth()` | growth of a clearance by its temperature [m/K] |
 /// | `contact_force()` | force against which that growth works [N] |
-/// | `beyond_edges()` | how far it is beyond each edge at which the stiffness jumps [m] |
+/// | `beyond_edges()` | distance beyond each edge at which the stiffness jumps [m] |
 /// | `slack_motion()` | motion of an open joint since the start of the step [m] |
 ///
 /// @pre of all but validate(): the joint and the truss around it are valid. evaluate() writes the
-/// same entries whatever the status. The histories of begin(), commit() and Trial have history()
+/// same entries for every status. The histories of begin(), commit() and Trial have history()
 /// numbers.
 template <class Type>
 concept JointType = requires(const Type& one, const Model& model, const Trial& trial,
@@ -193,10 +194,10 @@ concept JointType = requires(const Type& one, const Model& model, const Trial& t
   { one.jumps(trial, status) } -> std::same_as<bool>;
 };
 
-// A natural map of Alart and Curnier [1] is piecewise smooth: λ − proj(λ − r g; bounds) is r g on
-// one piece, λ less a bound on the others. After a Newton step one of the two vanishes on every
-// piece, so r > 0 drops out of what decides between them, and a row is written as g in metres or as
-// λ less its bound in newtons: the piece's own residual in its own unit.
+// A natural map of Alart and Curnier [1] is piecewise smooth: λ − proj(λ − r g; bounds) equals r g
+// on one branch, and λ less a bound on the others. After a Newton step one of the two vanishes on
+// every branch. The choice between branches therefore does not depend on r > 0. A row is g in
+// metres, or λ less its bound in newtons: the residual of the branch in its own unit.
 //
 // [1] P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353-375.
 

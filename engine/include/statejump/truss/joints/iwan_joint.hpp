@@ -8,31 +8,31 @@
 
 namespace statejump::truss {
 
-/// Bolted joint that slips little by little: the four-parameter Iwan model of Segalman [1], in
+/// Bolted joint that slips gradually: the four-parameter Iwan model of Segalman [1], discretised by
 /// Jenkins elements. The first node moves along a fixed axis relative to the second, or to the
-/// ground, and is held as that of a slider.
+/// ground. It is constrained across the axis as that of a slider.
 ///
-/// **Law.** Springs in parallel, each in series with a slider, of the density of slip distances
+/// **Law.** Springs in parallel, each in series with a slider, with the density of slip distances
 ///
-///     ρ(φ) = R φ^χ + S δ(φ − φm),   0 <= φ <= φm
+///   ρ(φ) = R φ^χ + S δ(φ − φm),   0 <= φ <= φm
 ///
-/// K_T = ∫ρ is the stiffness of the stuck joint, F_S = ∫φ ρ the force at which all of it slips, and
-/// β = S (χ + 1)/(R φm^(χ + 1)) the stiffness of the last sliders over that of all others.
+/// K_T = ∫ρ is the stiffness of the stuck joint, and F_S = ∫φ ρ the force at which all of it slips.
+/// β = S (χ + 1)/(R φm^(χ + 1)) is the stiffness of the last sliders over that of all others.
 ///
-/// **Discretisation.** The distances from 0 to φm are divided into intervals, each `spacing` times
-/// as long as the one before [2]. The sliders of an interval are one, with their stiffness
-/// k_i = ∫ρ and their force k_i φ_i = ∫φ ρ. So K_T, F_S and the force of a first loading to the end
-/// of every interval are exact; between them the force is too large, at most by slack(). With
-/// p_i the place of a slider
+/// **Discretisation.** The distances from 0 to φm are divided into intervals. Each is `spacing`
+/// times as long as the one before [2]. One slider represents all sliders of an interval, with
+/// their stiffness k_i = ∫ρ and their force k_i φ_i = ∫φ ρ. K_T, F_S and the force of a first
+/// loading to the end of every interval are therefore exact. Between these ends the force is too
+/// large, by at most slack(). With the position p_i of a slider
 ///
-///     λ = Σ k_i (s − p_i),   |s − p_i| <= φ_i,   p_i moves only at the bound
+///   λ = Σ k_i (s − p_i),   |s − p_i| <= φ_i,   p_i moves only at the bound
 ///
-/// Elements need no branches: λ is a piecewise linear, monotone function of s. `slip±` says that
-/// some of them slip that way.
+/// Elements need no statuses, because λ is a piecewise linear, monotone function of s. The status
+/// `slip±` means that some elements slip in that direction.
 ///
 /// [1] D. J. Segalman, J. Appl. Mech. 72 (2005) 752-760.
 /// [2] D. J. Segalman, Sandia report SAND2002-3828 (2002): distances in a geometric series, there
-///     with a slider in the middle of an interval.
+/// with a slider in the middle of an interval.
 struct IwanJoint {
   std::string name;
   int first = 0;
@@ -54,7 +54,7 @@ struct IwanJoint {
   double last_reach() const;
   /// All elements, the first to slip first.
   std::vector<Jenkins> jenkins() const;
-  /// Largest error of a first loading's force [N].
+  /// Largest error of the force of a first loading [N].
   double slack() const;
 
   static constexpr const char* kind = "iwan_joint";
@@ -76,7 +76,7 @@ struct IwanJoint {
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;
   JointStatus settled(const Trial&, JointStatus status) const { return status; }
-  /// Its friction is no cone: as a contact it is held.
+  /// Its friction is no cone. In contact problems the joint keeps its status.
   std::optional<LocalContact> contact(const Trial&, JointStatus) const { return {}; }
   bool slips_smoothly() const { return false; }
   double least_slide() const { return 0.0; }

@@ -8,22 +8,23 @@
 
 namespace statejump::truss {
 
-/// Hinge with a latch: free play in rotation, stiffness beyond it, dry friction, and a moment that
-/// preloads it.
+/// Hinge with a latch: free play in rotation, stiffness beyond it, dry friction, and a preload
+/// moment.
 ///
-/// **Law.** With the rotation φ of the second link against the first about a fixed axis, from the
-/// drawn shape (without a second link: of the first one against the ground), the moment that
-/// resists φ is
+/// **Law.** φ is the rotation of the second link against the first about a fixed axis, from the
+/// reference configuration. Without a second link, it is the rotation of the first link against the
+/// ground. The moment that resists φ is
 ///
-///     M = M0 + K (φ − clamp(φ; −a, a)) + M_f
+///   M = M0 + K (φ − clamp(φ; −a, a)) + M_f
 ///
 /// with friction M_f a subgradient of M_c |φ − φ_k|:
 ///
-///     stick   φ = φ_k, |M_f| <= M_c      slip±   M_f = ±M_c, ±(φ − φ_k) >= 0
+///   stick   φ = φ_k, |M_f| <= M_c      slip±   M_f = ±M_c, ±(φ − φ_k) >= 0
 ///
-/// With a finite k_f friction sticks as a spring, M_f = k_f (φ − p): what is remembered and slips
-/// is p. Play and stiffness have a potential and no memory: only friction has branches. The unknown
-/// is M_f over the drawn length of the first link, a force, and its row a path on that radius.
+/// With a finite k_f friction sticks as a spring, M_f = k_f (φ − p). The joint stores p, which
+/// slips. Play and stiffness have a potential and no memory, so only friction has statuses. The
+/// unknown is the force M_f over the length of the first link in the reference configuration. Its
+/// row is a slide on that radius.
 struct LatchHinge {
   std::string name;
   int first_link = 0;
@@ -31,7 +32,7 @@ struct LatchHinge {
   double deadband = 0.0;         ///< a [rad], >= 0: free play to either side.
   double stiffness = 0.0;        ///< K beyond the play [N m/rad], >= 0.
   double friction_moment = 0.0;  ///< M_c [N m], >= 0.
-  /// k_f of friction that sticks [N m/rad], > 0; infinity: rigid.
+  /// Stiffness k_f of sticking friction [N m/rad], > 0; infinity: rigid.
   double friction_stiffness = std::numeric_limits<double>::infinity();
   double preload_moment = 0.0;  ///< M0 against the rotation [N m].
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
@@ -51,7 +52,7 @@ struct LatchHinge {
   double slip(const Trial& trial, const double* after) const;
   double dissipation(const Trial& trial, const double* after, double slip) const;
   double elastic_energy(const Trial& trial, const double* now) const;
-  /// Of preload and stiffness, at a rotation [N m].
+  /// Moment of preload and stiffness at a rotation [N m].
   double elastic_moment(double rotation) const;
   std::array<double, 2> beyond_edges(const Trial& trial) const;
   void describe(const Trial& trial, double* outputs) const;

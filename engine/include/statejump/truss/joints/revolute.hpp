@@ -9,32 +9,32 @@
 namespace statejump::truss {
 
 /// Revolute joint with clearance and dry friction about a fixed axis: a journal on the end of one
-/// link within a bearing on the end of another.
+/// link in a bearing on the end of another.
 ///
-/// **Law.** With eccentricity d, normal n = d/|d| and the surface slide of the step
-/// Δσ = ∫ |d| dφ + r1 dθ_J − r2 dθ_B (φ, θ_J, θ_B the angles of d and of the links that turn
-/// journal and bearing; r1, r2 the radii less and plus half the depth, so that both surfaces meet
-/// in one point and the moments balance):
+/// **Law.** d is the eccentricity and n = d/|d| the normal. φ, θ_J, θ_B are the angles of d and of
+/// the links that rotate journal and bearing. r1, r2 are the radii less and plus half the depth, so
+/// that both surfaces meet in one point and the moments balance. The surfaces slide in a step by Δσ
+/// = ∫ |d| dφ + r1 dθ_J − r2 dθ_B:
 ///
-///     open    λ_n = λ_t = 0, |d| <= c    contact |d| = c + (λ_n/K)^(2/3), λ_n >= 0
-///     stick   Δσ = 0, |λ_t| <= μ λ_n     slip±   λ_t = ±μ λ_n, ±Δσ >= 0
+///   open    λ_n = λ_t = 0, |d| <= c    contact |d| = c + (λ_n/K)^(2/3), λ_n >= 0
+///   stick   Δσ = 0, |λ_t| <= μ λ_n     slip±   λ_t = ±μ λ_n, ±Δσ >= 0
 ///
-/// A joint that sticks therefore rolls. The integral is taken by the trapezoidal rule, radii at
-/// start and end of the step; what that leaves, of third order in a step, the next one makes up
-/// for. With a finite tangential stiffness k_t a joint that sticks gives way elastically, as bodies
-/// of a DEM do: Δσ is then the slide less what friction bends, ∫ dλ_t/k_t. k_t follows the depth
-/// (Mindlin, k_t = 8 G* √(R δ)): what loads the contact keeps λ_t, what unloads it keeps λ_t/k_t;
-/// energy lost either way is heat at the contact's rim.
+/// A joint that sticks therefore rolls. The integral uses the trapezoidal rule with the radii at
+/// start and end of the step. Its third-order error in a step is corrected in the next step. With a
+/// finite tangential stiffness k_t a joint that sticks yields elastically, as bodies of a DEM do:
+/// Δσ is then the slide less the elastic deflection ∫ dλ_t/k_t. k_t follows the depth (Mindlin, k_t
+/// = 8 G* √(R δ)). Added normal load keeps λ_t, removed normal load keeps λ_t/k_t. The energy lost
+/// in either case is heat at the rim of the contact.
 ///
 /// With partial slip λ_t is the force of kernel::partial_slip_step() for the slide Δσ, the
-/// stiffness k_t of the depth and the limit μ λ_n, one step of it from state to state: one row for
-/// stick and slip. `slip±` then says that the whole contact slides.
+/// stiffness k_t of the depth and the limit μ λ_n, in one step from state to state. One row covers
+/// stick and slip. `slip±` then means that the whole contact slides.
 struct ClearanceRevolute {
   std::string name;
   int journal_node = 0;
   int bearing_node = 0;
-  int journal_link = -1;                 ///< Turns the journal; −1: it does not turn.
-  int bearing_link = -1;                 ///< Turns the bearing; −1: it does not turn.
+  int journal_link = -1;                 ///< Rotates the journal; −1: none.
+  int bearing_link = -1;                 ///< Rotates the bearing; −1: none.
   double journal_radius = 0.0;           ///< R1 at ΔT = 0 [m], > 0.
   double radial_clearance = 0.0;         ///< c = R2 − R1 at ΔT = 0 [m], > 0.
   double journal_thermal_expansion = 0;  ///< [1/K].
@@ -42,10 +42,11 @@ struct ClearanceRevolute {
   double friction_coefficient = 0.0;     ///< μ, >= 0.
   /// K of Hertz's F_N = K δ^1.5 [N/m^1.5]; infinity: rigid.
   double hertz_stiffness = std::numeric_limits<double>::infinity();
-  /// 8 G* √R of Mindlin's k_t = 8 G* √(R δ), by which the contact gives way while it sticks
-  /// [N/m^1.5]; infinity: rigid. Finite only if `hertz_stiffness` is.
+  /// 8 G* √R of Mindlin's k_t = 8 G* √(R δ), the stiffness of the sticking contact [N/m^1.5];
+  /// infinity: rigid. Finite only if `hertz_stiffness` is finite.
   double mindlin_stiffness = std::numeric_limits<double>::infinity();
-  /// 1: slides at the rim of its contact first. Needs friction and finite stiffnesses.
+  /// 1: partial slip, which starts at the rim of the contact. Needs friction and finite
+  /// stiffnesses.
   int partial_slip = 0;
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
   int program = 0;
@@ -61,7 +62,7 @@ struct ClearanceRevolute {
   void evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const;
   void warm(const Trial& trial, JointStatus status, double temperature_rate,
             JointWriter& writer) const;
-  /// Motion since the start of the step of a joint that is open [m].
+  /// Motion of an open joint since the start of the step [m].
   Eigen::Vector3d slack_motion(const Trial& trial) const;
   JointStatus decide(const Trial& trial, JointStatus status) const;
   void begin(const Trial& trial, JointStatus status, double* now) const;
@@ -81,7 +82,7 @@ struct ClearanceRevolute {
   bool remembers_when(JointStatus before, JointStatus after) const;
   JointStatus settled(const Trial& trial, JointStatus status) const;
   std::optional<LocalContact> contact(const Trial& trial, JointStatus status) const;
-  /// Where the memory of a contact with partial slip begins in its history().
+  /// Index in history() at which the memory of a contact with partial slip begins.
   int slip_memory_begin() const;
   bool slips_smoothly() const { return partial_slip != 0; }
   double least_slide() const { return radial_clearance; }

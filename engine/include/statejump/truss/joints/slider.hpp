@@ -9,39 +9,39 @@
 
 namespace statejump::truss {
 
-/// Prismatic joint with dry friction and stops: the first node slides along a fixed axis relative
-/// to the second and is held across it; without a second node it slides relative to the ground, and
-/// its own free directions hold it across.
+/// Prismatic joint with dry friction and stops. The first node slides along a fixed axis relative
+/// to the second and is constrained across it. Without a second node it slides relative to the
+/// ground, and its supports constrain it across the axis.
 ///
-/// **Law.** With slide s and friction f the force λ along the axis is a subgradient of
-/// f |s − s_k| + (0 between the stops, ∞ beyond them): the resolvent of that sum is
-/// s = clamp(s_k + soft(s + λ/r − s_k; f/r); −c−, c+), and its pieces are the branches
+/// **Law.** With slide s and friction f the force λ along the axis is a subgradient of f |s − s_k|
+/// + (0 between the stops, ∞ beyond them). The resolvent of that sum is s = clamp(s_k + soft(s +
+/// λ/r − s_k; f/r); −c−, c+), and its branches are the statuses
 ///
-///     stick   s = s_k, |λ| <= f          slip±   λ = ±f, ±(s − s_k) >= 0
-///     stop±   s = ±c±, ±λ >= f; where it rested there already ±λ >= −f
+///   stick   s = s_k, |λ| <= f          slip±   λ = ±f, ±(s − s_k) >= 0
+///   stop±   s = ±c±, ±λ >= f; if it rested there already ±λ >= −f
 ///
-/// One unknown does for friction and stop together: how a rigid wall and rigid friction share a
-/// force is not determined. With a finite k_t what slides is p = s − λ_f/k_t, friction is
-/// λ_f = clamp(k_t (s − p_k); ±f), and the stop takes what is beyond it.
+/// One unknown represents friction and stop together, because statics does not determine how a
+/// rigid wall and rigid friction share a force. With a finite k_t, p = s − λ_f/k_t slides, friction
+/// is λ_f = clamp(k_t (s − p_k); ±f), and the stop carries the remainder.
 ///
-/// With partial slip λ_f is the force of kernel::partial_slip_step() under the constant limit f,
-/// one step of it from state to state: one row for stick and slip. `slip±` then says that the whole
+/// With partial slip λ_f is the force of kernel::partial_slip_step() under the constant limit f, in
+/// one step from state to state. One row covers stick and slip. `slip±` then means that the whole
 /// contact slides.
 ///
-/// **Soft stops.** Stops of a stiffness k_s push by W(s) = k_s (s − clamp(s; −c−, c+)), beside
-/// friction. W has a potential and no memory, so that friction alone has branches: λ is friction,
-/// and W is a spring between the nodes. Friction and stop are then both determined.
+/// **Soft stops.** Stops of stiffness k_s push by W(s) = k_s (s − clamp(s; −c−, c+)), beside
+/// friction. W has a potential and no memory, so only friction has statuses: λ is friction, and W
+/// is a spring between the nodes. Friction and stop force are then both determined.
 ///
-/// **Play.** A play of width w in series with the contact k_t moves with the slip. With the bend
-/// e = s − p the contact carries k_t dz(e), dz(e) = e − clamp(e; ±w/2), and slips at ±f, where
-/// |e| = w/2 + f/k_t. Since
+/// **Play.** A play of width w in series with the contact stiffness k_t moves with the slip. With
+/// the deflection e = s − p the contact carries k_t dz(e), dz(e) = e − clamp(e; ±w/2). It slips at
+/// ±f, where |e| = w/2 + f/k_t. Since
 ///
-///     k_t dz(e) = k_t e − k_t clamp(e; ±w/2),
+///   k_t dz(e) = k_t e − k_t clamp(e; ±w/2),
 ///
-/// it is a friction λ = k_t e of the limit f + k_t w/2 beside a spring −k_t clamp(e; ±w/2):
-/// branches, rows and memory are those without play. Slip turns f into heat, not the limit of λ. At
-/// the start the joint is in the middle of its play. Needs friction, a finite k_t, and no partial
-/// slip.
+/// it equals a friction λ = k_t e with the limit f + k_t w/2 beside a spring −k_t clamp(e; ±w/2).
+/// Statuses, rows and memory are those without play. Slip converts f into heat, not the limit of λ.
+/// At the start the joint is in the middle of its play. A play needs friction, a finite k_t, and no
+/// partial slip.
 struct Slider {
   std::string name;
   int first = 0;
@@ -50,11 +50,11 @@ struct Slider {
   double friction_force = 0.0;                                       ///< f [N], >= 0.
   double clearance_minus = std::numeric_limits<double>::infinity();  ///< [m], >= 0.
   double clearance_plus = std::numeric_limits<double>::infinity();   ///< [m], >= 0.
-  /// k_t of the contact while it sticks [N/m], > 0; infinity: rigid.
+  /// Stiffness k_t of the sticking contact [N/m], > 0; infinity: rigid.
   double tangential_stiffness = std::numeric_limits<double>::infinity();
-  /// 1: slides at the rim of its contact first. Needs friction and a finite k_t.
+  /// 1: partial slip, which starts at the rim of the contact. Needs friction and a finite k_t.
   int partial_slip = 0;
-  /// k_s of the stops [N/m], > 0; infinity: rigid.
+  /// Stiffness k_s of the stops [N/m], > 0; infinity: rigid.
   double stop_stiffness = std::numeric_limits<double>::infinity();
   double play = 0.0;  ///< w [m], >= 0.
 
@@ -74,25 +74,25 @@ struct Slider {
   double dissipation(const Trial& trial, const double* after, double slip) const;
   double elastic_energy(const Trial& trial, const double* now) const;
   void describe(const Trial& trial, double* outputs) const;
-  /// Whether stops or a play push beside the friction, as springs.
+  /// Whether soft stops or a play act as springs beside friction.
   bool has_springs() const { return has_soft_stops() || play > 0.0; }
   bool has_soft_stops() const {
     return stop_stiffness < std::numeric_limits<double>::infinity() &&
            (clearance_minus < std::numeric_limits<double>::infinity() ||
             clearance_plus < std::numeric_limits<double>::infinity());
   }
-  /// Bound of the unknown λ [N]: f, and what closes half of the play.
+  /// Limit of the unknown λ [N]: f, plus the force that closes half of the play.
   double friction_limit() const {
     return play > 0.0 ? friction_force + 0.5 * play * tangential_stiffness : friction_force;
   }
-  /// W of soft stops against the axis where the slide is s [N]; 0 of rigid ones.
+  /// Force W of soft stops against the axis at the slide s [N]; 0 for rigid ones.
   double soft_stop_force(double s) const;
   std::array<double, 4> beyond_edges(const Trial& trial) const;
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;
   JointStatus settled(const Trial& trial, JointStatus status) const;
   std::optional<LocalContact> contact(const Trial& trial, JointStatus status) const;
-  /// Where the memory of a contact with partial slip begins in its history().
+  /// Index in history() at which the memory of a contact with partial slip begins.
   int slip_memory_begin() const;
   bool slips_smoothly() const { return partial_slip != 0; }
   double least_slide() const { return 0.0; }

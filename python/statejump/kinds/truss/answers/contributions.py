@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which joints hold the jump of a truss: the effect of their friction forces on the truss without friction."""
+"""Contributions of the joints to the jump of a truss: the effect of their friction forces on the truss without
+friction."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -17,13 +18,14 @@ from statejump.kinds.truss.solve import TrussPath, whole_path
 
 @dataclass(frozen=True)
 class Contributions:
-    """Share of every joint in the jump of an output. ``sum_error``: sum over the jump, less one."""
+    """Contribution of every joint to the jump of an output. ``sum_error``: sum of contributions over the jump, less
+    one."""
 
     names: tuple[str, ...]
     kinds: tuple[str, ...]
     contribution: np.ndarray
     jump: float
-    reproduced: float  # jump that all friction forces together give back
+    reproduced: float  # jump that all friction forces together reproduce
     notes: tuple[str, ...]
 
     @property
@@ -38,8 +40,8 @@ class Contributions:
 
 
 def friction_loads(truss: ResolvedTruss, state: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Return the nodal forces [N] (joints, nodes, 3) that stand for the friction of each joint in a state, type by
-    type. Joints whose friction is not known have none."""
+    """Return nodal forces [N] (joints, nodes, 3) that represent the friction of each joint in a state, type by type.
+    Joints with unknown friction have none."""
     place = truss.nodes.position_m + state["displacement_m"]
     found = []
     for joint in JOINTS:
@@ -54,7 +56,7 @@ def without_friction(truss: ResolvedTruss) -> ResolvedTruss:
     """Return the truss with frictionless joints that stays at ΔT = 0."""
     for joint in JOINTS:
         truss = joint.without_friction(truss)
-    # Nothing follows programs any more, but all have to last equally long.
+    # No item follows the programs any more, but all programs must have one duration.
     return replace(truss, links=replace(truss.links, temperature_fraction=0 * truss.links.temperature_fraction),
                    programs=len(truss.programs) * (truss.programs[0].repeated(1),))
 
@@ -62,14 +64,14 @@ def without_friction(truss: ResolvedTruss) -> ResolvedTruss:
 def contributions(
     found: TrussPath, output: Output, tell: Tell = lambda share: None
 ) -> Contributions:
-    """Return how much of an output's jump the friction of each joint holds.
+    """Return the contribution of each joint's friction to the jump of an output.
 
-    At the end of the cycles the truss is away from where it began because friction holds it there: it is
-    in equilibrium, its joints frictionless, under the friction forces as loads. The contribution of a
-    joint is the effect on the output of the change f_j of its friction force since the start, on the truss
-    with frictionless joints: the mean of its effect alone, y(F0 + f_j) - y(F0), and of its effect as the
-    last, y(F1) - y(F1 - f_j), with F0 and F1 the forces of all joints at start and end. Contributions
-    add up to the jump exactly where the truss is linear, and with an error of third order elsewhere.
+    At the end of the cycles friction keeps the truss away from its first shape. With frictionless joints, and the
+    friction forces as loads, it is in equilibrium there. Let f_j be the change of the friction force of joint j since
+    the start, F0 and F1 the forces of all joints at start and end, and y the output of the truss with frictionless
+    joints. The contribution of joint j is the mean of its effect alone, y(F0 + f_j) - y(F0), and of its effect as the
+    last one, y(F1) - y(F1 - f_j). The sum of contributions equals the jump of a linear truss exactly, and that of
+    another truss with an error of third order.
 
     :raises FailedRun: without friction the truss is a mechanism or has no equilibrium
     """

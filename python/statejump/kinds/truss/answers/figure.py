@@ -23,23 +23,23 @@ from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath
 
-JUMPS = colormaps["cividis_r"]  # small light, large dark: reads in grey and for colour-blind eyes
+JUMPS = colormaps["cividis_r"]  # small is light, large is dark: readable in grey and for colour-blind eyes
 BLUE, ORANGE, DRAWN = "#0072B2", "#D55E00", "0.72"
-SHOWN = 0.12  # of the truss' size: how large the largest jump is drawn
+SHOWN = 0.12  # drawn size of the largest jump, as a fraction of the truss' size
 MARKED = 5  # joints
 MOST_BARS = 15
 _UNITS = ((1e-3, "mm", 1e3), (1e-6, "µm", 1e6), (0.0, "nm", 1e9))
 
 
 def readable(value: float, unit: str) -> tuple[float, str]:
-    """Return factor and unit in which a value is easy to read."""
+    """Return factor and unit that make a value readable."""
     if unit == "rad":
         return (1e3, "mrad") if abs(value) >= 1e-3 else (1e6, "µrad")
     return next((factor, name) for least, name, factor in _UNITS if abs(value) >= least)
 
 
 def magnification(truss: ResolvedTruss, largest_jump_m: float) -> float:
-    """Return the round factor at which the largest jump is about SHOWN of the truss' size."""
+    """Return the round factor that magnifies the largest jump to about SHOWN of the truss' size."""
     if largest_jump_m == 0:
         return 1.0
     wanted = SHOWN * float(np.ptp(truss.nodes.position_m, axis=0).max()) / largest_jump_m
@@ -53,7 +53,7 @@ def joint_places(truss: ResolvedTruss) -> np.ndarray:
 
 
 def jumps_figure(found: TrussPath, shares: Contributions | None, title: str) -> Figure:
-    """Return the drawn truss and the truss with its jumps, magnified; the first MARKED joints have numbers."""
+    """Draw the truss in the reference configuration and with magnified jumps; the first MARKED joints have numbers."""
     truss = found.truss
     jump = node_jumps(found)[-1]
     jump = np.where(np.linalg.norm(jump, axis=1, keepdims=True) > rounding_m(found), jump, 0.0)
@@ -114,7 +114,7 @@ def jumps_figure(found: TrussPath, shares: Contributions | None, title: str) -> 
 
 
 def _mark(panel: Axes, truss: ResolvedTruss, shares: Contributions, places: np.ndarray) -> None:
-    """Numbers at the joints that contribute most, outwards of the truss."""
+    """Draw numbers at the joints with the largest contributions, on the outside of the truss."""
     nodes, middle = joint_places(truss), places.mean(axis=0)
     extent = np.ptp(places, axis=0).max()
     for rank, joint in enumerate(shares.order[:MARKED], start=1):
@@ -126,7 +126,7 @@ def _mark(panel: Axes, truss: ResolvedTruss, shares: Contributions, places: np.n
         away = place - middle
         away = away / max(float(np.linalg.norm(away)), 1e-12)
         if np.ptp(places[:, -1]) < 0.05 * extent and len(place) == 2:
-            away = np.array([0.0, 1.0])  # all on one line
+            away = np.array([0.0, 1.0])  # all nodes on one line
         style = dict(fontsize=9, color=ORANGE, fontweight="bold", ha="center", va="center", zorder=6)
         if len(place) == 2:
             panel.annotate(str(rank), tuple(place), xytext=tuple(14 * away), textcoords="offset points", **style)
@@ -135,7 +135,7 @@ def _mark(panel: Axes, truss: ResolvedTruss, shares: Contributions, places: np.n
 
 
 def ranking_figure(shares: Contributions, output: Output, title: str) -> Figure:
-    """Return the bars of the largest contributions and of all others together, their sum, the jump."""
+    """Draw bars of the largest contributions, of all others together, of their sum, and of the jump."""
     factor, unit = readable(shares.jump, output.unit)
     order = shares.order[np.abs(shares.contribution[shares.order]) > 0]
     shown, rest = order[:MOST_BARS], order[MOST_BARS:]

@@ -18,7 +18,7 @@ from statejump.kinds.truss.solve import TrussPath, whole_path
 
 def quick_path(truss: ResolvedTruss, increments_per_branch: int = 50, tell: Tell = lambda share: None,
                **more: Any) -> TrussPath:
-    """Return the path with only those events located on which the state depends: the same cycle ends."""
+    """Return the path on which only those events are located that affect the state; the ends of cycles are the same."""
     return whole_path(truss, tell, increments_per_branch=increments_per_branch, locate_events=False, **more)
 
 
@@ -29,7 +29,7 @@ def node_jumps(found: TrussPath) -> np.ndarray:
 
 
 def rounding_m(found: TrussPath) -> float:
-    """Return the largest displacement [m] that is rounding of the motion, no jump."""
+    """Return the largest displacement [m] that is rounding, not a jump."""
     return scales(found.truss, found.states["displacement_m"]).rounding_m
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Numbers of a truss' shape whose jump is traced to the joints: motion of a node, error and tilt of a surface."""
+"""Outputs of a truss whose jump is divided among the joints: motion of a node, error and tilt of a surface."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -16,11 +16,11 @@ from statejump.kinds.truss.solve import TrussPath
 
 @dataclass(frozen=True)
 class Output:
-    """One number of the truss' shape whose jump is traced to the joints.
+    """An output of a truss whose jump is divided among the joints.
 
     :param short: the output in a few words
-    :param value: of displacements (nodes, 3); along the jump
-    :param vector: of displacements; all of what ``value`` is taken from, so that motion across the jump is seen
+    :param value: the output as a function of displacements (nodes, 3), along the jump
+    :param vector: all components of the output as a function of displacements, also those across the jump
     """
 
     name: str
@@ -36,7 +36,7 @@ class Output:
         return self.value(ends[-1]) - self.value(ends[0])
 
     def over_cycles(self, found: TrussPath) -> np.ndarray:
-        """Return how the vector changes over each cycle (cycles, components)."""
+        """Return the change of the vector over each cycle (cycles, components)."""
         return np.diff([self.vector(moved) for moved in found.cycle_ends["displacement_m"]], axis=0)
 
     @staticmethod
@@ -45,15 +45,15 @@ class Output:
         return np.linalg.norm(motion, axis=1)
 
     def rounding(self, found: TrussPath) -> float:
-        """Return the largest change that is rounding of the motion; of a tilt over the size of the truss."""
+        """Return the largest change that is rounding; a tilt is related to the size of the truss."""
         size = float(np.ptp(found.truss.nodes.position_m, axis=0).max())
         return rounding_m(found) / size if self.unit == "rad" else rounding_m(found)
 
 
 def node_output(found: TrussPath, name: str | None = None) -> Output:
-    """Return the displacement [m] of a node along its jump; the most moved node without a name.
+    """Return the displacement [m] of a node along its jump; without a name, of the node that moves most.
 
-    :raises NotAllowed: there is no such node
+    :raises NotAllowed: the node does not exist
     """
     names = found.truss.nodes.names
     if name is not None:
@@ -68,7 +68,7 @@ def node_output(found: TrussPath, name: str | None = None) -> Output:
 
 
 def rms_output(found: TrussPath, surface: reflector.Surface) -> Output:
-    """Return the RMS [m] over the surface of what the jump changes in the residuals of the best fit."""
+    """Return the RMS [m] over the surface of the changes of the best-fit residuals by the jump."""
     ends = found.cycle_ends["displacement_m"]
     start = surface.fit(ends[0]).residual_m
     change = surface.fit(ends[-1]).residual_m - start
@@ -91,9 +91,9 @@ def tilt_output(found: TrussPath, surface: reflector.Surface) -> Output:
 
 
 def chosen_output(found: TrussPath, name: str) -> Output:
-    """Return the output of a name: ``node`` (most moved), ``node:NAME``, ``rms``, ``tilt``.
+    """Return the output of a name: ``node`` (the one that moves most), ``node:NAME``, ``rms``, ``tilt``.
 
-    :raises NotAllowed: there is none
+    :raises NotAllowed: the name is unknown
     """
     if name == "node" or name.startswith("node:"):
         return node_output(found, name[5:] or None if name != "node" else None)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Error of a reflecting surface against its best-fit paraboloid, in the plane against a parabola.
+"""Error of a reflecting surface against its best-fit paraboloid; for planar trusses a parabola.
 
-In a frame whose last axis is that of the case and whose origin is the mean of the drawn nodes, the
-paraboloid has its vertex at (shift, depth), focal length F and an axis that is tilted. Residuals are
-distances along the normal, to first order in the error. Least squares by scipy.
+The last axis of the frame is that of the case, and its origin is the mean of the nodes in the reference configuration.
+The paraboloid has its vertex at (shift, depth), focal length F and a tilted axis. Residuals are distances along the
+normal, to first order in the error. Least squares by scipy.
 """
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from scipy.optimize import least_squares
 
 from statejump.kinds.truss.resolved import ResolvedTruss
 
-# Singular value of the fit, its columns of length 1, below which a parameter is not determined.
+# A parameter is not determined if its singular value of the fit, with columns of length 1, is below this.
 LEAST_SINGULAR_VALUE = 1e-6
-# Square of an angle [rad²] below which two terms of its functions' series are exact: the third is below 1e-16.
+# Square of an angle [rad²] below which two terms of the series of its functions are exact: the third is below 1e-16.
 SMALL_SQUARE = 1e-7
 
 
@@ -34,7 +34,7 @@ class Fit:
 
 @dataclass(frozen=True)
 class Surface:
-    """A surface and which parameters its nodes determine; ``notes`` say which they do not."""
+    """A surface, and the parameters that its nodes determine; ``notes`` name the others."""
 
     nodes: np.ndarray
     frame: np.ndarray  # (2 or 3, 3) lateral axes, then the axis
@@ -45,7 +45,7 @@ class Surface:
     notes: tuple[str, ...]
 
     def fit(self, displacement_m: np.ndarray) -> Fit:
-        """Return the best fit when the nodes of the truss (n, 3) have moved by that much."""
+        """Return the best fit for the given displacements (n, 3) of the nodes."""
         points = self.drawn_m + displacement_m[self.nodes] @ self.frame.T
         found = _fit(points, self.free, self.held)
         values = {**self.held, **dict(zip(self.free, found.x))}
@@ -65,12 +65,13 @@ def _names(kind: str, lateral: int) -> list[str]:
 def _residual(
     points: np.ndarray, values: dict[str, float], with_slopes: bool = False
 ) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Distances [m] (n,) along the normal, points turned by -tilt and then compared; where asked for, their
-    derivatives by every parameter."""
+    """Distances [m] (n,) along the normal, after the points are rotated by -tilt; on request their derivatives by every
+    parameter."""
     lateral = points.shape[1] - 1
     across, along = points[:, :lateral], points[:, lateral]
     tilt = np.array([values[name] for name in _names("tilt", lateral)])
-    # Of the angle's square: its cosine, sin(angle)/angle, (cos(angle) - 1)/angle² and the derivatives of these two.
+    # Functions of the angle's square: its cosine, sin(angle)/angle, (cos(angle) - 1)/angle² and the derivatives of the
+    # last two.
     square = float(tilt @ tilt)
     angle = np.sqrt(square)
     if square > SMALL_SQUARE:
@@ -92,7 +93,7 @@ def _residual(
         return found, {}
 
     def slope(height: np.ndarray | float, by_squared: np.ndarray | float, by_curvature: float = 0.0) -> np.ndarray:
-        """What a parameter changes that changes height, square of the distance and curvature by that much."""
+        """Effect of a parameter on the residual, from its effects on height, square of the distance, and curvature."""
         lower = 4 * curvature * (2 * squared * by_curvature + curvature * by_squared)
         return np.asarray((height - by_curvature * squared - curvature * by_squared) / root
                           - found * lower / (2 * below))
@@ -107,7 +108,7 @@ def _residual(
 
 
 def _fit(points: np.ndarray, free: tuple[str, ...], held: dict[str, float]):  # type: ignore[no-untyped-def]
-    # Lengths over that of the surface: parameters are of order one.
+    # Lengths are divided by the size of the surface, so that all parameters are of order one.
     size = float(np.ptp(points, axis=0).max())
     scale = np.array([{"d": size, "s": size, "c": 1 / size, "t": 1.0}[name[0]] for name in free])
 
@@ -122,7 +123,7 @@ def _fit(points: np.ndarray, free: tuple[str, ...], held: dict[str, float]):  # 
         return np.stack([slopes[name] for name in free], axis=1) * scale / size
 
     found = least_squares(residual, np.zeros(len(free)), method="lm", jac=jacobian, xtol=1e-15, ftol=1e-15, gtol=1e-15)
-    # It ends where the sum of squares is flat to rounding; one step more ends where its slope is.
+    # The search ends where the sum of squares is flat to rounding. One more step reaches the zero of its slope.
     found.x = found.x - np.linalg.lstsq(jacobian(found.x), residual(found.x), rcond=None)[0]
     found.jac = jacobian(found.x)
     found.x = found.x * scale
@@ -130,10 +131,10 @@ def _fit(points: np.ndarray, free: tuple[str, ...], held: dict[str, float]):  # 
 
 
 def surface(truss: ResolvedTruss) -> Surface | None:
-    """Return the reflecting surface of a truss, None if it has none or too few nodes for a plane.
+    """Return the reflecting surface of a truss; None if it has none, or too few nodes for a plane.
 
-    Parameters that the drawn nodes do not determine are held, in this order: the vertex' lateral shift
-    (against tilt), the curvature.
+    Parameters that the nodes do not determine are held, in this order: the vertex' lateral shift (instead of the tilt),
+    the curvature.
     """
     if truss.reflector is None:
         return None
@@ -153,11 +154,11 @@ def surface(truss: ResolvedTruss) -> Surface | None:
 def _parameters(
     drawn: bytes, dimension: int, focal_length_m: float | None
 ) -> tuple[tuple[str, ...], dict[str, float], tuple[str, ...]] | None:
-    """Return which parameters nodes determine, those that are held, and why; None if they determine no plane.
+    """Return the parameters that nodes determine, the held ones, and the reasons; None if they determine no plane.
 
-    Samples of a campaign mostly share their drawn shape, so that its fits are kept.
+    Fits are cached, because samples of a campaign mostly share their reference configuration.
 
-    :param drawn: places of the nodes [m], (nodes, dimension) numbers
+    :param drawn: positions of the nodes [m], (nodes, dimension) numbers
     """
     points = np.frombuffer(drawn).reshape(-1, dimension)
     lateral = dimension - 1
@@ -171,7 +172,7 @@ def _parameters(
         (("depth", *tilts, *curvature, *shifts), ""),
         (("depth", *tilts, *curvature),
          "the nodes do not determine the lateral shift of the vertex beside the tilt: it is held"),
-        (("depth", *tilts), flat if curvature else ""),  # a focal length that is given is none to be determined
+        (("depth", *tilts), flat if curvature else ""),  # a given focal length is not fitted
     ):
         if note:
             notes.append(note)

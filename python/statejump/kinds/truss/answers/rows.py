@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rows of the tables of a truss' answers, as CSV, JSON and result files have them."""
+"""Rows of the tables of a truss' answers, for CSV, JSON and result files."""
 from __future__ import annotations
 
 import math
@@ -47,7 +47,7 @@ def joint_rows(found: TrussPath) -> list[Row]:
     for cycle in range(1, len(ends["time_s"])):
         for joint in JOINTS:
             column, joints = joint.columns[0], truss.joints[joint.section]
-            if unit_of(column.name) != "m":  # a rotation: no jump of a place
+            if unit_of(column.name) != "m":  # a rotation, not a displacement
                 continue
             place, heat = ends[column.name], ends[f"{joint.section}_dissipation_J"]
             for index, name in enumerate(joints.names):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How the jump of an output follows friction, clearances, stiffnesses and preloads: central differences."""
+"""Sensitivities of the jump of an output to friction, clearances, stiffnesses and preloads: central differences."""
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
@@ -16,9 +16,9 @@ from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath
 
-STEP = 1e-2  # of the value; the second difference takes half of it
-AGREE = 0.02  # differences of both steps, relative to the larger of them
-NOISE = 1e-6  # of the jump: what a share of a branch of 1e-9 may leave at a hundred events, with room
+STEP = 1e-2  # relative step of a parameter; the second difference uses half of it
+AGREE = 0.02  # allowed relative difference of the results of both steps
+NOISE = 1e-6  # fraction of the jump: error by locating a hundred events to 1e-9 of a branch, with a margin
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Sensitivity:
 
 
 def parameters(truss: ResolvedTruss) -> list[tuple[str, str, np.ndarray]]:
-    """Return section, key and the values (items,) of every parameter that a jump may follow."""
+    """Return section, key and values (items,) of every parameter that may affect a jump."""
     found = [(joint.section, key, values) for joint in JOINTS
              for key, values in joint.parameters(truss.joints[joint.section])]
     found += [("link", key, getattr(truss.links, key)) for key in ("young_modulus_Pa", "cross_section_area_m2")]
@@ -63,8 +63,8 @@ def changed(truss: ResolvedTruss, section: str, key: str, factor: np.ndarray) ->
 
 
 def histories_of(found: TrussPath) -> dict[tuple[str, str], list[str]]:
-    """Return the statuses that every joint goes through. Those of different joints within one increment
-    have no order of their own."""
+    """Return the sequence of statuses of every joint. The order of different joints within one increment is not
+    defined."""
     histories: dict[tuple[str, str], list[str]] = {}
     for event in found.events:
         histories.setdefault((event.joint_kind, event.name), [event.before]).append(event.after)
@@ -75,12 +75,12 @@ def sensitivities(
     found: TrussPath, output: Output, *, each: bool = False, step: float = STEP,
     tell: Tell = lambda share: None,
 ) -> list[Sensitivity]:
-    """Return the sensitivities of an output's jump, parameters without value (0 or no stop) left out.
+    """Return the sensitivities of an output's jump. Parameters without value (0 or no stop) are omitted.
 
-    A parameter is changed by ±step and ±step/2 of its value, all items of a section together or, with
-    ``each``, one by one. "not differentiable": the slopes on both sides differ by more than AGREE, at half
-    the step as at the whole, or both steps disagree and a joint goes through other statuses with one change
-    than with another; "steps disagree": the slopes of both steps differ by more than AGREE, for another reason.
+    A parameter is changed by ±step and ±step/2 of its value: all items of a section together or, with ``each``, one by
+    one. The verdict is "not differentiable" in two cases. The slopes on both sides differ by more than AGREE, at half
+    the step as at the whole. Or both steps disagree, and the sequence of statuses of a joint depends on the change.
+    "steps disagree": the slopes of both steps differ by more than AGREE for another reason.
     """
     truss, own_jump = found.truss, output.jump(found)
     asked: list[tuple[str, str, str, np.ndarray, np.ndarray]] = []
@@ -111,8 +111,8 @@ def differences(
     truss: ResolvedTruss, section: str, key: str, which: np.ndarray, output: Output, own_jump: float,
     step: float = STEP,
 ) -> tuple[float, float, str]:
-    """Return the derivative of an output's jump with respect to the logarithm of a parameter of some items (items,),
-    that of half the step, and the verdict, see :func:`sensitivities`.
+    """Return the derivative of an output's jump by the logarithm of a parameter of some items (items,), that with half
+    the step, and the verdict, see :func:`sensitivities`.
 
     :raises StatejumpError: a changed truss has no path
     """
@@ -124,12 +124,12 @@ def differences(
         values = [output.jump(one) for one in pair]
         jumps += values
         slopes.append((values[0] - values[1]) / (2 * size))
-        gaps.append(abs(values[0] + values[1] - 2 * own_jump) / size)  # of a smooth function as small as the step
+        gaps.append(abs(values[0] + values[1] - 2 * own_jump) / size)  # of the order of the step for a smooth function
         histories += [histories_of(one) for one in pair]
     whole, half = slopes
     largest = max(abs(whole), abs(half))
     noise = NOISE * max(abs(jump) for jump in jumps) / step
-    # A kink may have slopes that cancel each other.
+    # The slopes on both sides of a kink may cancel.
     if gaps[1] > max(AGREE * largest, 0.75 * gaps[0], noise):
         word = "not differentiable"
     elif largest <= noise:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""All that a designer asks of a truss, computed together: jumps, verdict, ranking of joints, surface, sensitivities."""
+"""Design questions of a truss, computed together: jumps, verdict, ranking of joints, surface, sensitivities."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -36,12 +36,12 @@ if TYPE_CHECKING:
 _JUMPS = Later("statejump.kinds.truss.answers.figure:jumps_figure")
 _RANKING = Later("statejump.kinds.truss.answers.figure:ranking_figure")
 _WRITTEN = Later("statejump.kinds.truss.answers.write:write")
-NO_JUMP = 1e-9  # of the largest jump of a node: what is smaller is rounding
-MOST_SAMPLES = 1000  # of the path in the result file; every cycle has at least its ends
+NO_JUMP = 1e-9  # fraction of the largest jump of a node below which a jump is rounding
+MOST_SAMPLES = 1000  # samples of the path in the result file; every cycle has at least its ends
 CYCLES = Rule(WHOLE, allowed=Range(1, 100_000), optional=True)
 STEPS = Rule(NUMBER, allowed=Range(1e-6, 0.2))
 
-# Called with what is done next; gives what takes the finished share of it.
+# Called with the name of the next step; returns a context with the progress function of this step.
 Phase = Callable[[str], AbstractContextManager[Tell]]
 
 
@@ -52,15 +52,14 @@ def silent(label: str) -> AbstractContextManager[Tell]:
 
 @dataclass(frozen=True)
 class TrussAnswers:
-    """What was found of a truss.
+    """Answers to the design questions of a truss.
 
-    :param case: the case that was asked, with as many cycles as were run
-    :param record: jump, verdict, notes and tables, as the result file has them
+    :param case: the case, with the number of cycles that were run
+    :param record: jump, verdict, notes and tables, as in the result file
     :param run: the quasi-static path
-    :param output: what is traced to the joints
+    :param output: the output whose jump is divided among the joints
     :param checked: whether jumps settle over the cycles
-    :param shares: what the friction of each joint holds of the jump; None: there is no jump, or no equilibrium
-        without friction
+    :param shares: contribution of each joint to the jump; None: there is no jump, or no equilibrium without friction
     """
 
     case: TrussCase
@@ -72,7 +71,7 @@ class TrussAnswers:
 
     @property
     def path(self) -> TrussPath:
-        """The path as the solver found it, its ends of cycles included."""
+        """The path of the solver, with the ends of its cycles."""
         found: TrussPath = self.run.native
         return found
 
@@ -94,11 +93,11 @@ class TrussAnswers:
     @property
     def tables(self) -> dict[str, list[dict[str, Any]]]:
         """Rows by table: ``cycles``, ``node_jumps``, ``joint_jumps``, ``surface``, ``contributions``,
-        ``sensitivities``; those that were asked and found."""
+        ``sensitivities``; only those that were requested and exist."""
         return self.record.tables
 
     def frame(self, table: str) -> pandas.DataFrame:
-        """Return a table, units in the names of its columns. :raises KeyError: there is none"""
+        """Return a table, with units in its column names. :raises KeyError: it does not exist"""
         pandas = libraries.pandas()
 
         return pandas.DataFrame(self.tables[table])
@@ -108,7 +107,7 @@ class TrussAnswers:
         return _JUMPS(self.path, self.shares, self.case.title)
 
     def plot_ranking(self) -> Figure:
-        """Draw the joints that hold the jump. :raises StatejumpError: no joints are ranked"""
+        """Draw the ranking of the joints. :raises StatejumpError: no joints are ranked"""
         if self.shares is None:
             raise StatejumpError(code="no_ranking", cause="; ".join(self.notes), case=self.case.name)
         return _RANKING(self.shares, self.output, self.case.title)
@@ -116,8 +115,8 @@ class TrussAnswers:
     def write(self, folder: Path, frames: int = 0, phase: Phase = silent) -> list[Path]:
         """Write result file, tables, figures and ``answers.md``, and return their paths.
 
-        :param folder: exists
-        :param frames: how many files for ParaView, evenly spread over the path; 0: none
+        :param folder: an existing folder
+        :param frames: number of files for ParaView, evenly spread over the path; 0: none
         """
         return _WRITTEN(self, folder, frames, phase)
 
@@ -129,16 +128,16 @@ def study(
     case: TrussCase, *, output: str = "node", cycles: int | None = None, each: bool = False, step: float = STEP,
     sensitivity: bool = True, phase: Phase = silent,
 ) -> TrussAnswers:
-    """Return what a designer asks of a truss.
+    """Answer the design questions of a truss.
 
-    :param output: what is traced to the joints: ``node`` (the most moved one), ``node:NAME``, ``rms`` or ``tilt`` of
-        the reflector
-    :param cycles: instead of the case's
-    :param each: sensitivities to every single item, not only to all of a kind together
+    :param output: the output whose jump is divided among the joints: ``node`` (the one that moves most), ``node:NAME``,
+        ``rms`` or ``tilt`` of the reflector
+    :param cycles: replaces those of the case
+    :param each: sensitivities to every single item, besides those to all of a kind together
     :param step: of the sensitivities, relative
-    :param sensitivity: whether sensitivities are asked
-    :param phase: called with what is done next
-    :raises NotAllowed: there is no such output, or a number is out of its range
+    :param sensitivity: whether to compute sensitivities
+    :param phase: called with the name of the next step
+    :raises NotAllowed: the output does not exist, or a number is out of its range
     :raises FailedRun: the solver finds no path
     :raises Interrupted: Ctrl-C
     """
@@ -180,7 +179,7 @@ def study(
 
 
 def answer(case: TrussCase, **settings: Any) -> TrussAnswers:
-    """Return what a designer asks of a truss that has a state jump; see :func:`statejump.truss.answers`."""
+    """Answer the design questions of a truss that has a state jump; see :func:`statejump.truss.answers`."""
     case.need_jump("'statejump truss answers'")
     return study(case, **settings)
 
@@ -194,13 +193,13 @@ def _of_cycles(case: TrussCase, cycles: int | None) -> TrussCase:
             raise NotAllowed("cycles", ABSENT, code="program_has_own_cycles", program=program.name)
     changed = case.changed({"thermal.cycles": cycles})
     assert isinstance(changed, TrussCase)
-    # The file that was given is named with the answers; how many cycles were run, the resolved case says.
+    # The answers name the given file. The resolved case has the number of cycles that were run.
     changed.with_origin(replace(changed.origin, text=case.origin.text))
     return changed
 
 
 def _surface(found: TrussPath, tables: dict[str, list[rows.Row]]) -> list[str]:
-    """Add the table of the reflecting surface; return what limits it."""
+    """Add the table of the reflecting surface; return its limits, as notes."""
     surface = reflector.surface(found.truss)
     if surface is not None:
         tables["surface"] = rows.surface_rows(found, surface)
@@ -209,7 +208,7 @@ def _surface(found: TrussPath, tables: dict[str, list[rows.Row]]) -> list[str]:
 
 
 def _jumps(found: TrussPath, output: Output, jump: float) -> bool:
-    """Whether an output jumps by more than rounding."""
+    """Return whether an output jumps by more than rounding."""
     largest = float(np.linalg.norm(node_jumps(found)[-1], axis=1).max())
     size = float(np.ptp(found.truss.nodes.position_m, axis=0).max())
     return abs(jump) > NO_JUMP * (largest / size if output.unit == "rad" else largest)
@@ -248,7 +247,7 @@ def _numbers(found: TrussPath, checked: Verdict, output: Output, jump: float,
 
 
 def _sample_times(case: TrussCase) -> np.ndarray:
-    """Return times [s] of the path in the result file."""
+    """Return the times [s] of the path that go into the result file."""
     cycles = case.thermal.cycles
     samples = max(1, min(case.samples_per_cycle, MOST_SAMPLES // cycles))
     return np.linspace(0, case.period_s * cycles, samples * cycles + 1)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether the jump of an output settles over the cycles: said only where it survives smaller increments.
+"""Decides whether the jump of an output settles over the cycles. The decision must agree for smaller increments.
 
-Between located changes a path of rigid contacts does not depend on its increments. Rolling at a radius that follows
-Hertz's depth and elastic sticking are integrated along the way, of fourth order, balls that slip and partial slip of
-second: there what a cycle adds has an error, a quarter with twice as many increments. So two paths are compared, of n
-and 2 n increments a branch. Their difference is at least the error of the finer one for every order from the first on
-(three times the error for the second), and nothing is told of a motion that does not exceed it.
+Between located changes, a path of rigid contacts does not depend on its increments. Two integrals do. Rolling at a
+radius that follows Hertz's depth and elastic sticking are fourth-order accurate. Balls that slip and partial slip are
+second-order accurate: the error of a cycle falls to a quarter with twice as many increments. So two paths are compared,
+with n and 2 n increments per branch. For every order from the first on, their difference is at least the error of the
+finer one (three times the error for the second order). A motion that does not exceed this difference gives no verdict.
 """
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from statejump.kinds.truss.answers.jumps import rounding_m
 from statejump.kinds.truss.answers.outputs import Output
 from statejump.kinds.truss.solve import TrussPath, heat_of_joints_J
 
-# A jump of a cycle below this share of the largest has settled: events are located to 1e-9 of a branch.
+# A jump of a cycle below this fraction of the largest has settled, because events are located to 1e-9 of a branch.
 SETTLED = 1e-6
-STEADY = 0.01  # two jumps that differ by less are the same growth
-RESOLVED = 0.01  # of the largest jump: what the increments may leave of a growth that is called none
-DOUBLINGS = 3  # of the increments, where two paths do not tell
+STEADY = 0.01  # relative difference below which two jumps are equal growth
+RESOLVED = 0.01  # largest error by the increments of a growth that counts as zero, over the largest jump
+DOUBLINGS = 3  # doublings of the increments if two paths do not agree
 
 # Path of so many increments a branch.
 Solve = Callable[[int], TrussPath]
@@ -35,17 +35,17 @@ class Verdict:
 
     word: str  # "no jump", "one cycle", "shakedown", "ratcheting", "not settled", "not resolved"
     text: str
-    cycle_jump: np.ndarray  # (cycles,) how far the output moved over each cycle, in its unit
-    uncertainty: np.ndarray  # (cycles,) by how much that differs between the two paths
+    cycle_jump: np.ndarray  # (cycles,) motion of the output over each cycle, in its unit
+    uncertainty: np.ndarray  # (cycles,) difference of this motion between the two paths
     increments: int  # per branch, of the finer path
     dissipation_J: np.ndarray  # (cycles,)
 
 
 def judged(found: TrussPath, increments: int, solve: Solve, output: Output) -> tuple[Verdict, TrussPath]:
-    """Return whether an output settles over the cycles, and the path of twice the increments.
+    """Return whether an output settles over the cycles, and the path with twice the increments.
 
-    :param found: path of so many increments a branch
-    :param solve: paths of more; more than one is asked for only where two do not tell
+    :param found: path with the given number of increments per branch
+    :param solve: returns paths with more increments; called more than once only if two paths do not agree
     """
     first = finer = solve(2 * increments)
     coarse = found
@@ -58,7 +58,8 @@ def judged(found: TrussPath, increments: int, solve: Solve, output: Output) -> t
 
 
 def verdict(coarse: TrussPath, finer: TrussPath, increments: int, output: Output) -> Verdict:
-    """Return what two paths, the finer one of so many increments a branch and twice those of the other, tell."""
+    """Return the verdict of two paths. The finer one has the given number of increments per branch, twice those of the
+    other."""
     motion = output.over_cycles(finer)
     each = output.sizes(motion)
     left = output.sizes(motion - output.over_cycles(coarse))
@@ -100,7 +101,7 @@ def verdict(coarse: TrussPath, finer: TrussPath, increments: int, output: Output
 
 
 def others(coarse: TrussPath, finer: TrussPath, checked: Verdict, output: Output) -> list[str]:
-    """Return the note that another node goes on moving where the output does not, or nothing."""
+    """Return a note if another node continues to move although the output does not; else nothing."""
     if checked.word not in ("no jump", "shakedown") or len(checked.cycle_jump) < 2:
         return []
     moved, before = (np.diff(path.cycle_ends["displacement_m"], axis=0) for path in (finer, coarse))

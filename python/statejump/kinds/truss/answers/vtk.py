@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""VTK files of a truss' path: lines of links and elements and points of joints, a series with true times."""
+"""VTK files of a truss' path: lines for links and elements, points for joints, and a series with the true times."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -17,11 +17,12 @@ from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, engine_programs
 
-# "kind" of a cell: links, elements between nodes in the order of ELEMENTS, joints in the order of JOINTS.
+# "kind" of a cell: 0 for links, then elements between nodes in the order of ELEMENTS, then joints in the order of
+# JOINTS.
 LINK = 0
 BETWEEN_NODES = [element for element in ELEMENTS if isinstance(element, BetweenNodes)]
 FIRST_JOINT = 1 + len(BETWEEN_NODES)
-# Columns that have one name in files for all types.
+# Columns with one name in the files for all types.
 SHARED = {"slider_force_N": "friction_force_N"}
 
 
@@ -35,10 +36,11 @@ def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,
            tell: Tell = lambda share: None) -> Path:
     """Write ``<name>.N.vtu`` and ``<name>.vtu.series`` and return the latter.
 
-    Points are the drawn nodes; ``displacement_m`` moves them (Warp By Vector). Cells: links, elements between nodes,
-    joints as points at their first or bearing node; arrays that a cell lacks are NaN, its status is 255.
+    Points are the nodes in the reference configuration; ``displacement_m`` moves them (Warp By Vector). Cells are
+    links, elements between nodes, and joints as points at their first or bearing node. Missing values of a cell are
+    NaN, a missing status is 255.
 
-    :param wanted_frames: how many states of the path, evenly spread; 0: all
+    :param wanted_frames: number of states of the path, evenly spread; 0: all
     """
     truss, states = found.truss, found.states
     frames = frames_of(len(states["time_s"]), wanted_frames)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files of a truss' answers: result file, tables, figures, and the answers in words."""
+"""Files of a truss' answers: result file, tables, figures, and a page of text."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -14,9 +14,9 @@ from statejump.kinds.truss.answers.study import Phase, TrussAnswers
 from statejump.results import record
 
 _SERIES = Later("statejump.kinds.truss.answers.vtk:series")
-MOST_ROWS = 15  # of a table in answers.md
+MOST_ROWS = 15  # rows of a table in answers.md
 MOST_NODES = 8
-# Tables that are large, and beside it as CSV.
+# Large tables, which are not in the JSON file but beside it as CSV.
 NOT_IN_JSON = ("cycles", "node_jumps", "joint_jumps")
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What may be changed of a truss so that a node jumps less: a spring that is added, a parameter that is scaled."""
+"""Candidates for a smaller jump of a node: a spring that is added, a parameter that is scaled."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
@@ -21,20 +21,20 @@ from statejump.schema.paths import EVERY, attribute_of, meant, split_path
 from statejump.schema.rules import suggestion
 
 PER_DECADE = 3
-FACTORS = (1e-3, 1e3)  # of a parameter that is scaled
-STIFFER = 1e3  # than the stiffest link or softer than the softest part: springs that are tried
+FACTORS = (1e-3, 1e3)  # factors of a scaled parameter
+STIFFER = 1e3  # stiffness of tried springs, over that of the stiffest link or below that of the softest element
 STIFFNESS = "spring.*.stiffness_N_per_m"
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """One change of a truss that a number tells.
+    """A change of a truss with one number.
 
-    :param parameter: as it was asked for
-    :param own: the number of the case as it is: no spring, factor 1
-    :param values: that are tried
-    :param truss: of a number
-    :param section: of the changed items, with their key and which of the changed truss' items they are
+    :param parameter: as the user gave it
+    :param own: the number for the unchanged case: no spring, factor 1
+    :param values: numbers to try
+    :param truss: returns the truss for a number
+    :param section: of the changed items, with their key and their indices in the changed truss
     """
 
     parameter: str
@@ -49,18 +49,18 @@ class Candidate:
 
     @property
     def is_spring(self) -> bool:
-        """Whether it adds a spring; else it scales what is there."""
+        """Whether it adds a spring; else it scales a parameter."""
         return self.own == 0
 
     def size(self, value: float) -> float:
-        """Return how much a value changes the truss: a stiffness [N/m], or the logarithm of a factor."""
+        """Return the size of the change of the truss by a value: a stiffness [N/m], or the logarithm of a factor."""
         return value if self.is_spring else abs(log(value))
 
 
 def candidates(case: TrussCase, places: Places) -> list[Candidate]:
-    """Return what may be changed: as asked, or all parameters that the jump may follow.
+    """Return the candidates: the requested ones, or all parameters that may affect the jump.
 
-    :raises NotAllowed: a place that is none, or a parameter without value
+    :raises NotAllowed: a position or a parameter is invalid
     """
     found = [_spring(case, one, two) for one, two in places.add_spring]
     wanted = [_scaled(case, path) for path in places.scale]
@@ -76,8 +76,8 @@ def candidates(case: TrussCase, places: Places) -> list[Candidate]:
 
 
 def with_spring(truss: ResolvedTruss, ends: Sequence[int], stiffness_N_per_m: float) -> ResolvedTruss:
-    """Return the truss with one more spring, the last one, which is free of force in the drawn shape; of stiffness 0:
-    the truss as it is."""
+    """Return the truss with one further spring, the last one, without force in the reference configuration. With
+    stiffness 0, return the unchanged truss."""
     if stiffness_N_per_m == 0:
         return truss
     springs, pair = truss.springs, np.array([ends])
@@ -130,7 +130,7 @@ def _scaled(case: TrussCase, path: str) -> Candidate:
         raise NotAllowed("--free", path, code="nothing_to_scale")
     sizes, allowed = np.abs(values[which]), rule_of(attribute_of(TrussCase, f"{section}.{EVERY}.{key}")).allowed
     assert allowed is not None
-    # Nothing but a number of its range is tried; the lower end only counts where it is above 0.
+    # Only numbers within the range are tried; its lower end counts only if it is above 0.
     most = min(FACTORS[1], allowed.high / sizes.max())
     least = max(FACTORS[0], allowed.low / sizes.min())
     return Candidate(

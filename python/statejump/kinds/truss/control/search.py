@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the jump of a node comes down to a bound, along one change of a truss.
+"""Search for the change of a truss at which the jump of a node reaches a bound.
 
-The jump is found by following the path of the changed truss; nothing is assumed of it. It is scanned, every place
-between scanned values where it crosses the bound is narrowed, and whether it is monotone in between is said.
+The path of every changed truss is solved; the search assumes nothing about the jump. It scans values, narrows every
+crossing of the bound between scanned values, and reports whether the jump is monotone between them.
 """
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ from statejump.kinds.truss.control.candidates import Candidate
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath
 
-NARROW = 1e-9  # of the value; events are located within 1e-9 of a branch
-LEAP = 1e-6  # of the wanted jump: what is further below it at the value found did not cross it continuously
-ROUNDING = 1e-9  # of the largest jump: what is called a turn of a curve is more
+NARROW = 1e-9  # relative accuracy of a value; events are located within 1e-9 of a branch
+LEAP = 1e-6  # fraction of the wanted jump: if the jump at the value found is lower by more, it is discontinuous there
+ROUNDING = 1e-9  # fraction of the largest jump below which a reversal of the curve is rounding
 
 
 @dataclass(frozen=True)
 class Jump:
-    """Jump of a node, and the statuses that every joint goes through."""
+    """Jump of a node, and the sequence of statuses of every joint."""
 
     size_m: float
     path: TrussPath
 
     @property
     def histories(self) -> dict[tuple[str, str], list[str]]:
-        """Statuses by kind and name of a joint."""
+        """Sequences of statuses by kind and name of a joint."""
         return histories_of(self.path)
 
 
@@ -59,17 +59,17 @@ class Search:
     node: int
     increments: int
     value: float | None = None
-    found: dict[str, Any] = field(default_factory=dict)  # of the value, as in the results
+    found: dict[str, Any] = field(default_factory=dict)  # fields about the value, as in the results
     sentence: str = ""
-    turns: list[float] = field(default_factory=list)  # where the jump turns along the scan
-    ways: set[str] = field(default_factory=set)  # by which the ends of ranges were found
+    turns: list[float] = field(default_factory=list)  # values at which the jump reverses its slope along the scan
+    ways: set[str] = field(default_factory=set)  # methods that found the ends of ranges
 
     def jump(self, value: float) -> Jump:
         """Return the jump with a value."""
         return jump_of(self.candidate.truss(value), self.node, self.increments)
 
     def row(self, value: float) -> Row:
-        """Return the jump with a value as a row; a truss without path has none."""
+        """Return the jump for a value as a row; empty if the truss has no path."""
         try:
             return Row(value, {"jump_m": self.jump(value).size_m})
         except Interrupted:
@@ -78,7 +78,7 @@ class Search:
             return Row(value, {}, str(problem))
 
     def scan(self, tell: Tell) -> None:
-        """Solve for all values of the candidate, and see where the jump turns."""
+        """Solve for all values of the candidate, and find where the jump reverses its slope."""
         done = counted(tell, len(self.candidate.values))
         for value in self.candidate.values:
             self.sweep.rows.append(self.row(value))
@@ -91,7 +91,7 @@ class Search:
         self.turns = [self.candidate.values[there[place + 1]] for place in turning]
 
     def narrow(self, wanted: float) -> None:
-        """Find all ranges of values whose jumps are at or below the wanted one, and the smallest change of them."""
+        """Find all ranges of values with jumps at or below the wanted one, and the smallest change in them."""
         jumps, values = self.sweep.column("jump_m"), self.candidate.values
         self.sweep.meets = ranges_that_pass(values, list(jumps <= wanted),
                                             narrow=lambda bad, good: self._end(bad, good, wanted))
@@ -100,11 +100,12 @@ class Search:
             self.value = self.sweep.recommended = min(ends, key=self.candidate.size)
 
     def _nearest(self, low: float, high: float) -> float:
-        """Return the value of a range that changes the truss least."""
+        """Return the value of a range with the smallest change of the truss."""
         return min(max(low, self.candidate.own), high)
 
     def _end(self, bad: float, good: float, wanted: float) -> float:
-        """Return where the jump comes down to the wanted one between two values: that side on which it has."""
+        """Return the point between two values at which the jump crosses the wanted one, on the side on which it is
+        small enough."""
         def excess(exponent: float) -> float:
             return self.jump(exp(exponent)).size_m - wanted
 
@@ -124,12 +125,12 @@ class Search:
             except Interrupted:
                 raise
             except (StatejumpError, ValueError):
-                pass  # some truss between has no path, or the scanned one was not solved: signs alone decide
+                pass  # a truss between has no path, or the scanned one was not solved: only signs decide
         self.ways.add("bisection")
         return bisect(passes, bad, good, NARROW)[1]
 
     def tell_value(self, now: Jump, wanted: float, node: str) -> None:
-        """Solve with the value found, with twice the increments as well, and see whether the path is smooth there."""
+        """Solve for the resulting value, also with twice the increments, and check whether the path is smooth there."""
         assert self.value is not None
         candidate, with_it = self.candidate, self.jump(self.value)
         finer = jump_of(candidate.truss(self.value), self.node, 2 * self.increments)

@@ -28,13 +28,13 @@ def control(
     case: TrussCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
     tell: Tell = lambda share: None, places: Places = Places(),
 ) -> Study:
-    """Sweep every candidate and search where it brings the jump of a node below a bound.
+    """Sweep every candidate, and search for the values that keep the jump of a node below a bound.
 
-    :param jump_below: wanted largest jump [m]; None: half of what the case has
-    :param runs: there is one path: None
+    :param jump_below: largest allowed jump [m]; None: half of that of the case
+    :param runs: must be None: there is one path
     :param with_dem: not for trusses, see ``statejump compare``
-    :param places: node, springs that may be added, parameters that may be scaled; nothing: all that a jump may follow
-    :raises StatejumpError: bad input, or the case has no path
+    :param places: node, springs that may be added, parameters that may be scaled; empty: all that may affect the jump
+    :raises StatejumpError: invalid input, or the case has no path
     """
     check_wanted(jump_below, "m")
     refuse_runs(runs, case)
@@ -82,7 +82,7 @@ def control(
 
 
 def answer(case: TrussCase, **settings: Any) -> Study:
-    """Return what makes the state jump smaller, with notes on the temperature program."""
+    """Return the control study, with notes on the temperature program."""
     return with_notes(control, case, **settings)
 
 

@@ -9,7 +9,7 @@ from statejump.kinds.truss.elements.spring import SPRING, Spring
 from statejump.kinds.truss.elements.torsion_spring import TORSION_SPRING, TorsionSpring
 from statejump.schema.fields import Section, definition, tables
 
-# In the order in which results list them. A new type is added to this tuple and to the lists.
+# In the order of results. To add a type, add it to this tuple and to the lists.
 ELEMENTS: tuple[ElementType[Any, Any], ...] = (SPRING, TORSION_SPRING)
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a type of element of a truss brings in Python: one object per type, in a file of its own.
+"""The Python part of a type of element: one object per type, in a file of its own.
 
-Elements have a conservative law between nodes or links. Links, to which joints and temperatures refer, are part of the
-truss itself. Case, checks, arrays, solver, result, drawing, sensitivities and DEM use the registry
-(:data:`statejump.kinds.truss.elements.ELEMENTS`) and know no type.
+Elements have a conservative law between nodes or links. Links are part of the truss itself, because joints and
+temperatures refer to them. Case, checks, arrays, solver, result, drawing, sensitivities and DEM use the registry
+(:data:`statejump.kinds.truss.elements.ELEMENTS`) and know no single type.
 """
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ ArraysType = TypeVar("ArraysType")
 
 @dataclass(frozen=True)
 class Lines:
-    """Elements that drawings show as lines of one style between their nodes."""
+    """Elements that drawings show as lines of one style."""
 
     which: np.ndarray  # (elements,) bool
     colour: str
     legend: str
-    dashed: bool = False  # else a zigzag, where a drawing has room for it
+    dashed: bool = False  # else a zigzag, if a drawing has room for it
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,8 @@ class ElementType(Generic[ItemType, ArraysType]):
     Arrays: ClassVar[type[Any]]  # dataclass: names, and a field of the name of each key that models use
     columns: ClassVar[tuple[ItemColumn, ...]] = ()
     listed_if_none: ClassVar[bool] = False  # results list its items even if a truss has none
-    varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that a jump may follow
-    not_in_dem: ClassVar[str] = ""  # what follows its name where the DEM refuses it; empty: the DEM has it
+    varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that may affect a jump
+    not_in_dem: ClassVar[str] = ""  # text after its name if the DEM refuses it; empty: the DEM supports it
 
     @property
     def items(self) -> str:
@@ -65,49 +65,49 @@ class ElementType(Generic[ItemType, ArraysType]):
         return f"{self.section}s"
 
     def where(self, name: str) -> dict[str, Any]:
-        """Return how failures name one of its elements."""
+        """Return the name of one of its elements in messages."""
         return {"item": f"{self.section} {name!r}"}
 
     # ---------------------------------------------------------------- case
 
     def check_vectors(self, item: ItemType, dimension: int) -> None:
-        """Raise NotAllowed for a vector that does not fit the truss' dimension."""
+        """Raise NotAllowed for a vector whose length differs from the truss' dimension."""
 
     def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
-        """Raise an error for a name that is not there or does not fit."""
+        """Raise an error for a name that does not exist or does not match."""
         raise NotImplementedError
 
     def check_keys(self, item: ItemType) -> None:
         """Raise an error for keys that exclude each other."""
 
     def may_be_wrong_vectors(self, items: ItemColumns[ItemType], dimension: int) -> np.ndarray:
-        """Return which items (n,) :meth:`check_vectors` has to check: it must not miss one that is wrong."""
+        """Return the items (n,) that :meth:`check_vectors` has to check; must include all invalid ones."""
         return np.full(len(items), False)
 
     def may_be_wrong_references(self, items: ItemColumns[ItemType], around: Around) -> np.ndarray:
-        """Return which items (n,) :meth:`check_references` has to check: it must not miss one that is wrong."""
+        """Return the items (n,) that :meth:`check_references` has to check; must include all invalid ones."""
         raise NotImplementedError
 
     def may_be_wrong_keys(self, items: ItemColumns[ItemType]) -> np.ndarray:
-        """Return which items (n,) :meth:`check_keys` has to check: it must not miss one that is wrong."""
+        """Return the items (n,) that :meth:`check_keys` has to check; must include all invalid ones."""
         return np.full(len(items), False)
 
     def resolve(self, items: Sequence[ItemType], known: References) -> ArraysType:
-        """Return the elements as arrays: the keys of their items, but for those of :meth:`derived`."""
+        """Return the elements as arrays: the keys of their items, except those of :meth:`derived`."""
         made: ArraysType = arrays_of(self.Arrays, self.Item, items, known, **self.derived(items, known))
         return made
 
     def derived(self, items: Sequence[ItemType], known: References) -> dict[str, Any]:
-        """Return the arrays whose values are not those of a key as it is given."""
+        """Return the arrays whose values differ from those of a key."""
         return {}
 
     def check_geometry(self, truss: ResolvedTruss, elements: ArraysType) -> None:
-        """Raise an error for wrong positions, directions and lengths."""
+        """Raise an error for invalid positions, directions and lengths."""
 
     # ---------------------------------------------------------------- mechanics
 
     def ends(self, elements: ArraysType) -> np.ndarray:
-        """Return the pairs of nodes (k, 2) that it connects: (0, 2) of a type that acts on angles."""
+        """Return the pairs of nodes (k, 2) that it connects; empty (0, 2) for a type that acts on angles."""
         return np.zeros((0, 2), dtype=int)
 
     def stiffness_N_per_m(self, elements: ArraysType) -> np.ndarray:
@@ -123,25 +123,25 @@ class ElementType(Generic[ItemType, ArraysType]):
         return np.zeros(0)
 
     def tension_N(self, states: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Return the tension (states, k) [N] between the ends, from its columns."""
+        """Return the tension (states, k) [N] between the ends, computed from its columns."""
         return np.zeros((len(states["time_s"]), 0))
 
     def switches(self, elements: ArraysType, columns: Mapping[str, np.ndarray]) -> list[Switch]:
-        """Return the elements whose switching is an event, from its columns at the samples of a run."""
+        """Return the elements whose switching is an event, computed from its columns at the samples of a run."""
         return []
 
     def changed(self, truss: ResolvedTruss, elements: ArraysType) -> ArraysType:
-        """Return elements of which one of the ``varied`` numbers was replaced, with the arrays that depend on it."""
+        """Return the elements after a change of one of the ``varied`` numbers, with the arrays that depend on it."""
         return elements
 
     # ---------------------------------------------------------------- drawing and sentences
 
     def lines(self, elements: ArraysType) -> list[Lines]:
-        """Return how drawings show the elements between their ends."""
+        """Return the lines of the elements for drawings."""
         return []
 
     def symbols(self, truss: ResolvedTruss, elements: ArraysType) -> list[Symbol]:
-        """Return its symbols, the first of them for the legend; none of a type that is drawn as lines."""
+        """Return its symbols, the first of them for the legend; empty for a type that is drawn as lines."""
         return []
 
     def legend(self, elements: ArraysType) -> str:
@@ -149,14 +149,14 @@ class ElementType(Generic[ItemType, ArraysType]):
         raise NotImplementedError
 
     def counted(self, items: Sequence[ItemType]) -> list[tuple[Sequence[ItemType], str]]:
-        """Return the items by the noun that a sentence on the case uses for them."""
+        """Return the number of items by the noun that sentences use for them."""
         return [(items, self.section.replace("_", " "))]
 
     # ---------------------------------------------------------------- DEM
 
     def dem_refuses(self, elements: ArraysType) -> tuple[str, str, str] | None:
-        """Return name, code of the error and reason of an element that the DEM does not have, though it has others of
-        the type."""
+        """Return name, error code and reason of an element that the DEM does not support, although it supports others
+        of the type."""
         return None
 
 
@@ -197,7 +197,7 @@ class BetweenNodes(ElementType[ItemType, EndsType]):
 
 
 def check_lengths(truss: ResolvedTruss, section: str, names: Sequence[str], ends: np.ndarray) -> None:
-    """Raise StatejumpError for the first item of a section whose ends (k, 2) have one position."""
+    """Raise StatejumpError for the first item of a section whose two ends (k, 2) have one position."""
     for index in np.flatnonzero(distances(truss.nodes.position_m, ends) == 0)[:1]:
         nodes = [truss.nodes.names[node] for node in ends[index]]
         place = truss.nodes.position_m[ends[index, 0]][: truss.dimension].tolist()

@@ -42,8 +42,8 @@ class Springs(EndsArrays):
     names: Sequence[str]
     nodes: np.ndarray  # (k, 2) int
     stiffness_N_per_m: np.ndarray
-    free_length_m: np.ndarray  # below 0 when the preload exceeds stiffness · drawn length
-    preload_N: np.ndarray  # tension of the drawn truss, below 0 for a slack cable
+    free_length_m: np.ndarray  # negative if the preload exceeds stiffness · length in the reference configuration
+    preload_N: np.ndarray  # tension in the reference configuration, negative for a slack cable
     cable: np.ndarray  # bool
 
 
@@ -54,7 +54,7 @@ class SpringType(BetweenNodes[Spring, Springs]):
     Item = Spring
     Arrays = Springs
     columns: ClassVar[tuple[ItemColumn, ...]] = (ItemColumn("tension_N"),)
-    listed_if_none = True  # as in all result files so far
+    listed_if_none = True  # as in earlier result files
     varied = ("stiffness_N_per_m", "preload_N")
 
     def check_keys(self, item: Spring) -> None:
@@ -91,7 +91,7 @@ class SpringType(BetweenNodes[Spring, Springs]):
                 for cable in np.flatnonzero(elements.cable)]
 
     def changed(self, truss: ResolvedTruss, elements: Springs) -> Springs:
-        # The stiffness changes at constant preload, the preload at constant stiffness.
+        # The stiffness changes at constant preload, and the preload at constant stiffness.
         drawn = distances(truss.nodes.position_m, elements.nodes)
         return replace(elements, free_length_m=drawn - elements.preload_N / elements.stiffness_N_per_m)
 

@@ -30,8 +30,8 @@ PINK = "#CC79A7"
 class TorsionSpring(Item):
     """A spring on the angle from the first link to the second, or on the angle of one link in space.
 
-    Links point from their first to their second node, angles are anticlockwise about the axis (z in the
-    plane). The moment K (angle - drawn angle - bias) turns the links back to the drawn angle + bias.
+    Links point from their first to their second node, angles are anticlockwise about the axis (z in the plane). The
+    moment K (angle - angle in the reference configuration - bias) rotates the links back to that angle + bias.
     """
 
     links: list[str] = texts(..., "two links that share a place, or one")
@@ -79,7 +79,7 @@ class TorsionSpringType(ElementType[TorsionSpring, TorsionSprings]):
         return Torsion(elements.names, elements.links, elements.axis, elements.stiffness_N_m_per_rad)
 
     def symbols(self, truss: ResolvedTruss, elements: TorsionSprings) -> list[Symbol]:
-        # A revolute has its own symbol in the middle: the spring stands around it.
+        # A revolute has its own symbol in the middle, so the spring is drawn around it.
         return [Symbol(truss.turning_places(elements.links), SPIRAL, 1.6, 1.3, colour=PINK, face="none", order=4.5)]
 
     def legend(self, elements: TorsionSprings) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Case files of trusses as documents: what generators share, and writing them as TOML."""
+"""Case files of trusses as documents: shared code of the generators, and output as TOML."""
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -52,7 +52,7 @@ def tidy(values: Iterable[float]) -> list[float]:
 
 
 def node(name: str, position_m: Sequence[float], fixed: str = "", **more: Any) -> dict[str, Any]:
-    """Return a node; ``fixed`` holds the letters of the directions."""
+    """Return a node; ``fixed`` has the letters of the directions."""
     made: dict[str, Any] = {"name": name, "position_m": tidy(map(float, position_m))}
     if fixed:
         made["fixed"] = list(fixed)
@@ -60,7 +60,7 @@ def node(name: str, position_m: Sequence[float], fixed: str = "", **more: Any) -
 
 
 def table_path(path: Path, section: str) -> Path:
-    """Return where the items of a list stand, if not in the case file."""
+    """Return the file of the items of a list; empty if they are in the case file."""
     return path.with_name(f"{path.stem}_{section}.csv")
 
 

@@ -13,7 +13,7 @@ TUBE: dict[str, Any] = {
     "density_kg_per_m3": 2700.0,
 }
 BAY_M = 0.5
-SPOKE_STRAIN = 1e-3  # of the spokes by their preload
+SPOKE_STRAIN = 1e-3  # strain of the spokes by their preload
 
 
 def ring(
@@ -76,7 +76,7 @@ def ring(
     bending_stiffness = 2 * rigidity * (depth / 2) ** 2
     stiffness = max(preload / (SPOKE_STRAIN * inner), 4 * hoop**2 * BAY_M / bending_stiffness)
     inner_bay = 2 * inner * sin(pi / n)
-    radial = preload / 2  # tension that holds the outer hoop
+    radial = preload / 2  # tension that balances the outer hoop
 
     def lit(bay: float) -> dict[str, Any]:
         return {"temperature_fraction": tidy([(1 + cos(2 * pi * bay / n)) / 2])[0]} if sunlit else {}
@@ -187,7 +187,7 @@ def mast(
             break
         made["node"].append(node(f"M{k}", (BAY_M / 2, BAY_M * (k + 0.5))))
         for side, other, fraction in (("L", "R", 1.0), ("R", "L", shaded_fraction)):
-            # Lower half from this side, upper half to the other; an upper half is named after where it ends.
+            # The lower half starts on this side, the upper half on the other; an upper half has the name of its end.
             foot = f"{side}{k}j" if 0 < k and radial_clearance_m else f"{side}{k}"
             bar: dict[str, Any] = {**TUBE, "temperature_fraction": fraction}
             made["link"] += [

@@ -87,7 +87,7 @@ def iwan(
     made["node"] += [node("G", (0, 0), "xy"), node("P", (length, 0), "y")]
     made["link"].append({"name": "drive", "nodes": ["G", "P"], **TABLE1_BAR})
     for i in range(1, n + 1):
-        longer = 1 + (i - 1) / n  # no two blocks at one place
+        longer = 1 + (i - 1) / n  # no two blocks at one position
         made["node"].append(node(f"B{i}", (length * (1 + longer), 0), "y"))
         made["link"].append({
             "name": f"L{i}", "nodes": ["P", f"B{i}"], **TABLE1_BAR, "cross_section_area_m2": area / n * longer,
@@ -152,7 +152,7 @@ def umbrella(
         mark = str(k) if n > 1 else ""
         angle = 2 * pi * (k - 1) / n
         c, s = cos(angle), sin(angle)
-        normal = tidy((0.0, -s, c))  # of the rib's plane
+        normal = tidy((0.0, -s, c))  # normal of the rib's plane
         more: dict[str, Any] = {} if n == 1 else {"guide_normal": normal}
         axis: dict[str, Any] = {} if n == 1 else {"axis": normal}
         place = (x, height) if n == 1 else (x, height * c, height * s)

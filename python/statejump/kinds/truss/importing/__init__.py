@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Trusses of other programs: CSV tables, decks of CalculiX and Abaqus, bulk data of Nastran, meshes."""
+"""Import of trusses: CSV tables, decks of CalculiX and Abaqus, bulk data of Nastran, meshes."""
 from statejump.kinds.truss.importing.loose import checked
 from statejump.kinds.truss.importing.model import Deck, Options
 from statejump.kinds.truss.importing.reading import read

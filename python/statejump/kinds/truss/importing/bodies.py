@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Rigid bodies and equations between displacements.
 
-A truss has no rotations. A rigid body is taken if bars and springs end at one place of it: its nodes there become one
-node, and forces and masses of its other nodes act there. Other rigid bodies are refused. An equation becomes a support
-if it holds a node, and one node of two if it makes nodes at one place one. If it says how a node moves where no bar
-ends, the others carry the loads of that node. All other equations become constraints of the case.
+A truss has no rotations. A rigid body is accepted if bars and springs end at one position of it. Its nodes there become
+one node, which gets the forces and masses of its other nodes. Other rigid bodies are refused. An equation becomes a
+support if it holds a node. Two nodes at one position become one if equations make all their displacements equal. If an
+equation determines the motion of a node without bars, the other nodes get the loads of that node. All other equations
+become constraints of the case.
 """
 from __future__ import annotations
 
@@ -18,12 +19,12 @@ from statejump.kinds.truss.importing.moments import Turning
 from statejump.kinds.truss.importing.springs import ALONG
 from statejump.kinds.truss.importing.supports import SAME, basis_of, held_directions, is_held
 
-# Nodes nearer than this share of the size of the truss are at one place: decks have eight digits.
+# Nodes nearer than this fraction of the size of the truss are at one position, because decks have eight digits.
 ONE_PLACE = 1e-9
 
 
 def settle_bodies(deck: Deck) -> None:
-    """Take moments, rigid bodies and equations. Supports, loads, bars and springs must be known."""
+    """Process moments, rigid bodies and equations. Supports, loads, bars and springs must be known."""
     turning = Turning(deck)
     for moment in deck.moments:
         turning.take(moment.line, moment.card, moment.node, moment.vector, moment.waiver)
@@ -44,13 +45,13 @@ def carriers(deck: Deck) -> set[str]:
 
 
 class _Bodies:
-    """Takes the rigid bodies of a deck; those that share nodes are one."""
+    """Processes the rigid bodies of a deck; bodies that share nodes are one body."""
 
     def __init__(self, deck: Deck, turning: Turning) -> None:
         self.deck, self.turning = deck, turning
         self.places = dict(deck.nodes)
         self.size = float(np.ptp(np.array(list(deck.nodes.values())), axis=0).max()) if deck.nodes else 0.0
-        self.one: dict[str, str] = {}  # nodes that become another one
+        self.one: dict[str, str] = {}  # nodes that were merged into another one
 
     def near(self, first: str, second: str) -> bool:
         """Whether two nodes are at one place."""
@@ -96,8 +97,8 @@ class _Bodies:
             deck.take(body.card, "nodes at one place made one; forces and masses of its other nodes act there")
 
     def _move_by_lever(self, body: RigidBody, kept: str, gone: str) -> None:
-        """Move force and mass of a node to the place at which bars end. What turns the body there is a moment; the
-        mass as well, where gravity acts."""
+        """Move force and mass of a node to the position at which bars end. A lever arm gives the body a moment; with
+        gravity, so does a mass."""
         deck = self.deck
         lever = np.subtract(self.places[gone], self.places[kept])
         for lines, force in ((deck.force_line, np.array(deck.force.get(gone, [0.0] * 3))),
@@ -112,9 +113,9 @@ class _Bodies:
 
 
 def join(deck: Deck, one: Mapping[str, str]) -> None:
-    """Make nodes one that are at one place.
+    """Merge nodes at one position.
 
-    :param one: the node that stays by the name of each that goes
+    :param one: the remaining node, by the name of each removed one
     """
     for bar in deck.bars:
         first, second = (one.get(end, end) for end in bar.nodes)
@@ -146,7 +147,7 @@ def _move(deck: Deck, kept: str, gone: str) -> None:
 
 
 def _take_followers(deck: Deck) -> None:
-    """Make means of other nodes equations. Leave out those that nothing acts on."""
+    """Convert means of other nodes to equations. Omit those on which nothing acts."""
     used = carriers(deck) | deck.equation_directions().keys()
     turned = {moment.node for moment in deck.moments}
     for one in deck.followers:
@@ -161,7 +162,7 @@ def _take_followers(deck: Deck) -> None:
 
 
 def _follow_joined(deck: Deck, joined: Mapping[str, str]) -> None:
-    """Write equations of nodes that became one. Refuse those of nodes that a rigid arm replaced."""
+    """Write equations of merged nodes. Refuse those of nodes that a rigid arm replaced."""
     kept = []
     for one in deck.equations:
         one.follow(joined)
@@ -173,7 +174,7 @@ def _follow_joined(deck: Deck, joined: Mapping[str, str]) -> None:
 
 
 def _take_equations(deck: Deck, near: Callable[[str, str], bool]) -> None:
-    """Take equations as long as one of them can be taken; the others become constraints."""
+    """Process equations until none can be processed; the remaining ones become constraints."""
     waiting = [replace(one, terms=[term for term in one.terms if not is_held(deck, *term[:2])])
                for one in deck.equations]
     taken: list[Equation] | None = waiting
@@ -189,7 +190,7 @@ def _take_equations(deck: Deck, near: Callable[[str, str], bool]) -> None:
 
 
 def _hold_loose(deck: Deck) -> None:
-    """Hold nodes at which no bar ends in the directions in which no equation moves them: nothing is stiff there."""
+    """Hold nodes without bars in the directions in which no equation moves them, because nothing is stiff there."""
     ends = carriers(deck)
     for node, ways in deck.equation_directions().items():
         if node in ends:
@@ -206,7 +207,8 @@ def _hold_loose(deck: Deck) -> None:
 
 
 def _held_by(deck: Deck, equations: list[Equation]) -> list[Equation]:
-    """Take equations of one node, a support in the direction of its terms, and of none."""
+    """Process equations of one node, which are supports in the direction of their terms, and equations without a
+    node."""
     found = [one for one in equations if len({term[0] for term in one.terms}) < 2]
     for one in found:
         normal = sum((direction * factor for _, direction, factor in one.terms), start=np.zeros(3))
@@ -226,7 +228,7 @@ def _equal(one: Equation) -> tuple[str, str] | None:
 
 
 def _made_one(deck: Deck, equations: list[Equation], near: Callable[[str, str], bool]) -> list[Equation]:
-    """Make two nodes one whose displacements are equal in all directions that are not held."""
+    """Merge two nodes whose displacements are equal in all directions that are not held."""
     pairs: dict[tuple[str, str], list[Equation]] = {}
     for one in equations:
         if pair := _equal(one):
@@ -236,7 +238,7 @@ def _made_one(deck: Deck, equations: list[Equation], near: Callable[[str, str], 
     stays: set[str] = set()
     for pair, several in pairs.items():
         kept, gone = pair if pair[0] in ends else pair[::-1]
-        # A node that goes is in no other pair of this round: nodes that stay do not go later.
+        # A removed node is in no other pair of this round, because remaining nodes are not removed later.
         if kept not in ends or not near(kept, gone) or joined.keys() & {kept, gone} or gone in stays or \
                 any(of.get(kept) != of.get(gone) for of in (deck.temperature, deck.initial)):
             continue
@@ -253,7 +255,7 @@ def _made_one(deck: Deck, equations: list[Equation], near: Callable[[str, str], 
 
 
 def _followed(deck: Deck, equations: list[Equation]) -> list[Equation]:
-    """Let others carry the loads of nodes where no bar ends and whose motion equations give."""
+    """Move the loads of nodes without bars to the nodes that determine their motion."""
     ends = carriers(deck)
     of_node: dict[str, list[Equation]] = {}
     for one in equations:

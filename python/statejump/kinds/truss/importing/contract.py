@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What becomes of every card of a deck and of every field of a card: it is used, it has no influence, or it is not
-supported. The import refuses by this table, and the documentation is made from it."""
+"""Declaration of the use of every card of a deck and every field of a card: it is used, it has no influence, or it is
+not supported. The import refuses cards according to this table. The documentation is generated from it."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,7 +14,7 @@ BLANK = "-"  # a position that must be empty
 class Field:
     """A field of a card or a parameter of a keyword.
 
-    :param why: the reason of a field that has no influence or is not supported
+    :param why: reason why it has no influence or is not supported
     """
 
     name: str
@@ -26,7 +26,7 @@ class Field:
 class Card:
     """A card of Nastran or a keyword of CalculiX and Abaqus.
 
-    :param what: what a card that is used becomes, or the reason why it is not
+    :param what: the result of a used card, or the reason why it is not used
     :param fields: in the order of a card; parameters of a keyword have no order
     :param repeats: number of last fields that repeat
     :param sets: kind of set that the case control must select for the card to count
@@ -44,7 +44,7 @@ class Card:
     bending: bool = False
 
     def field(self, place: int) -> Field | None:
-        """Return the field at a position behind the name; None: the card has none there."""
+        """Return the field at a position after the name; None: the card has none there."""
         if place < len(self.fields):
             return self.fields[place]
         return self.fields[len(self.fields) - self.repeats + (place - len(self.fields)) % self.repeats] \
@@ -60,10 +60,10 @@ def used(name: str, what: str, layout: str = "", *, idle: Mapping[str, str] | No
          bending: bool = False) -> Card:
     """Return a card that is used.
 
-    :param layout: names of all fields in their order, with blanks between them
-    :param idle: reasons of fields without influence by their names, with blanks between these
-    :param refused: reasons of fields that are not supported, likewise
-    :raises ValueError: a reason names a field that the layout does not have, or one twice
+    :param layout: names of all fields in their order, separated by blanks
+    :param idle: reasons of fields without influence, by names separated by blanks
+    :param refused: reasons of unsupported fields, by names separated by blanks
+    :raises ValueError: a reason names a field that the layout lacks, or one twice
     """
     names = layout.split()
     reasons: dict[str, tuple[str, str]] = {}
@@ -81,13 +81,13 @@ def used(name: str, what: str, layout: str = "", *, idle: Mapping[str, str] | No
 
 
 def idle(names: str, why: str) -> Iterator[Card]:
-    """Yield cards that have no influence for one reason."""
+    """Yield cards that have no influence for one common reason."""
     for name in names.split():
         yield Card(name, IDLE, why)
 
 
 def refused(names: str, why: str, sets: str = "") -> Iterator[Card]:
-    """Yield cards that are not supported for one reason."""
+    """Yield cards that are unsupported for one common reason."""
     for name in names.split():
         yield Card(name, REFUSED, why, sets=sets)
 
@@ -104,7 +104,7 @@ def table(*cards: Card | Iterator[Card]) -> dict[str, Card]:
 
 
 def markdown(cards: Mapping[str, Card], heading: Sequence[str]) -> list[str]:
-    """Return tables of the documentation: cards that are used with their fields, then the others by reason."""
+    """Return tables of the documentation: used cards with their fields, then the others by reason."""
     taken = sorted((card for card in cards.values() if card.use == USED), key=lambda one: one.name)
     fields = any(card.fields for card in taken)
     shown = (USED, IDLE, REFUSED) if fields else ()

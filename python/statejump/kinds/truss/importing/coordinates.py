@@ -9,7 +9,8 @@ from math import cos, radians, sin
 import numpy as np
 
 KINDS = ("R", "C", "S")
-# Points or directions nearer than this share of their distance span no plane: input has at least four digits.
+# Points or directions nearer than this fraction of their distance span no plane, because input has at least four
+# digits.
 PARALLEL = 1e-6
 
 
@@ -77,15 +78,15 @@ def by_axis(kind: str, origin: np.ndarray, on_x: np.ndarray, in_xy: np.ndarray) 
     found = by_points(kind, origin, on_x, in_xy)
     if found is None:
         return None
-    # by_points took its z for our x, and its x, in the plane of the third point, for our y.
+    # by_points has its z axis along our x, and its x axis, in the plane of the third point, along our y.
     y, _, x = found.axes
     return Frame(kind, origin, np.array([x, y, np.cross(x, y)]))
 
 
 def about_axis(first: np.ndarray, second: np.ndarray) -> Frame | None:
-    """Return the cylindrical system whose axis goes through two points; None: they are one point.
+    """Return the cylindrical system whose axis goes through two points; None: both points are equal.
 
-    Its angle counts from an arbitrary direction: only its directions mean something.
+    Its angle counts from an arbitrary direction, so only its directions are meaningful.
     """
     z = second - first
     aside = np.eye(3)[int(np.argmin(np.abs(z)))]

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Coefficients of thermal expansion that depend on temperature.
 
-CalculiX and Abaqus have secants: from a temperature T0 to T the strain is α(T) (T - Tz) - α(T0) (T0 - Tz), where α is
-straight between its rows and Tz is what ZERO= says. Cases have the tangent, which is straight between rows as well,
-and jumps at each row of the deck.
+CalculiX and Abaqus use secants: from a temperature T0 to T the strain is α(T) (T - Tz) - α(T0) (T0 - Tz). α is linear
+between its rows, and Tz is the value of ZERO=. Cases use the tangent. It is linear between rows too, and jumps at each
+row of the deck.
 """
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-# Beyond its table a coefficient is constant; so far cases reach [K].
+# Beyond its table a coefficient is constant. Tables of cases extend this far [K].
 BEYOND_K = 1e3
-# Half the width of a jump over the range of the table. Beyond the jump the strain is right to the square of this share;
-# narrower jumps need more steps of the solver.
+# Half the width of a jump over the range of the table. Beyond the jump, the error of the strain is the square of this
+# fraction. Narrower jumps need more steps of the solver.
 JUMP = 1e-3
 
 
@@ -24,7 +24,7 @@ def item(name: str, table: Sequence[tuple[float, float]], zero: float, start: fl
 
     :param table: temperatures, rising, and secant coefficients
     :param zero: temperature at which the secants begin
-    :param start: temperature free of stress
+    :param start: stress-free temperature
     """
     temperatures, secants = (np.array(column) for column in zip(*table))
     width = JUMP * max(float(np.ptp(temperatures)), 1.0)

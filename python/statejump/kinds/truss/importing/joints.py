@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Joints that are put into a truss of a deck by name. What ``--joint`` says has one of three forms:
+"""Joints that ``--joint`` inserts into a truss of a deck by name, in one of three forms:
 
 - ``node`` and ``axis`` = x, y or z: the node slides on its support along that axis
-- ``link`` and ``axis`` = link: between the link's first node, or ``node``, and the link's end a slider along it;
-  ``clearance_plus_m`` is its play when the link is pulled
+- ``link`` and ``axis`` = link: a slider along the link, between its first node, or ``node``, and its end;
+  ``clearance_plus_m`` is its play in tension
 - ``link`` and ``node``: a revolute between the end of the link, the journal, and the others at the node
 
-``node`` and ``link`` of sliders may be patterns (``L1*``). ``from`` names a file with a section of such a joint, as
-``statejump identify`` writes it; what is said beside it goes before.
+``node`` and ``link`` of sliders may be patterns (``L1*``). ``from`` names a file with the section of such a joint, as
+``statejump identify`` writes it. Keys of ``--joint`` override those of the file.
 """
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ LINK, FROM = "link", "from"
 
 
 def put_in(made: Document, joints: Sequence[Mapping[str, str]], dimension: int) -> list[str]:
-    """Put joints into a document of a case; return what was chosen for them, a sentence each.
+    """Insert joints into the document of a case; return the choices of the import, one sentence each.
 
-    :raises StatejumpError: there is no such node, link, key or file
+    :raises StatejumpError: a node, link, key or file does not exist
     """
     chosen: list[str] = []
     for number, given in enumerate(joints, start=1):
@@ -108,7 +108,7 @@ def _one(key: str, name: str, known: Iterable[str]) -> str:
 
 
 def matching(key: str, pattern: str, known: Iterable[str]) -> list[str]:
-    """Return the names that a pattern means, one of none being a name."""
+    """Return the names that match a pattern; a text that matches none is itself a name."""
     found = [name for name in known if fnmatchcase(name, pattern)]
     return found or [_one(key, pattern, known)]
 
@@ -117,14 +117,14 @@ def _slider(made: Document, node: dict[str, Any], values: dict[str, Any], dimens
     if "axis" not in values:
         raise MissingKey("axis", code="slider_axis_missing", directions=", ".join("xyz"[:dimension]))
     place = values["axis"].index(1.0)
-    # The support gives way along the axis; across it the node stays held.
+    # The support no longer holds the node along the axis. Across it the node stays held.
     node["fixed"] = [axis for axis in node.get("fixed", ()) if axis != "xyz"[place]]
     made["slider"].append({"name": f"S_{node['name']}", "nodes": [node["name"]], **values})
 
 
 def _slider_in_link(made: Document, link: dict[str, Any], nodes: Mapping[str, Any], at: str | None,
                     values: dict[str, Any]) -> None:
-    """Cut a link off its node and hold it there by a slider along the link."""
+    """Separate a link from its node and connect both by a slider along the link."""
     ends = link["nodes"]
     name = ends[0] if at is None else _one("node", at, ends)
     other = ends[1] if name == ends[0] else ends[0]
@@ -132,7 +132,7 @@ def _slider_in_link(made: Document, link: dict[str, Any], nodes: Mapping[str, An
     own = {"name": f"{name}_{link['name']}", "position_m": list(nodes[name]["position_m"])}
     made["node"].append(own)
     link["nodes"] = [own["name"] if end == name else end for end in ends]
-    # The axis points into the link: it slides along it as the link is pulled.
+    # The axis points into the link, because it slides in this direction in tension.
     made["slider"].append({"name": f"S_{link['name']}", "nodes": [own["name"], name],
                            "axis": [round(float(part), 12) for part in way / np.linalg.norm(way)], **values})
 
@@ -158,7 +158,7 @@ def _revolute(made: Document, node: dict[str, Any], values: dict[str, Any], dime
 
 
 def _bearing(name: str, bearing: str | None, others: Sequence[str]) -> str:
-    """Return which link carries the bearing where nothing says it, and which could."""
+    """Return the default link that carries the bearing, and all possible ones."""
     if bearing is None:
         return f"revolute {name!r}: no bearing_link, the bearing does not turn" + (
             f"; {', '.join(map(repr, others))} could carry it" if others else "")

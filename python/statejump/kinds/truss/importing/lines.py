@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lines of a deck and of the files that it includes."""
+"""Lines of a deck and of its included files."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
@@ -8,18 +8,18 @@ from pathlib import Path
 from statejump.core.errors import Unreadable, printable, size
 from statejump.core.reading import is_file
 
-LARGEST_BYTES = 1 << 26  # of a deck with all that it includes
-DEEPEST = 10  # files that include each other
+LARGEST_BYTES = 1 << 26  # of a deck with all its included files
+DEEPEST = 10  # depth of included files
 
 
 class Line(int):
-    """The number of a line; of a line of an included file with that file's name."""
+    """The number of a line; in an included file it also has the name of the file."""
 
     file: str | None = None
 
     @classmethod
     def of(cls, number: int, file: str | None) -> int:
-        """Return a number that knows its file; None: the file of the deck itself."""
+        """Return a number that knows its file; None: the deck itself."""
         if file is None:
             return number
         line = cls(number)
@@ -34,7 +34,7 @@ class Line(int):
 
 
 def text_of(path: Path, most: int = LARGEST_BYTES) -> list[str]:
-    """Return the lines of a file. :raises Unreadable: there is none, it is too large or no text"""
+    """Return the lines of a file. :raises Unreadable: it does not exist, is too large or no text"""
     if not is_file(path):
         raise Unreadable(code="file_not_found", file=path)
     try:
@@ -44,7 +44,7 @@ def text_of(path: Path, most: int = LARGEST_BYTES) -> list[str]:
             raise Unreadable(code="file_too_large", file=path, largest=size(LARGEST_BYTES))
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
-        # Comments in the language of the user; names and numbers are ASCII in either.
+        # Comments may be in the user's language; names and numbers are ASCII in either encoding.
         text = content.decode("latin-1")
         if "\x00" in text:
             raise Unreadable(code="not_text_file", file=path) from None
@@ -54,10 +54,10 @@ def text_of(path: Path, most: int = LARGEST_BYTES) -> list[str]:
 
 
 class Source:
-    """Reads a deck and its included files, none of which may be outside its folder.
+    """Reads a deck and its included files, which must be inside its folder.
 
     :param path: the deck
-    :param included: returns the file that a line includes and the number of lines that name it; None: no INCLUDE
+    :param included: returns the file that a line includes, and the number of lines of that statement; None: no INCLUDE
     """
 
     def __init__(self, path: Path, included: Callable[[list[str], int], tuple[str, int] | None]) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Trusses without supports: models of sections, meshes and free bodies. The user holds them after the import."""
+"""Trusses without supports: models of sections, meshes and free bodies. The user adds supports after the import."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -13,12 +13,12 @@ REMEDY = "hold nodes with --fixed NODE=xyz, or with the key 'fixed' in the case,
 
 
 def checked(document: Document, parse: Callable[[Document], Made]) -> tuple[Made, str | None]:
-    """Return the case of a document, and a hint where parts of the truss have no support.
+    """Return the case of a document, and a hint if parts of the truss have no support.
 
-    Everything else is checked as if a node of each of these parts were held.
+    All other checks run as if one node of each of these parts were held.
 
     :param parse: returns the case of a document
-    :raises StatejumpError: what else is wrong
+    :raises StatejumpError: another check fails
     """
     try:
         return parse(document), None

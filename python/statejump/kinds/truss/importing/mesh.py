@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes and bars of a mesh, in any of the formats below: those of VTK by VTK, the others by meshio.
+"""Nodes and bars of a mesh. VTK reads its own formats, meshio the others.
 
-Meshes know no sections and no supports: what a bar is comes from its data, where they have the names of our keys, or
-from options; a mesh in SI units is taken as it is.
+Meshes have no sections and supports. The properties of bars are data with the names of our keys, or options. Meshes are
+in SI units.
 """
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ from statejump.kinds.truss.importing.model import LARGEST_BYTES, Bar, Deck, quot
 
 FORMATS = {".vtk": "vtk", ".vtu": "vtu", ".vtp": "vtp", ".msh": "gmsh", ".med": "med", ".mesh": "medit"}
 BY_VTK = (".vtk", ".vtu", ".vtp")
-ADDRESS = re.compile(r"\(0x[0-9a-f]+\)")  # of an object, in sentences of VTK
-LINES = ("line", "polyline", "line3")  # of two nodes, in straight parts, or with a node between that is left out
-# Data of cells that are taken, and the number of a bar that they are.
+ADDRESS = re.compile(r"\(0x[0-9a-f]+\)")  # address of an object in messages of VTK
+LINES = ("line", "polyline", "line3")  # cells of two nodes, of straight segments, or with an omitted middle node
+# Data of cells that are read, and the number of a bar that they set.
 DATA = {"young_modulus_Pa": "young_modulus", "cross_section_area_m2": "area", "thermal_expansion_per_K": "expansion",
         "density_kg_per_m3": "density", "poisson_ratio": "poisson_ratio", "temperature_change_K": "temperature_change"}
 
 
 def read(path: Path) -> Deck:
-    """Return what a mesh says; its nodes and bars are called by their numbers from 1.
+    """Return the content of a mesh; the names of nodes and bars are their numbers from 1.
 
-    :raises StatejumpError: one sentence with the file; there is no VTK or no meshio
+    :raises StatejumpError: one sentence with the file; or VTK or meshio is missing
     """
     mesh = _read(path)
     deck = Deck(path)
@@ -91,7 +91,7 @@ def _read(path: Path) -> Any:
 
 
 def _by_vtk(path: Path) -> Any:
-    """Return points, cells and data as meshio has them."""
+    """Return points, cells and data with the interface of meshio."""
     program = Path(__file__).with_name("vtk_lines.py")
     done = subprocess.run([sys.executable, str(program), str(path.resolve())], stdin=subprocess.DEVNULL,
                           capture_output=True, check=False)
@@ -125,7 +125,7 @@ def _by_meshio(path: Path) -> Any:
         raise StatejumpError(code="meshio_missing", file=path) from None
     form = FORMATS[path.suffix.lower()]
     try:
-        # meshio prints what it thinks of a file, and for some faults it wants to end the program.
+        # meshio prints remarks about a file, and for some faults it tries to end the program.
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()), \
                 warnings.catch_warnings():
             warnings.filterwarnings("error", message="string or file could not be read")  # numpy's, of a short file
@@ -134,13 +134,13 @@ def _by_meshio(path: Path) -> Any:
             return meshio.read(path, form)
     except StatejumpError:
         raise
-    except (Exception, SystemExit) as failure:  # what a parser of other people raises for a damaged file is anything
+    except (Exception, SystemExit) as failure:  # third-party parsers raise any exception for a damaged file
         cause = " ".join(str(failure).split()) or type(failure).__name__
         raise Unreadable(code="not_meshio", cause=cause[:200], file=path, form=form) from None
 
 
 def _check_hdf5(path: Path) -> None:
-    """Raise Unreadable for a file of HDF5 whose parts are in other files."""
+    """Raise Unreadable for a file of HDF5 with parts in other files."""
     h5py = libraries.h5py()
 
     with h5py.File(path, "r") as file:

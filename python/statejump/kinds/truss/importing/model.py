@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a deck says of a truss, whatever program it is for, and the account of what was taken and what was not."""
+"""The content of a deck, independent of its program, and the account of used and omitted cards."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -18,21 +18,21 @@ from statejump.kinds.truss.importing.reasons import REASONS, TABLE_REASON
 __all__ = ["LARGEST_BYTES", "Bar", "Deck", "Options", "Spring", "quoted", "text_of"]
 
 BENDING = "--beams-as-bars"
-MOST_SHOWN = 5  # further items of a refusal
-MOST_ITEMS = 1_000_000  # of a deck: nodes, bars, members of sets
+MOST_SHOWN = 5  # further items in a refusal
+MOST_ITEMS = 1_000_000  # largest number of nodes, bars, and members of sets of a deck
 SUFFIXES = {".inp": "abaqus", ".bdf": "nastran", ".dat": "nastran", ".nas": "nastran", ".csv": "tables",
             ".vtk": "mesh", ".vtu": "mesh", ".vtp": "mesh", ".msh": "mesh", ".med": "mesh", ".mesh": "mesh"}
 
 
 @dataclass
 class Bar:
-    """An element that becomes a link. Numbers are in the units of the deck; None: the deck does not say.
+    """An element that becomes a link. Numbers are in the units of the deck; None: not in the deck.
 
-    :param expansion_table: temperatures and secant coefficients, where these depend on temperature
+    :param expansion_table: temperatures and secant coefficients, if these depend on temperature
     :param expansion_zero: temperature at which the secants begin
-    :param more_mass: per length, besides that of the density
-    :param why_no_area: why the deck's section gives no area
-    :param bends: whether it is a beam whose bending is left out
+    :param more_mass: mass per length besides that of the density
+    :param why_no_area: reason why the deck's section gives no area
+    :param bends: whether it is a beam whose bending is omitted
     """
 
     name: str
@@ -65,7 +65,7 @@ class RigidBody:
 class Moment:
     """A moment on a node.
 
-    :param waiver: what ``--ignore`` must name; None: the card
+    :param waiver: argument of ``--ignore`` that omits it; None: the card
     """
 
     line: int
@@ -87,15 +87,15 @@ class Equation:
     terms: list[tuple[str, np.ndarray, float]]
 
     def follow(self, joined: Mapping[str, str]) -> None:
-        """Name in its terms the nodes that others became."""
+        """Replace in its terms the names of nodes that were merged into others."""
         self.terms[:] = [(joined.get(node, node), way, factor) for node, way, factor in self.terms]
 
 
 @dataclass
 class Follower:
-    """A node that follows others.
+    """A node whose motion follows from others.
 
-    :param equations: how it follows; none: that needs rotations
+    :param equations: equations of its motion; none: they need rotations
     """
 
     line: int
@@ -123,12 +123,12 @@ class Spring:
 
 @dataclass(frozen=True)
 class Options:
-    """What the user decides about cards.
+    """The user's choices for cards.
 
-    :param ignored: names of cards and fields that are left out although they have influence
+    :param ignored: names of cards and fields that are omitted although they have influence
     :param beams_as_bars: whether beams become pin-jointed bars
     :param step: number of the step or subcase; None: the first one
-    :param circ: what the one length of a CIRC section is: ``radius`` or ``diameter``
+    :param circ: meaning of the one length of a CIRC section: ``radius`` or ``diameter``
     """
 
     ignored: frozenset[str] = frozenset()
@@ -141,16 +141,16 @@ class Options:
 class Deck:
     """A truss in the units of its deck.
 
-    :param temperature: of nodes, absolute or from zero as the deck has it
+    :param temperature: of nodes, absolute or from zero as in the deck
     :param held: directions in which a node does not move, besides those of ``fixed``
     :param mass: lumped at nodes
     :param mass_scale: factor of all masses and densities
     :param gravity: acceleration of all masses
-    :param refused: first line, reason, its sentence and count by card and the option that waives it
-    :param taken: count by card and what became of it
-    :param left: first line and count by card and why it was left out
-    :param named_units: the file names the units of its numbers
-    :param choices: what was chosen where the user says nothing, a sentence each
+    :param refused: first line, reason, its sentence and count, by card and the option that waives it
+    :param taken: count by card and its result
+    :param left: first line and count, by card and the reason of the omission
+    :param named_units: whether the file names the units of its numbers
+    :param choices: choices of the import where the user made none, one sentence each
     """
 
     path: Path
@@ -160,7 +160,7 @@ class Deck:
     fixed: dict[str, set[str]] = field(default_factory=dict)
     held: dict[str, list[tuple[float, float, float]]] = field(default_factory=dict)
     force: dict[str, list[float]] = field(default_factory=dict)
-    force_line: dict[str, tuple[int, str]] = field(default_factory=dict)  # where the first force of a node stands
+    force_line: dict[str, tuple[int, str]] = field(default_factory=dict)  # line and card of the first force of a node
     springs: list[Spring] = field(default_factory=list)
     moments: list[Moment] = field(default_factory=list)
     rigid: list[RigidBody] = field(default_factory=list)
@@ -174,7 +174,7 @@ class Deck:
     initial: dict[str, float] = field(default_factory=dict)
     taken: dict[tuple[str, str], int] = field(default_factory=dict)
     left: dict[tuple[str, str], tuple[int, int]] = field(default_factory=dict)
-    step: int = 0  # which static one is taken; 0: none
+    step: int = 0  # number of the static step; 0: none
     refused: dict[tuple[str, str], tuple[int, str, str, int]] = field(default_factory=dict)
     waived: set[str] = field(default_factory=set)
     named_units: bool = False
@@ -189,20 +189,20 @@ class Deck:
         return found
 
     def take(self, card: str, what: str, count: int = 1) -> None:
-        """Note that something of a card became part of the truss."""
+        """Record that a part of a card became part of the truss."""
         self.taken[card, what] = self.taken.get((card, what), 0) + count
 
     def leave(self, card: str, why: str, line: int) -> None:
-        """Note that something of a card did not."""
+        """Record that a part of a card was omitted."""
         first, count = self.left.get((card, why), (line, 0))
         self.left[card, why] = (first, count + 1)
 
     def refuse(self, card: str, why: str, line: int, waiver: str | None = None, **values: str) -> None:
-        """Note that something of a card has influence and is not supported; ``--ignore`` leaves it out.
+        """Record that a part of a card has influence and is not supported; ``--ignore`` omits it.
 
         :param why: key of ``REASONS``, or a sentence of the table of cards
-        :param waiver: what ``--ignore`` must name; None: the card. It ends with ``=`` or begins with ``--`` where it
-            is an option of its own
+        :param waiver: argument of ``--ignore`` that omits it; None: the card. It ends with ``=`` or begins with ``--``
+            if it is an option of its own
         :param values: numbers and names in the sentence of the reason
         """
         reason, why = (why, REASONS[why].format_map(values)) if why in REASONS else (TABLE_REASON, why)
@@ -215,10 +215,10 @@ class Deck:
         self.refused[card, waiver] = (first, said[0], said[1], count + 1)
 
     def settle(self) -> None:
-        """Refuse what is not supported. :raises StatejumpError: one sentence with card, line and option"""
+        """Raise an error for unsupported cards. :raises StatejumpError: one sentence with card, line and option"""
         if not self.refused:
             return
-        # Bending first: no other card matters where the user has to decide about it.
+        # Bending first, because the user has to decide about it before other cards matter.
         found = sorted(self.refused.items(), key=lambda item: (item[0][1] != BENDING, item[1][0]))
         (card, waiver), (line, reason, why, _) = found[0]
         shown = [f"{quoted(also)[1:-1]} (line {at})" for (also, _), (at, *_) in found[1:MOST_SHOWN + 1]]
@@ -233,16 +233,16 @@ class Deck:
             if waiver.startswith("--") else f"--ignore {_argument(waiver)} leaves it out")
 
     def check_waived(self) -> None:
-        """Refuse an ``--ignore`` that names nothing of the deck. :raises NotAllowed: there is one"""
+        """Refuse an ``--ignore`` that matches nothing in the deck. :raises NotAllowed: there is one"""
         for name in sorted(self.options.ignored - self.waived):
             raise NotAllowed("--ignore", name, code="nothing_to_ignore")
 
     def fail(self, line: int, code: str, card: str = "", **details: Any) -> Unreadable:
-        """Return why the deck cannot be read.
+        """Return the error for an unreadable deck.
 
         :param line: 0 if unknown
         :param code: of ``CODES``, which names the details
-        :param card: the card or keyword that is meant
+        :param card: the card or keyword
         """
         where = [f"line {line}"] if line else []
         what = ": ".join([*where, *filter(None, [card]), CODES[code].what.format_map(details)])
@@ -254,7 +254,7 @@ class Deck:
             raise self.fail(line, "deck_too_many_items", most=MOST_ITEMS)
 
     def add_node(self, line: int, name: str, position: tuple[float, float, float]) -> None:
-        """Add a node. :raises Unreadable: another one has its name"""
+        """Add a node. :raises Unreadable: another node has its name"""
         if name in self.nodes:
             raise self.fail(line, "deck_duplicate", what_it_is="node", name=quoted(name))
         self.room(line, len(self.nodes) + 1)
@@ -286,7 +286,7 @@ class Deck:
         self.mass[name] = self.mass.get(name, 0.0) + mass
 
     def account(self) -> list[Shown]:
-        """Return what was taken and what was left out as tables."""
+        """Return used and omitted cards as tables."""
         shown = [Shown("taken", ("card", "count", "became"),
                        [(card, str(count), what) for (card, what), count in sorted(self.taken.items())],
                        left=("card", "became"))]
@@ -296,18 +296,18 @@ class Deck:
         return shown
 
     def left_rows(self) -> list[tuple[str, str, str, str]]:
-        """Return the rows of what was left out, in the order of the deck."""
+        """Return the rows of omitted cards, in the order of the deck."""
         return [(card, str(count), str(line) if line else "", why)
                 for (card, why), (line, count) in sorted(self.left.items(), key=lambda item: item[1])]
 
 
 def _argument(waiver: str) -> str:
-    """Return what --ignore needs as a shell takes it."""
+    """Return the argument of --ignore, quoted for a shell."""
     shown = quoted(waiver)
     return shown if " " in shown else shown[1:-1]
 
 
 def quoted(text: str) -> str:
-    """Return a word of a deck as a sentence has it."""
+    """Return a word of a deck, quoted for a sentence."""
     shown = repr(printable(text))
     return shown if len(shown) <= 40 else shown[:36] + "...'"

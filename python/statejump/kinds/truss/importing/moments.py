@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Moments on nodes. Rods and bars of a truss have no rotations, so that a moment counts only where it would bend."""
+"""Moments on nodes. Rods and bars of a truss have no rotations, so a moment matters only if it would bend a beam."""
 from __future__ import annotations
 
 import numpy as np
@@ -9,7 +9,7 @@ from statejump.kinds.truss.importing.springs import ALONG
 
 
 class Turning:
-    """What a rotation of a node turns: the beams that are joined with it, also by rigid bodies."""
+    """The beams that rotate with a node, also through rigid bodies."""
 
     def __init__(self, deck: Deck) -> None:
         self.deck = deck
@@ -24,10 +24,10 @@ class Turning:
         self.places = dict(deck.nodes)
 
     def bends(self, node: str, moment: np.ndarray) -> bool:
-        """Whether a moment bends a beam.
+        """Return whether a moment bends a beam.
 
-        Rods feel no moment but about their own axis, and torsion of straight bars does not move their ends. In beams
-        it stays torsion if all that are joined with the node are along the moment.
+        Rods carry only moments about their own axis, and torsion of straight bars does not move their ends. In beams
+        the moment causes torsion only if all beams that are connected to the node are along it.
         """
         reached, waiting = {node}, [node]
         while waiting:
@@ -43,7 +43,7 @@ class Turning:
         return False
 
     def take(self, line: int, card: str, node: str, moment: np.ndarray, waiver: str | None = None) -> None:
-        """Leave out a moment that moves no node; refuse one that bends a beam."""
+        """Omit a moment that moves no node; refuse one that bends a beam."""
         if not np.any(moment):
             self.deck.leave(card, "it is 0", line)
         elif self.bends(node, moment):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Areas of cross-sections by their dimensions, as the manuals of Nastran and CalculiX name them."""
+"""Areas of cross-sections from their dimensions, with the names of the manuals of Nastran and CalculiX."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
@@ -35,7 +35,7 @@ NASTRAN: dict[str, tuple[int, Callable[..., float]]] = {
 
 
 def nastran(shape: str, sizes: Sequence[float]) -> float | None:
-    """Return the area of a shape of PBARL; None: there is no such shape, or its dimensions make no section."""
+    """Return the area of a shape of PBARL; None: the shape is unknown, or its dimensions are invalid."""
     count, area = NASTRAN.get(shape, (0, None))
     if area is None or len(sizes) < count:
         return None
@@ -44,7 +44,8 @@ def nastran(shape: str, sizes: Sequence[float]) -> float | None:
 
 
 def taper(stations: Sequence[tuple[float, float]]) -> tuple[float, float]:
-    """Return the area of the bar that is as stiff as one whose area is linear between stations, and its mean area.
+    """Return the area of a uniform bar with the stiffness of one whose area is linear between stations, and its mean
+    area.
 
     :param stations: fractions of the length from 0 to 1, ascending, and areas there
     """
@@ -57,8 +58,8 @@ def taper(stations: Sequence[tuple[float, float]]) -> tuple[float, float]:
 
 
 def between(shape: str, first: tuple[float, float], last: tuple[float, float]) -> tuple[float, float] | None:
-    """Return the area of the bar that is as stiff as one whose two sizes are linear between its ends, and its mean
-    area; None: the shape has no two sizes.
+    """Return the area of a uniform bar with the stiffness of one whose two sizes are linear between its ends, and its
+    mean area; None: the shape does not have two sizes.
 
     :param shape: ``RECT`` or ``CIRC``, whose sizes are those of its two axes
     """
@@ -75,7 +76,7 @@ def between(shape: str, first: tuple[float, float], last: tuple[float, float]) -
 def calculix(shape: str, sizes: Sequence[float]) -> float | None:
     """Return the area of ``*SOLID SECTION`` (``AREA``) or of a shape of ``*BEAM SECTION``; None: it has none.
 
-    CIRC has the lengths of its two axes in CalculiX; one length is the diameter here. RECT of one length is a square.
+    CIRC has the lengths of its two axes in CalculiX; here one length is the diameter. RECT with one length is a square.
     """
     found: float | None = None
     match shape, [*sizes]:

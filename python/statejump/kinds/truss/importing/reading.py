@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Decks by their format: which reader reads a file."""
+"""Selection of the reader of a file by its format."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -10,11 +10,11 @@ from statejump.kinds.truss.importing.model import SUFFIXES, Deck, Options
 
 
 def read(path: Path, form: str | None = None, bars: Path | None = None, options: Options | None = None) -> Deck:
-    """Return what a deck says.
+    """Return the content of a deck.
 
     :param form: ``abaqus`` (CalculiX too), ``nastran``, ``tables`` or ``mesh``; None: by the suffix
-    :param bars: of ``tables`` the second table
-    :param options: what to do with cards of ``abaqus`` and ``nastran``
+    :param bars: the second table of ``tables``
+    :param options: choices for cards of ``abaqus`` and ``nastran``
     :raises StatejumpError: one sentence with file and line
     """
     form = form or SUFFIXES.get(path.suffix.lower())

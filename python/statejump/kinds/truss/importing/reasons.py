@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Why a card of a deck is not supported: the reason of ``deck_not_supported``, and its sentence."""
+"""Reasons why a card of a deck is not supported: the reason of ``deck_not_supported``, and its sentence."""
 from __future__ import annotations
 
 # Where the table of cards gives the sentence.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Springs between components of nodes as springs along a line."""
+"""Springs between components of nodes, converted to springs along a line."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -9,7 +9,8 @@ import numpy as np
 from statejump.kinds.truss.importing.model import Deck, Spring
 from statejump.kinds.truss.importing.supports import is_held
 
-# The sine of the angle between a spring and the line of its nodes that counts as none: decks have four digits at least.
+# Sine of the angle between a spring and the line of its nodes below which both are parallel, because decks have at
+# least four digits.
 ALONG = 1e-4
 
 
@@ -17,8 +18,8 @@ def add_spring(deck: Deck, line: int, card: str, name: str, stiffness: float,
                ends: Sequence[tuple[str, np.ndarray]]) -> None:
     """Add a spring between nodes, each with its direction, or between one node and the ground.
 
-    What it does across the line between its nodes a truss cannot: it is refused, unless one end is held in its
-    direction, and the spring is one to the ground. Supports must be known.
+    A truss cannot represent the effect of a spring across the line between its nodes. Such a spring is refused, unless
+    one end is held in its direction: it is then a spring to the ground. Supports must be known.
     """
     if not ends or not stiffness:
         deck.leave(card, "it has no stiffness or no node", line)
@@ -53,7 +54,7 @@ def add_spring(deck: Deck, line: int, card: str, name: str, stiffness: float,
 
 
 def _across(deck: Deck, ends: Sequence[tuple[str, np.ndarray]]) -> bool:
-    """Whether a spring between two nodes does not act along the line between them."""
+    """Return whether a spring between two nodes acts across the line between them."""
     (first, direction), (second, other) = ends
     way = np.subtract(deck.nodes[second], deck.nodes[first])
     length = np.linalg.norm(way)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a person checks after an import: sizes and ranges in SI units, and hints where they are implausible."""
+"""Quantities to check after an import: sizes and ranges in SI units, and hints if they are implausible."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -9,12 +9,12 @@ import numpy as np
 
 from statejump.core.tables import Shown
 
-# Of solids: polymers have more than 1e9 Pa, diamond has 1.2e12 Pa.
+# Range for solids: polymers have more than 1e9 Pa, diamond has 1.2e12 Pa.
 LEAST_MODULUS_PA, MOST_MODULUS_PA = 1e9, 1.3e12
-# A bar longer than 1 km or shorter than 0.1 mm, thicker than 1 m2 or than a tenth of its length squared is none of a
-# deployable structure.
+# No bar of a deployable structure is longer than 1 km, shorter than 0.1 mm, or thicker than 1 m2 or than a tenth of its
+# squared length.
 LONGEST_M, SHORTEST_M, THICKEST_M2, THICKEST = 1e3, 1e-4, 1.0, 0.1
-DENSEST_KG_PER_M3, LIGHTEST_KG_PER_M3 = 2.3e4, 1.0  # of osmium; of what is lighter than any foam
+DENSEST_KG_PER_M3, LIGHTEST_KG_PER_M3 = 2.3e4, 1.0  # density of osmium; less than the density of any foam
 UNITS = "--units mm-N, mm-kN-t, mm-kg-s, in-lbf or --length-unit and --force-unit name the units of the deck"
 
 
@@ -48,7 +48,7 @@ def summary(made: Mapping[str, Any]) -> Shown:
 
 
 def hints(made: Mapping[str, Any]) -> list[str]:
-    """Return what makes the units of a deck implausible, one sentence each."""
+    """Return the reasons why the units of a deck are implausible, one sentence each."""
     positions = _positions(made)
     links = made["link"]
     lengths = [_length(link, positions) for link in links]

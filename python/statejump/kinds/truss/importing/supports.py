@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Directions without motion as a case has them: along axes, and one of any direction."""
+"""Directions without motion in the form of a case: along axes, and one of any direction."""
 from __future__ import annotations
 
 from typing import Any
@@ -8,13 +8,13 @@ import numpy as np
 
 from statejump.kinds.truss.importing.model import Deck
 
-# The sine of the angle at which two directions are one: axes come from coordinates with four digits at least, and a
-# support that is off by this turns the displacement by as little.
+# Sine of the angle below which two directions are equal: axes come from coordinates with at least four digits. A
+# support with this error changes the direction of the displacement by as little.
 SAME = 1e-6
 
 
 def supports(deck: Deck, node: str, dimension: int) -> dict[str, Any]:
-    """Return ``fixed`` and ``guide_normal`` of a node. :raises Unreadable: a case has no such support"""
+    """Return ``fixed`` and ``guide_normal`` of a node. :raises Unreadable: a case cannot represent the support"""
     if node not in deck.held:
         fixed = [axis for axis in "xyz"[:dimension] if axis in deck.fixed.get(node, ())]
         return {"fixed": fixed} if fixed else {}

@@ -22,7 +22,7 @@ Cell = Union[str, float]
 
 
 def read(nodes: Path, bars: Path) -> Deck:
-    """Return what two tables say, in SI units.
+    """Return the content of two tables, in SI units.
 
     :raises Unreadable: one sentence with file and line
     """
@@ -76,7 +76,7 @@ def _rows(deck: Deck, path: Path, needed: Sequence[str], more: Sequence[str]) ->
 
 
 def _optional(row: dict[str, Cell], key: str) -> float | None:
-    """Return the number of a cell that may be empty or not there."""
+    """Return the number of a cell that may be empty or missing."""
     value = row.get(key)
     return value if isinstance(value, float) and value == value else None
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A deck as a case document: units, dimension, temperatures, joints that are put in by name."""
+"""A deck as a case document: units, dimension, temperatures, and joints that are inserted by name."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -17,16 +17,16 @@ from statejump.kinds.truss.importing.supports import supports
 from statejump.kinds.truss.importing.units import Units, in_units
 from statejump.kinds.truss.sections import MOST_DENSITY_KG_PER_M3, MOST_EXPANSION_PER_K
 
-# A coordinate that differs by less, over the size of the truss, is the same: decks have eight digits.
+# A smaller difference of coordinates, over the size of the truss, counts as zero, because decks have eight digits.
 FLAT = 1e-9
-# A coefficient that is smaller beside the largest one of its equation comes from the rounding of directions.
+# A smaller coefficient, over the largest one of its equation, comes from the rounding of directions.
 ROUNDING = 1e-12
-# Length of a spring to the ground over the size of the truss: a node that moves across it by a thousandth of the size
-# feels a millionth of its force. Positions keep 13 digits.
+# Length of a spring to the ground, over the size of the truss. If a node moves across the spring by a thousandth of the
+# size, it feels a millionth of its force. Positions keep 13 digits.
 FAR, FARTHEST_M = 1e3, 9e5
-# Of a bar without density where gravity acts: cases need a mass, of which this is none beside others.
+# Mass of a bar without density under gravity: cases need a mass, and this one is negligible.
 WEIGHTLESS_KG = 1e-15
-# What gives all links a number that the deck does not say.
+# Options that give all links a number that the deck lacks.
 OPTIONS = {"young_modulus_Pa": "--young-modulus", "cross_section_area_m2": "--area",
            "thermal_expansion_per_K": "--thermal-expansion"}
 
@@ -38,18 +38,18 @@ def case_document(
     reflector: tuple[Sequence[str], Sequence[float]] | None = None, links: Mapping[str, float] | None = None,
     fixed: Sequence[tuple[str, str]] = (), check_ignored: bool = True,
 ) -> Document:
-    """Return the case of a deck; what becomes of it is noted in the deck's account.
+    """Return the case of a deck; the deck's account records the use of its cards.
 
     :param units: units of the deck
-    :param temperature_change_K: of all links, of a deck without temperatures
-    :param density_kg_per_m3: of links whose density the deck does not say
-    :param joints: what ``--joint`` says, see :mod:`~statejump.kinds.truss.importing.joints`
-    :param sections: sections that the deck does not have; ``thermal`` stands for its temperatures
+    :param temperature_change_K: of all links, for a deck without temperatures
+    :param density_kg_per_m3: of links without density in the deck
+    :param joints: arguments of ``--joint``, see :mod:`~statejump.kinds.truss.importing.joints`
+    :param sections: sections that the deck lacks; ``thermal`` replaces its temperatures
     :param reflector: nodes of a reflecting surface, names or patterns, and its axis
-    :param links: keys of links whose number the deck does not say
-    :param fixed: names or patterns of nodes, and the directions in which they are held too
-    :param check_ignored: whether an item of ``Options.ignored`` that the deck does not have is refused
-    :raises StatejumpError: a link lacks a number, there is no such node
+    :param links: keys of links whose number the deck lacks
+    :param fixed: names or patterns of nodes, and further directions in which they are held
+    :param check_ignored: whether to refuse an item of ``Options.ignored`` that the deck does not have
+    :raises StatejumpError: a link lacks a number, or a node does not exist
     """
     used = carriers(deck) | deck.equation_directions().keys()
     _check_unused(deck, used)
@@ -99,7 +99,7 @@ def _hold(made: Document, fixed: Sequence[tuple[str, str]], dimension: int) -> N
 
 
 def _check_unused(deck: Deck, used: set[str]) -> None:
-    """Refuse what acts on a node where no bar and no spring ends; note the others."""
+    """Refuse loads on a node without bars and springs; record other items there."""
     acting = [(deck.force_line[node], node, "force") for node, force in deck.force.items()
               if node in deck.force_line and any(force)]
     acting += [(deck.mass_line[node], node, "mass") for node, mass in deck.mass.items() if mass]
@@ -122,7 +122,7 @@ def _dimension(deck: Deck, used: set[str]) -> int:
 
 
 def _springs(deck: Deck, made: Document, units: Units, dimension: int) -> None:
-    """Add springs; one to the ground in a direction ends at a node far away, so that it acts in that direction only."""
+    """Add springs. A spring to the ground in a direction ends at a far node, so that it acts in that direction only."""
     places = np.array([node["position_m"] for node in made["node"]])
     size = float(np.ptp(places, axis=0).max()) or 1.0
     for spring in deck.springs:
@@ -138,7 +138,7 @@ def _springs(deck: Deck, made: Document, units: Units, dimension: int) -> None:
 
 
 def _constraint(name: str, equation: Equation) -> dict[str, Any]:
-    """Return the constraint of an equation; what rounding of directions leaves of a coefficient is none."""
+    """Return the constraint of an equation, without coefficients that come from the rounding of directions."""
     sums: dict[tuple[str, str], float] = {}
     for node, way, factor in equation.terms:
         for axis, part in zip("xyz", way):
@@ -150,7 +150,7 @@ def _constraint(name: str, equation: Equation) -> dict[str, Any]:
 
 
 def _expansions(deck: Deck, made: Document) -> None:
-    """Give links the coefficients that follow the temperature, one of each table and temperature free of stress."""
+    """Give links coefficients that depend on temperature: one for each table and stress-free temperature."""
     names: dict[tuple[tuple[tuple[float, float], ...], float, float], str] = {}
     for bar, link in zip(deck.bars, made["link"]):
         if not bar.expansion_table:
@@ -164,10 +164,10 @@ def _expansions(deck: Deck, made: Document) -> None:
 
 
 def _leave_impossible(deck: Deck, made: Document, *, heated: bool, weighed: bool) -> None:
-    """Leave out numbers that no case has and that have no influence.
+    """Omit numbers that are out of range and have no influence.
 
-    These are expansions of a truss that nothing heats, and densities where no gravity acts. Decks of tests have 1 of
-    both, others a weight for a mass.
+    These are expansions of a truss that nothing heats, and densities without gravity. Some decks have 1 for both,
+    others a weight for a mass.
     """
     for bar, link in zip(deck.bars, made["link"]):
         expansion, density = link.get("thermal_expansion_per_K", 0.0), link.get("density_kg_per_m3", 0.0)
@@ -181,7 +181,7 @@ def _leave_impossible(deck: Deck, made: Document, *, heated: bool, weighed: bool
 
 
 def _free(deck: Deck, bar: Bar) -> float:
-    """Return the temperature at which a bar is free of stress."""
+    """Return the stress-free temperature of a bar."""
     if bar.reference_temperature is not None:
         return bar.reference_temperature
     return sum(deck.initial.get(end, 0.0) for end in bar.nodes) / 2
@@ -194,7 +194,7 @@ def _ground(deck: Deck, spring: Spring, name: str, units: Units, length: float, 
 
 
 def node_name(name: str) -> str:
-    """Return how a node of a deck is called: numbers begin with N, those of an instance with its name."""
+    """Return the name of a node of a deck: numbers begin with N, those of an instance with its name."""
     return _called("N", name)
 
 
@@ -203,7 +203,7 @@ def _called(letter: str, name: str) -> str:
 
 
 def _changes(deck: Deck, given: float | None) -> list[float]:
-    """Return the temperature change of every bar: at the mean of its ends, from where it is free of stress."""
+    """Return the temperature change of every bar, from its stress-free temperature to the mean of its ends."""
     found = []
     for bar in deck.bars:
         change = bar.temperature_change

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Program that reads the lines of a file by VTK: ``python vtk_lines.py FILE`` writes arrays to standard output.
+"""Program that reads the lines of a file with VTK: ``python vtk_lines.py FILE`` writes arrays to standard output.
 
-It is a process of its own because some damaged files end the process that reads them. It imports nothing of the
+It is a separate process, because some damaged files crash the process that reads them. It imports nothing of the
 package.
 """
 from __future__ import annotations
@@ -23,7 +23,7 @@ NOT_READ = 3  # exit status
 
 
 def grid_of(path: str) -> Any:
-    """Return what a file holds as an unstructured grid. :raises SystemExit: VTK reports an error"""
+    """Return the content of a file as an unstructured grid. :raises SystemExit: VTK reports an error"""
     window = vtkStringOutputWindow()
     vtkOutputWindow.SetInstance(window)
     reader: Any = vtkDataSetReader() if path.lower().endswith(".vtk") else vtkXMLGenericDataObjectReader()
@@ -43,7 +43,8 @@ def grid_of(path: str) -> Any:
 
 
 def arrays_of(grid: Any) -> dict[str, np.ndarray]:
-    """Return points, names of data, and block by block of cells of one type its name, ends and places of its lines."""
+    """Return points, names of data, and for each block of cells of one type its name, the ends, and the positions of
+    its lines."""
     types = vtk_to_numpy(grid.GetCellTypesArray()) if grid.GetNumberOfCells() else np.zeros(0, dtype=np.uint8)
     cells = grid.GetCells()
     offsets, nodes = (vtk_to_numpy(part) for part in (cells.GetOffsetsArray(), cells.GetConnectivityArray()))

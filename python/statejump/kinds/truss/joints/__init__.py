@@ -12,7 +12,7 @@ from statejump.kinds.truss.joints.revolute import REVOLUTE, Revolute
 from statejump.kinds.truss.joints.slider import SLIDER, Slider
 from statejump.schema.fields import Section, definition, tables
 
-# In the order in which results list them. A new type is added to this tuple and to the lists.
+# In the order of results. To add a type, add it to this tuple and to the lists.
 JOINTS: tuple[JointType[Any, Any], ...] = (SLIDER, REVOLUTE, LATCH_HINGE, IWAN_JOINT, BALL_JOINT)
 
 

@@ -35,7 +35,7 @@ class Axes(Protocol):
 
     @property
     def nodes(self) -> np.ndarray:
-        """(s, 2) int, the second GROUND or a node that is held to the first across the axis."""
+        """(s, 2) int; the second is GROUND, or a node that the joint constrains across the axis."""
 
     @property
     def axis(self) -> np.ndarray:
@@ -47,7 +47,7 @@ ArraysType = TypeVar("ArraysType", bound=Axes)
 
 
 class AlongAxis(JointType[ItemType, ArraysType]):
-    """Between two nodes such a joint also holds them together across the axis; on ground supports of the node do."""
+    """Between two nodes such a joint also constrains both across the axis; on ground the supports of the node do."""
 
     noun: ClassVar[str]  # in sentences
 
@@ -68,7 +68,7 @@ class AlongAxis(JointType[ItemType, ArraysType]):
         on_ground = np.flatnonzero(joints.nodes[:, 1] == GROUND)
         carrier, axis = joints.nodes[on_ground, 0], joints.axis[on_ground]
         guide = nodes.guide_normal[carrier]
-        # Sum of n n^T over the directions in which supports hold the node: its rank is how many these are.
+        # Sum of n n^T over the directions in which supports hold the node. Its rank is the number of these directions.
         held = nodes.fixed[carrier][:, :, None] * np.eye(3) + guide[:, :, None] * guide[:, None, :]
         along = np.einsum("ki,kij,kj->k", axis, held, axis) > SAME_DIRECTION**2
         across = np.linalg.eigvalsh(held)[:, 1] <= SAME_DIRECTION**2
@@ -88,7 +88,7 @@ class AlongAxis(JointType[ItemType, ArraysType]):
         return joints.nodes[:, 0]
 
     def places(self, truss: ResolvedTruss, joints: ArraysType) -> tuple[np.ndarray, np.ndarray]:
-        """Return where its symbols are (s, 3), and what is up there in the plane (s, 3)."""
+        """Return the positions of its symbols (s, 3), and their upward directions in the plane (s, 3)."""
         along = joints.axis
         return (truss.nodes.position_m[joints.nodes[:, 0]],
                 np.stack((-along[:, 1], along[:, 0], np.zeros(len(along))), axis=1))

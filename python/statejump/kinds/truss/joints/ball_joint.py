@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ball joints with clearance: a ball that plays in a socket, with a cone of Coulomb friction; spatial trusses."""
+"""Ball joints with clearance: a ball in a socket, with a cone of Coulomb friction; spatial trusses."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 
 @definition
 class BallJoint(Item):
-    """A ball joint with clearance and Coulomb friction in a spatial truss: the ball, at one node, plays in the socket,
-    at another. A link carries and turns each, without spinning about its own axis; without a link a part does not
-    turn."""
+    """A ball joint with clearance and Coulomb friction in a spatial truss: the ball, at one node, moves in the socket,
+    at another. A link carries and rotates each part, without spin about its own axis; without a link a part does not
+    rotate."""
 
     socket_node: str = text(..., "where the socket's centre is")
     ball_node: str = text(..., "where the ball's centre is")
@@ -51,8 +51,8 @@ class BallJoints:
     names: Sequence[str]
     socket_node: np.ndarray  # int
     ball_node: np.ndarray  # int
-    socket_link: np.ndarray  # int, GROUND: the socket does not turn
-    ball_link: np.ndarray  # int, GROUND: the ball does not turn
+    socket_link: np.ndarray  # int, GROUND: the socket does not rotate
+    ball_link: np.ndarray  # int, GROUND: the ball does not rotate
     ball_radius_m: np.ndarray
     radial_clearance_m: np.ndarray  # at ΔT = 0
     friction_coefficient: np.ndarray

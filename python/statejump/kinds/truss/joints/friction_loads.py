@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodal forces that stand for the friction of a joint. Their resultant is none; a moment on a link is a pair of forces
-on its ends, across it: what twists a link about itself is left out, the solver's links have no such turn either."""
+"""Nodal forces that represent the friction of a joint. Their resultant is zero. A moment on a link becomes a pair of
+forces on its ends, across it. The part that twists a link about its own axis is omitted, because links of the solver do
+not twist."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -15,8 +16,8 @@ from statejump.kinds.truss.resolved import ResolvedTruss
 class Loads:
     """Forces of one joint after the other.
 
-    :param force_N: (joints, nodes, 3), added to
-    :param place_m: (nodes, 3), where nodes are in the state
+    :param force_N: (joints, nodes, 3), to which forces are added
+    :param place_m: (nodes, 3), positions of nodes in the state
     """
 
     truss: ResolvedTruss
@@ -40,12 +41,12 @@ class Loads:
 
     def rub(self, joint: int, nodes: tuple[int, int], links: tuple[int, int], friction_N: np.ndarray,
             offset_m: np.ndarray, arm_m: float) -> None:
-        """Add the friction of a round part in a hollow one, of both moments about their own nodes.
+        """Add the friction between a round part and a hollow one, with the moments on both about their own nodes.
 
         :param nodes: of the hollow part and of the round one; ``links`` likewise
         :param friction_N: on the round part
         :param offset_m: of the round part's centre from the hollow one's
-        :param arm_m: from the round part's centre to where they touch
+        :param arm_m: from the round part's centre to the contact point
         """
         distance = float(np.linalg.norm(offset_m))
         if distance == 0 or not friction_N.any():

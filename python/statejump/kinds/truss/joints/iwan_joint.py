@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Iwan joints: bolted joints that slip little by little, after Segalman's four parameters, in Jenkins elements.
+"""Iwan joints: bolted joints that slip gradually, with Segalman's four parameters, discretised by Jenkins elements.
 
 The engine's ``iwan_joint.hpp`` has the law and its source.
 """
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from statejump.kinds.truss.resolved import ResolvedTruss
 
 NUMBERS = ("tangent_stiffness_N_per_m", "slip_force_N", "exponent", "stiffness_ratio")
-LONGEST = 1e12  # interval over the first one: less than that of rounding
+LONGEST = 1e12  # longest interval over the first one, so that the first is above rounding
 # A bolt through two plates.
 BOLT: Strokes = (
     ((-0.9, -0.35), (0.9, -0.35), (0.9, 0.35), (-0.9, 0.35), (-0.9, -0.35)), ((-0.9, 0.0), (0.9, 0.0)),
@@ -35,8 +35,9 @@ BOLT: Strokes = (
 
 @definition
 class IwanJoint(Item):
-    """A bolted joint after Segalman's four-parameter Iwan model: the first node moves along an axis fixed in space, on
-    ground or on the second node, against springs of which more and more slip. It holds across the axis as a slider."""
+    """A bolted joint after Segalman's four-parameter Iwan model. The first node moves along an axis fixed in space, on
+    ground or on the second node, against springs of which more and more slip. Across the axis it is constrained as a
+    slider."""
 
     nodes: list[str] = texts(..., "one node, on ground, or two")
     axis: list[float] = numbers(..., "-", -1e9, 1e9, "of any length")
@@ -54,7 +55,7 @@ class IwanJoints:
     """Iwan joints: axis · (motion of the first node - motion of the second) slides."""
 
     names: Sequence[str]
-    nodes: np.ndarray  # (j, 2) int, the second GROUND or a node that is held to the first across the axis
+    nodes: np.ndarray  # (j, 2) int; the second is GROUND, or a node that the joint constrains across the axis
     axis: np.ndarray  # (j, 3) unit
     tangent_stiffness_N_per_m: np.ndarray
     slip_force_N: np.ndarray
@@ -108,7 +109,8 @@ class IwanJointType(AlongAxis[IwanJoint, IwanJoints]):
         )
 
     def friction_N(self, joints: IwanJoints, state: Mapping[str, np.ndarray]) -> np.ndarray:
-        return state["iwan_force_N"]  # all of its springs end in friction: without it the joint carries nothing
+        # All of its springs end in friction, so without friction the joint carries nothing.
+        return state["iwan_force_N"]
 
     def carried_friction(self, joints: IwanJoints, at: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         return np.abs(at["iwan_force_N"]), joints.slip_force_N

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Latch hinges: free play in rotation, stiffness beyond it, friction and a moment that preloads them."""
+"""Latch hinges: free play in rotation, stiffness beyond it, friction and a preload moment."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
 @definition
 class LatchHinge(Item):
-    """A hinge with a latch: the rotation of the second link against the first, or of one link against the ground,
-    is free within a play and meets a stiffness beyond it, against dry friction.
+    """A hinge with a latch: the second link rotates against the first, or one link against the ground. The rotation is
+    free within a play and meets a stiffness beyond it, against dry friction.
 
-    Angles as of torsion springs. The moment against a rotation from the drawn shape is preload + stiffness (rotation
-    beyond the play) ± friction.
+    Angles are those of torsion springs. The moment against a rotation from the reference configuration is preload +
+    stiffness (rotation beyond the play) ± friction.
     """
 
     links: list[str] = texts(..., "two links that share a place, or one")
@@ -119,7 +119,7 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
     def add_friction(self, loads: Loads, joints: LatchHinges, state: Mapping[str, np.ndarray]) -> None:
         for index, (moment, (first, second)) in enumerate(zip(self._friction_N_m(joints, state), joints.links)):
             against = moment * joints.axis[index]
-            # Against the ground the first link's own turn counts.
+            # Against the ground, the rotation of the first link itself counts.
             loads.turn(index, first, -against if second == GROUND else against)
             loads.turn(index, second, -against)
 
@@ -132,7 +132,7 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
 
     @staticmethod
     def _friction_N_m(joints: LatchHinges, state: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Return what of the moment of a state is friction."""
+        """Return the moment of friction in a state."""
         rotation = state["hinge_rotation_rad"]
         beyond = rotation - np.clip(rotation, -joints.deadband_rad, joints.deadband_rad)
         elastic = joints.preload_moment_N_m + joints.stiffness_N_m_per_rad * beyond

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a type of joint of a truss brings in Python: one object per type, in a file of its own.
+"""The Python part of a type of joint: one object per type, in a file of its own.
 
-Case, checks, arrays, solver, result, drawing, words, sensitivities, DEM and motion ask the registry
-(:data:`statejump.kinds.truss.joints.JOINTS`) and know no type. What a type cannot do is left out; where a model has no
-such joint, the type says so in a sentence.
+Case, checks, arrays, solver, result, drawing, texts, sensitivities, DEM and motion use the registry
+(:data:`statejump.kinds.truss.joints.JOINTS`) and know no single type. A type omits methods that it does not support. If
+a model has no such joint, the type returns the reason as a sentence.
 """
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ ArraysType = TypeVar("ArraysType")
 
 Strokes = tuple[tuple[tuple[float, float], ...], ...]  # in units of a symbol's size, the node at (0, 0)
 BLACK = "#000000"
-# Friction may double a contact's force for a moment; Hertz's stiffness grows with its cube root.
+# Friction may double a contact's force for a moment, and Hertz's stiffness is proportional to its cube root.
 IMPACT = 2 ** (1 / 3)
 
 
@@ -43,7 +43,7 @@ class ItemColumn:
 
 @dataclass(frozen=True)
 class Symbol:
-    """Symbols of a drawing, planar or spatial, at places (k, 3). Sizes are in units of the drawing's symbol size."""
+    """Symbols of a drawing, planar or spatial, at positions (k, 3). Sizes are in units of the drawing's symbol size."""
 
     places: np.ndarray
     marker: str | Strokes
@@ -52,14 +52,14 @@ class Symbol:
     marker_in_space: str | Strokes | None = None  # None: the same
     colour: str = BLACK
     face: str = "white"
-    order: float = 4.0  # what is higher covers what is lower
-    up: np.ndarray | None = None  # (k, 3) to where the marker's top points in the plane; None: up
-    line_in_space: np.ndarray | None = None  # (k, 3) unit: a line along it through the place
+    order: float = 4.0  # higher symbols cover lower ones
+    up: np.ndarray | None = None  # (k, 3) direction of the marker's top in the plane; None: up
+    line_in_space: np.ndarray | None = None  # (k, 3) unit: direction of a line through the position
 
 
 @dataclass(frozen=True)
 class Sampled:
-    """A run at its samples, as a type takes it to say what its contacts do."""
+    """Samples of a run, from which a type computes its contacts."""
 
     truss: ResolvedTruss
     position_m: np.ndarray  # (samples, nodes, 3)
@@ -69,7 +69,7 @@ class Sampled:
 
 @dataclass(frozen=True)
 class Contacts:
-    """What contacts do over the samples of a run; forces on the first part."""
+    """Contacts over the samples of a run; forces act on the first part."""
 
     gap_m: np.ndarray  # (samples, joints)
     point_m: np.ndarray  # (samples, joints, 3)
@@ -88,21 +88,21 @@ class Drawn:
 
 @dataclass(frozen=True)
 class ContactPart:
-    """Nodes that the DEM gives a contact part. A node has one: parts that are equal are one."""
+    """Nodes that get a contact part in the DEM. A node has one; equal parts are one."""
 
     nodes: np.ndarray  # (k,) GROUND: this joint gives no node a part
-    roles: list[tuple[Any, ...]]  # (k,) what the part is made of
-    shared: bool = True  # whether several joints may have one part
+    roles: list[tuple[Any, ...]]  # (k,) shape and material of the part
+    shared: bool = True  # whether several joints may share one part
 
 
 @dataclass(frozen=True)
 class Torsion:
-    """Moments between two links, or one and the ground, as the DEM has them of torsion springs."""
+    """Moments between two links, or a link and the ground, with the law of the DEM's torsion springs."""
 
     names: Sequence[str]
     links: np.ndarray  # (k, 2) int; (link, GROUND)
     axis: np.ndarray  # (k, 3) unit
-    stiffness_N_m_per_rad: np.ndarray  # (k,) the greatest
+    stiffness_N_m_per_rad: np.ndarray  # (k,) the largest one
 
 
 class JointType(Generic[ItemType, ArraysType]):
@@ -111,12 +111,12 @@ class JointType(Generic[ItemType, ArraysType]):
     section: ClassVar[str]
     Item: ClassVar[type[Item]]
     Arrays: ClassVar[type[Any]]  # dataclass: names, and a field of the name of each key that models use
-    columns: ClassVar[tuple[ItemColumn, ...]] = ()  # the first says where it is: a slide, an offset, a rotation
-    varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that a jump may follow
+    columns: ClassVar[tuple[ItemColumn, ...]] = ()  # the first is its position: a slide, an offset, a rotation
+    varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that may affect a jump
     has_temperature: ClassVar[bool] = False  # its items have a program and a temperature_fraction
     has_contacts: ClassVar[bool] = False  # two surfaces touch: it has rows among the contacts of a result
     turns: ClassVar[bool] = False  # its friction is a moment
-    not_in_dem: ClassVar[str] = ""  # what follows its name where the DEM refuses it; empty: the DEM has it
+    not_in_dem: ClassVar[str] = ""  # text after its name if the DEM refuses it; empty: the DEM supports it
 
     @property
     def items(self) -> str:
@@ -125,81 +125,80 @@ class JointType(Generic[ItemType, ArraysType]):
 
     @property
     def state_column(self) -> str:
-        """Name of the column of its states in the DEM's samples; the solver has statuses of its own."""
+        """Name of the column of its states in the samples of the DEM; the solver has other statuses."""
         return f"{self.section}_state"
 
     def where(self, name: str) -> dict[str, Any]:
-        """Return how failures name one of its joints."""
+        """Return the name of one of its joints in messages."""
         return {"item": f"{self.section} {name!r}", "joint": name}
 
     # ---------------------------------------------------------------- case
 
     def check_vectors(self, item: ItemType, dimension: int) -> None:
-        """Raise NotAllowed for a vector that does not fit the truss' dimension."""
+        """Raise NotAllowed for a vector whose length differs from the truss' dimension."""
 
     def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
-        """Raise an error for a name that is not there or does not fit."""
+        """Raise an error for a name that does not exist or does not match."""
 
     def may_be_wrong_vectors(self, items: ItemColumns[ItemType], dimension: int) -> np.ndarray:
-        """Return which items (n,) :meth:`check_vectors` is to look at: it must not miss one that is wrong."""
+        """Return the items (n,) that :meth:`check_vectors` has to check; must include all invalid ones."""
         return np.full(len(items), True)
 
     def may_be_wrong_references(self, items: ItemColumns[ItemType], around: Around) -> np.ndarray:
-        """Return which items (n,) :meth:`check_references` is to look at: it must not miss one that is wrong."""
+        """Return the items (n,) that :meth:`check_references` has to check; must include all invalid ones."""
         return np.full(len(items), True)
 
     def expands(self, item: ItemType) -> bool:
-        """Whether a joint that has a temperature follows it."""
+        """Return whether joints that have a temperature expand with it."""
         return False
 
     def resolve(self, items: Sequence[ItemType], known: References) -> ArraysType:
-        """Return the joints as arrays: the keys of their items, but for those of :meth:`derived`."""
+        """Return the joints as arrays: the keys of their items, except those of :meth:`derived`."""
         made: ArraysType = arrays_of(self.Arrays, self.Item, items, known, **self.derived(items, known))
         return made
 
     def derived(self, items: Sequence[ItemType], known: References) -> dict[str, Any]:
-        """Return the arrays whose values are not those of a key as it is given."""
+        """Return the arrays whose values differ from those of a key."""
         return {}
 
     def check_geometry(self, truss: ResolvedTruss, joints: ArraysType, ranges_K: np.ndarray) -> None:
-        """Raise an error for what is wrong with places, directions and clearances.
+        """Raise an error for invalid positions, directions and clearances.
 
         :param ranges_K: smallest and largest ΔT of every program (programs, 2)
         """
 
     def joined(self, joints: ArraysType) -> np.ndarray:
-        """Return the pairs of nodes (k, 2) that the joints hold together."""
+        """Return the pairs of nodes (k, 2) that the joints constrain."""
         return np.zeros((0, 2), dtype=int)
 
     # ---------------------------------------------------------------- solver
 
     def engine_arrays(self, truss: ResolvedTruss, joints: ArraysType) -> dict[str, Any]:
-        """Return the engine's parameters that are not arrays of the same name."""
+        """Return the engine's parameters that have no array of the same name."""
         return {}
 
     def path_refuses(self, joints: ArraysType) -> tuple[str, str] | None:
-        """Return name and code of the error of a joint without a quasi-static path: it moves from ``motion.start =
-        "drawn"``."""
+        """Return name and error code of a joint without a quasi-static path: it needs ``motion.start = "drawn"``."""
         return None
 
     # ---------------------------------------------------------------- result
 
     def contacts(self, run: Sampled, joints: ArraysType) -> Contacts:
-        """Return what the contacts of its joints do."""
+        """Return the contacts of its joints."""
         raise NotImplementedError
 
     def drawn(self, truss: ResolvedTruss, joints: ArraysType, labels: Sequence[str], taken: set[str]) -> Drawn:
         """Return the parts of the page's drawing.
 
         :param labels: names of its contacts
-        :param taken: names of parts that are there; those that are added here as well
+        :param taken: existing names of parts; the new ones are added
         """
         return Drawn([], [], np.zeros(0))
 
     # ---------------------------------------------------------------- drawing and words
 
     def place_nodes(self, truss: ResolvedTruss, joints: ArraysType) -> np.ndarray:
-        """Return the node (joints,) at which a point stands for a joint."""
+        """Return the node (joints,) at which a point represents a joint."""
         raise NotImplementedError
 
     def symbols(self, truss: ResolvedTruss, joints: ArraysType) -> list[Symbol]:
@@ -207,11 +206,11 @@ class JointType(Generic[ItemType, ArraysType]):
         raise NotImplementedError
 
     def legend(self, joints: ArraysType) -> str:
-        """Return what the legend says of its symbol, with the numbers that a drawing cannot show."""
+        """Return the text of the legend for its symbol, with the numbers that a drawing cannot show."""
         raise NotImplementedError
 
     def covered_nodes(self, joints: ArraysType) -> np.ndarray:
-        """Return the nodes that its symbols stand for."""
+        """Return the nodes that its symbols replace."""
         return np.zeros(0, dtype=int)
 
     def guided_nodes(self, joints: ArraysType) -> np.ndarray:
@@ -219,44 +218,46 @@ class JointType(Generic[ItemType, ArraysType]):
         return np.zeros(0, dtype=int)
 
     def sides(self, joints: ArraysType) -> Iterable[tuple[int, np.ndarray]]:
-        """Yield nodes of planar trusses whose names are to stand below a symbol, and its upward direction (2,)."""
+        """Yield nodes of planar trusses whose names are written below a symbol, and its upward direction (2,)."""
         return ()
 
     def describe(self, items: Sequence[ItemType]) -> str:
-        """Return a sentence on the joints of a case."""
+        """Return a sentence about the joints of a case."""
         raise NotImplementedError
 
     # ---------------------------------------------------------------- answers
 
     def parameters(self, joints: ArraysType) -> list[tuple[str, np.ndarray]]:
-        """Return keys and values (joints,) of what a jump may follow; 0 or infinity: that joint has none."""
+        """Return keys and values (joints,) of parameters that may affect a jump; 0 or infinity: the joint has none."""
         return [(key, getattr(joints, key)) for key in self.varied]
 
     def add_friction(self, loads: Loads, joints: ArraysType, state: Mapping[str, np.ndarray]) -> None:
-        """Add the forces that stand for the friction of its joints in one state of the solver."""
+        """Add the forces that represent the friction of its joints in one state of the solver."""
         raise NotImplementedError
 
     def without_friction(self, truss: ResolvedTruss) -> ResolvedTruss:
-        """Return the truss whose joints of this type have no friction and stay as warm as they are drawn."""
+        """Return the truss whose joints of this type have no friction, and the temperature of the reference
+        configuration."""
         raise NotImplementedError
 
     def unknown_friction(self, joints: ArraysType, state: Mapping[str, np.ndarray]) -> Iterable[int]:
-        """Return the joints whose friction in a state is not known."""
+        """Return the joints with unknown friction in a state."""
         return ()
 
     def carried_friction(self, joints: ArraysType, at: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        """Return the friction of its joints and its limits (joints,) [N], or [N m] of a type that turns, from its
-        columns at one sample of any model. Of a stop and friction together friction carries what it can."""
+        """Return the friction of its joints and its limits (joints,) [N], or [N m] for a type that rotates, from its
+        columns at one sample of any model. If stop and friction carry a force together, friction gets as much as it can
+        carry."""
         raise NotImplementedError
 
     # ---------------------------------------------------------------- DEM
 
     def dem_refuses(self, joints: ArraysType) -> tuple[str, str] | None:
-        """Return name and reason of a joint that the DEM does not have, though it has others of the type."""
+        """Return name and reason of a joint that the DEM does not support, although it supports others of the type."""
         return None
 
     def regularised_refuses(self, joints: ArraysType) -> tuple[str, str] | None:
-        """Return name and reason of a joint that cannot move by ``motion.scheme = "regularised"``."""
+        """Return name and reason of a joint that ``motion.scheme = "regularised"`` does not support."""
         return (joints.names[0], "has no contact of two bodies") if joints.names else None  # type: ignore[attr-defined]
 
     def contact_parts(self, joints: ArraysType) -> list[ContactPart]:
@@ -264,40 +265,42 @@ class JointType(Generic[ItemType, ArraysType]):
         return []
 
     def contact_nodes(self, joints: ArraysType) -> np.ndarray:
-        """Return the nodes (joints, k) whose bodies touch or carry what touches, the place of the contact first."""
+        """Return the nodes (joints, k) whose bodies touch or carry touching parts; the position of the contact
+        first."""
         return np.zeros((0, 1), dtype=int)
 
     def pushed_nodes(self, joints: ArraysType) -> np.ndarray:
-        """Return the nodes (joints, k) or GROUND that a contact pushes, whose masses it moves."""
+        """Return the nodes (joints, k), or GROUND, on which a contact acts; their masses move."""
         return self.contact_nodes(joints)
 
     def bodies_touch(self, joints: ArraysType) -> np.ndarray:
-        """Return which of its joints have bodies that touch in the DEM; an engine has the forces of the others."""
+        """Return the joints with bodies that touch in the DEM. For the others an engine computes the forces."""
         return np.full(len(self.contact_nodes(joints)), True)
 
     def reach_m(self, path: Course, joints: ArraysType) -> np.ndarray:
-        """Return how far from its place a contact's bodies extend [m] (joints,)."""
+        """Return the largest distance of a contact's bodies from its position [m] (joints,)."""
         return np.zeros(0)
 
     def contact_stiffness(self, path: Course, joints: ArraysType) -> tuple[np.ndarray, np.ndarray]:
-        """Return the nodes (joints, k) or GROUND that a contact pushes and its greatest stiffness [N/m] on the path."""
+        """Return the nodes (joints, k), or GROUND, on which a contact acts, and its largest stiffness [N/m] on the
+        path."""
         return np.zeros((0, 1), dtype=int), np.zeros(0)
 
     def gives_in_dem(self, path: Course, joints: ArraysType, told_m: float) -> list[str]:
-        """Return sentences on where joints that are rigid in the reduced model give way in the DEM by more than
+        """Return sentences about joints that are rigid in the reduced model and yield in the DEM by more than
         ``told_m`` [m]."""
         return []
 
     def torsion(self, joints: ArraysType) -> Torsion:
-        """Return what turns links against each other by a moment."""
+        """Return the moments by which it rotates links against each other."""
         return Torsion((), np.zeros((0, 2), dtype=int), np.zeros((0, 3)), np.zeros(0))
 
     def largest_turn_rad(self, path: Course, joints: ArraysType) -> np.ndarray:
-        """Return how far :meth:`torsion` turns from the drawn shape on the path (joints,)."""
+        """Return the largest rotation of :meth:`torsion` from the reference configuration on the path (joints,)."""
         return np.zeros(0)
 
     def scene(self, path: Course, joints: ArraysType) -> dict[str, Any]:
-        """Return what the YADE script gets beside the arrays."""
+        """Return data for the YADE script besides the arrays."""
         return {}
 
 

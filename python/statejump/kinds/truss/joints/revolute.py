@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Clearance revolutes: a journal that plays in a bearing, with Coulomb friction."""
+"""Clearance revolutes: a journal with clearance in a bearing, with Coulomb friction."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
 @definition
 class Revolute(Item):
-    """A clearance revolute joint with Coulomb friction: the journal, at one node, plays in the bearing, at
-    another. A link carries and turns each; without a link a part does not turn."""
+    """A clearance revolute joint with Coulomb friction: the journal, at one node, moves in the bearing, at another. A
+    link carries and rotates each part; without a link a part does not rotate."""
 
     bearing_node: str = text(..., "where the bearing's centre is")
     journal_node: str = text(..., "where the journal's centre is")
@@ -52,8 +52,8 @@ class Revolutes:
     names: Sequence[str]
     bearing_node: np.ndarray  # int
     journal_node: np.ndarray  # int
-    bearing_link: np.ndarray  # int, GROUND: the bearing does not turn
-    journal_link: np.ndarray  # int, GROUND: the journal does not turn
+    bearing_link: np.ndarray  # int, GROUND: the bearing does not rotate
+    journal_link: np.ndarray  # int, GROUND: the journal does not rotate
     axis: np.ndarray  # (r, 3) unit; z in planar trusses
     journal_radius_m: np.ndarray
     radial_clearance_m: np.ndarray  # at ΔT = 0

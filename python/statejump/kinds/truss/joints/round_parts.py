@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Joints with clearance: a round part at one node plays in a bore at another, with Coulomb friction."""
+"""Joints with clearance: a round part at one node in a bore at another, with Coulomb friction."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -28,18 +28,18 @@ ArraysType = TypeVar("ArraysType")
 class RoundParts(JointType[ItemType, ArraysType]):
     """Keys and arrays of both parts begin with their names: ``journal_node``, ``journal_radius_m``, ..."""
 
-    inner: ClassVar[str]  # the part that plays
-    outer: ClassVar[str]  # what it plays in
+    inner: ClassVar[str]  # name of the inner part
+    outer: ClassVar[str]  # name of the outer part
     eccentricity: ClassVar[str]  # columns: inner less outer centre
     normal_force: ClassVar[str]
     friction_force: ClassVar[str]
-    has_axis: ClassVar[bool] = True  # its arrays have the axis about which parts turn
+    has_axis: ClassVar[bool] = True  # whether its arrays have the axis of rotation of the parts
     has_temperature = True
     has_contacts = True
 
     @property
     def parts(self) -> tuple[str, str]:
-        """Both parts, the place of the contact first."""
+        """Names of both parts, the position of the contact first."""
         return self.outer, self.inner
 
     def _nodes(self, joints: ArraysType) -> np.ndarray:
@@ -50,8 +50,8 @@ class RoundParts(JointType[ItemType, ArraysType]):
         return found
 
     def hertz_stiffness(self, joints: Any) -> np.ndarray:
-        """Return K of F = K δ^1.5 [N/m^1.5] of every joint. Both parts are of one material and touch as a sphere of
-        R = R1 R2/(R2 - R1) on a plane, as bodies of the DEM do; the formulas are not those of its contact law."""
+        """Return K of F = K δ^1.5 [N/m^1.5] of every joint. Both parts are of one material and touch as a sphere of R =
+        R1 R2/(R2 - R1) on a plane, as bodies of the DEM do. The formulas are independent of its contact law."""
         inner, outer = (self.radius_m(joints, part) for part in (self.inner, self.outer))
         radius = physics.conforming_radius_m(inner, outer, joints.radial_clearance_m)
         modulus = physics.effective_young_modulus_Pa(joints.young_modulus_Pa, joints.poisson_ratio)
@@ -62,7 +62,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
         return 1.5 * self.hertz_stiffness(joints) * physics.shear_over_normal_stiffness(joints.poisson_ratio)
 
     def clearance_m(self, joints: Any, temperature_change_K: Any) -> np.ndarray:
-        """Return the radial clearance [m] where the joints are at these ΔT [K] (fraction included)."""
+        """Return the radial clearance [m] of the joints at these ΔT [K] (fraction included)."""
         grown = [getattr(joints, f"{part}_thermal_expansion_per_K") * self.radius_m(joints, part)
                  for part in self.parts]
         found: np.ndarray = joints.radial_clearance_m + temperature_change_K * (grown[0] - grown[1])
@@ -75,7 +75,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
             node, link = getattr(item, node_key), getattr(item, link_key)
             known_name(node_key, node, node, nodes, "node", **where)
             if link is None:
-                # Nothing at hand says how such a part turns.
+                # Nothing determines the rotation of such a part.
                 if not nodes[node].fixed and nodes[node].guide_normal is None:
                     raise MissingKey(link_key, code="rotating_part_unsupported", nodes=(node,), part=part,
                                      node_wanted=node, **where)
@@ -105,9 +105,9 @@ class RoundParts(JointType[ItemType, ArraysType]):
         return any(getattr(item, f"{part}_thermal_expansion_per_K") for part in self.parts)
 
     def check_parts(self, truss: ResolvedTruss, joints: Any, ranges_K: np.ndarray, apart_m: np.ndarray) -> None:
-        """Raise NotAllowed for parts that expand too far, or are drawn too far apart.
+        """Raise NotAllowed for parts that expand too far, or are too far apart in the reference configuration.
 
-        :param apart_m: distance of both parts' centres, as far as it closes the clearance (joints,)
+        :param apart_m: distance of both parts' centres, in the directions that close the clearance (joints,)
         """
         for side in (0, 1):
             changes = joints.temperature_fraction * ranges_K[joints.program, side]
@@ -135,7 +135,8 @@ class RoundParts(JointType[ItemType, ArraysType]):
                              **self.where(joints.names[index]))
 
     def offset_m(self, truss: ResolvedTruss, joints: ArraysType) -> np.ndarray:
-        """Return from the outer to the inner part's centre as drawn [m] (joints, 3)."""
+        """Return the vector from the outer to the inner part's centre in the reference configuration [m] (joints,
+        3)."""
         outer, inner = self._nodes(joints).T
         return truss.nodes.position_m[inner] - truss.nodes.position_m[outer]
 
@@ -143,13 +144,13 @@ class RoundParts(JointType[ItemType, ArraysType]):
         return self._nodes(joints)
 
     def normals(self, run: Sampled) -> np.ndarray:
-        """Return the unit normals of the contacts (samples, joints, 3); zero in the very middle."""
+        """Return the unit normals of the contacts (samples, joints, 3); zero for concentric parts."""
         offset = run.columns[self.eccentricity]
         distance = np.linalg.norm(offset, axis=2)[:, :, None]
         return np.divide(offset, distance, out=np.zeros_like(offset), where=distance > 0)
 
     def touching(self, run: Sampled, joints: Any, tangential_force_N: np.ndarray) -> Contacts:
-        """Return what the contacts do, from the force of friction on the inner part (samples, joints, 3)."""
+        """Return the contacts, from the friction force on the inner part (samples, joints, 3)."""
         normal = self.normals(run)
         outer = self.radius_m(joints, self.outer)
         return Contacts(
@@ -172,7 +173,8 @@ class RoundParts(JointType[ItemType, ArraysType]):
                 if label in taken:
                     continue
                 taken.add(label)
-                # About an axis in space a link's view along z has no angle of its own to tell.
+                # In space, the angle of a link in the view along z does not determine its rotation about the joint's
+                # axis.
                 turns = link != GROUND and truss.dimension == 2
                 angle = drawing.ref("links/angle_rad", truss.links.names[link]) if turns else 0.0
                 axis = {"axis": joints.axis[place].tolist()} if truss.dimension == 3 and self.has_axis else {}

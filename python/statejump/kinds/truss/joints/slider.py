@@ -35,9 +35,8 @@ STOPS: Strokes = (((-1.0, -0.55), (-1.0, 0.45)), ((1.0, -0.55), (1.0, 0.45)))
 
 @definition
 class Slider(Item):
-    """A frictional prismatic joint: the first node slides along an axis fixed in space, on ground or on
-    the second node. Between two nodes it also holds them together across the axis; on ground the
-    supports of the node do."""
+    """A prismatic joint with friction: the first node slides along an axis fixed in space, on ground or on the second
+    node. Between two nodes the joint also constrains both across the axis; on ground the supports of the node do."""
 
     nodes: list[str] = texts(..., "one node, on ground, or two")
     axis: list[float] = numbers(..., "-", -1e9, 1e9, "of any length")
@@ -60,7 +59,7 @@ class Sliders:
     friction_coefficient · normal_force_N, from -clearance_minus_m to clearance_plus_m."""
 
     names: Sequence[str]
-    nodes: np.ndarray  # (s, 2) int, the second GROUND or a node that is held to the first across the axis
+    nodes: np.ndarray  # (s, 2) int; the second is GROUND, or a node that the joint constrains across the axis
     axis: np.ndarray  # (s, 3) unit
     friction_coefficient: np.ndarray
     normal_force_N: np.ndarray
@@ -84,11 +83,11 @@ class Sliders:
 
     @property
     def have_springs(self) -> np.ndarray:
-        """Whether stops are soft or there is a play: in the DEM a prismatic joint, on ground too."""
+        """Whether stops are soft or there is a play. Such a slider is a prismatic joint in the DEM, also on ground."""
         return np.isfinite(self.stop_stiffness_N_per_m) | (self.play_m > 0)
 
     def soft_stop_N(self, slide_m: np.ndarray) -> np.ndarray:
-        """Return the force of soft stops on the sliders against their axes [N]; 0 of rigid ones."""
+        """Return the force of soft stops on the sliders against their axes [N]; 0 for rigid stops."""
         soft = np.isfinite(self.stop_stiffness_N_per_m)
         beyond = slide_m - np.clip(slide_m, -self.clearance_minus_m, self.clearance_plus_m)
         return np.asarray(np.where(soft, self.stop_stiffness_N_per_m, 0.0) * beyond)
@@ -102,7 +101,7 @@ class Sliders:
 class Pad:
     """Contacts of sliders with their floors: pads of a sphere on a plane."""
 
-    depth_m: np.ndarray  # at which the floor carries the normal force
+    depth_m: np.ndarray  # depth at which the floor carries the normal force
     normal_N_per_m: np.ndarray  # tangent stiffnesses at that depth
     tangential_N_per_m: np.ndarray
 
@@ -113,7 +112,7 @@ def _effective_modulus(sliders: Sliders) -> np.ndarray:
 
 def pad_hertz_stiffness(sliders: Sliders) -> np.ndarray:
     """Return K of F = K δ^1.5 [N/m^1.5] of every slider's pad on a plane, its floor or a stop. Both parts are of one
-    material; the formulas are Hertz's and Mindlin's, not the DEM's contact law."""
+    material. The formulas are Hertz's and Mindlin's, independent of the DEM's contact law."""
     return physics.hertz_stiffness_N_per_m15(_effective_modulus(sliders), sliders.pad_radius_m)
 
 
@@ -135,11 +134,11 @@ def pressing_directions(truss: ResolvedTruss, sliders: Sliders) -> np.ndarray:
     return np.array(found).reshape(-1, 3)
 
 
-AT_STOP = (3, 4)  # statuses at a stop, as the engine numbers them
+AT_STOP = (3, 4)  # numbers of the engine's statuses at a stop
 
 
 def with_sliders(truss: ResolvedTruss, joints: Axes) -> ResolvedTruss:
-    """Return the truss with sliders more, along the axes of joints, that have neither friction nor stops."""
+    """Return the truss with further sliders, along the axes of joints, without friction and stops."""
     sliders, count = truss.sliders, len(joints.names)
     nothing, no_stop = np.zeros(count), np.full(count, np.inf)
     more = {**dict.fromkeys(vars(sliders), nothing), "nodes": joints.nodes, "axis": joints.axis,
@@ -152,8 +151,8 @@ def with_sliders(truss: ResolvedTruss, joints: Axes) -> ResolvedTruss:
 
 
 def _across_N(path: Course, joints: Sliders, which: np.ndarray) -> np.ndarray:
-    """Return the largest force [N] across the axes of sliders (k,) that links, elements and dead loads put on their
-    first nodes."""
+    """Return the largest force [N] across the axes of sliders (k,) by links, elements and dead loads on their first
+    nodes."""
     truss, states = path.truss, path.states
     largest = []
     for node, axis in zip(joints.nodes[which, 0], joints.axis[which]):
@@ -170,7 +169,8 @@ def _across_N(path: Course, joints: Sliders, which: np.ndarray) -> np.ndarray:
 
 
 class SliderType(AlongAxis[Slider, Sliders]):
-    """Sliders, in the solver, in motion and in the DEM: there a pad on a floor on ground, an engine's between nodes."""
+    """Sliders, in the solver, in motion and in the DEM. In the DEM they are a pad on a floor on ground, or an engine
+    between nodes."""
 
     section = "slider"
     noun = "a slider"
@@ -202,7 +202,7 @@ class SliderType(AlongAxis[Slider, Sliders]):
                              **self.where(joints.names[index]))
 
     def engine_arrays(self, truss: ResolvedTruss, joints: Sliders) -> dict[str, Any]:
-        # What closes a play gives way, whatever else sticks rigidly.
+        # A play closes elastically, even if everything else sticks rigidly.
         loaded = ((truss.sticking != "rigid") | (joints.play_m > 0)) & (joints.normal_force_N > 0)
         return {
             **super().engine_arrays(truss, joints),
@@ -316,7 +316,7 @@ class SliderType(AlongAxis[Slider, Sliders]):
         return joints.nodes
 
     def reach_m(self, path: Course, joints: Sliders) -> np.ndarray:
-        # A floor ends where no pad gets to: twice as far as in the quasi-static model, and the pad itself.
+        # The length of the floor is twice the motion of the quasi-static model, and the pad itself.
         return joints.pad_radius_m + 2 * np.abs(path.states["slide_m"]).max(axis=0)
 
     def contact_stiffness(self, path: Course, joints: Sliders) -> tuple[np.ndarray, np.ndarray]:
@@ -342,12 +342,12 @@ class SliderType(AlongAxis[Slider, Sliders]):
 
     def _start_slip_m(self, truss: ResolvedTruss, joints: Sliders, slide_m: np.ndarray, friction_N: np.ndarray
                       ) -> np.ndarray:
-        """Return the slides at which friction carries nothing, in the middle of a play."""
+        """Return the slides without friction force, in the middle of a play."""
         bend = np.divide(friction_N, pads(joints).tangential_N_per_m, out=np.zeros_like(slide_m), where=friction_N != 0)
         closed = slide_m - bend - np.sign(friction_N) * joints.play_m / 2
         if truss.start_friction == FRICTIONLESS:
             return closed
-        # An open play is where it was drawn.
+        # An open play is at its position in the reference configuration.
         return np.where((joints.play_m > 0) & (friction_N == 0), 0.0, closed)
 
     def scene(self, path: Course, joints: Sliders) -> dict[str, Any]:
@@ -358,7 +358,7 @@ class SliderType(AlongAxis[Slider, Sliders]):
         start = {key: path.states[key][0] for key in ("slide_m", "slider_force_N")}
         friction = np.clip(joints.beside_soft_stops_N(start), -limit, limit)
         if path.truss.start_friction == FRICTIONLESS:
-            friction = 0 * limit  # what presses on a stop is the stop's
+            friction = 0 * limit  # the stop carries the whole force
         return {
             "friction_limit_N": limit, "friction_stiffness_N_per_m": pad.tangential_N_per_m,
             "stiffness_across_N_per_m": pad.normal_N_per_m, "stop_stiffness_N_per_m15": pad_hertz_stiffness(joints),

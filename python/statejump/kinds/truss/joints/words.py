@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How sentences and legends say numbers of many items."""
+"""Numbers of many items in sentences and legends."""
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
@@ -18,13 +18,13 @@ def count(items: Sequence[object], one: str) -> str:
 
 
 def spread(values: Iterable[float], unit: str = "-", digits: int = 4) -> str:
-    """Return the one value of many items, or from where to where their values go."""
+    """Return the common value of many items, or the range of their values."""
     known = [float(value) for value in values]
     low, high = min(known), max(known)
     return text(low, unit, digits) if low == high else f"{text(low, unit, digits)} to {text(high, unit, digits)}"
 
 
 def scaled(values: np.ndarray, scale: float, unit: str) -> str:
-    """Return one value or the range of several, in a unit that the values times ``scale`` have."""
+    """Return one value or the range of several, in a readable unit of the values times ``scale``."""
     low, high = values.min() * scale, values.max() * scale
     return f"{low:.4g} {unit}" if high - low <= 1e-9 * abs(high) else f"{low:.3g} to {high:.3g} {unit}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Decks of CalculiX and Abaqus. The table says what becomes of every keyword; the readers follow it."""
+"""Decks of CalculiX and Abaqus. A table declares the use of every keyword; the readers follow it."""
 from __future__ import annotations
 
 from collections import Counter
@@ -16,7 +16,8 @@ from statejump.kinds.truss.importing.bodies import settle_bodies
 from statejump.kinds.truss.importing.contract import IDLE, REFUSED, Card
 from statejump.kinds.truss.importing.model import Bar, Deck, Options
 
-# The order in which keywords are read; decks have them in any. Those of one stage are read in the order of the deck.
+# Order in which keywords are read, because decks have them in any order. Keywords of one stage are read in the order of
+# the deck.
 STAGES: tuple[dict[str, Reading], ...] = (
     {"SYSTEM": mesh.system, "NODE": mesh.node},
     {"NGEN": generation.ngen, "NSET": mesh.node_set, "NFILL": generation.nfill, "NCOPY": generation.ncopy},
@@ -28,20 +29,20 @@ STAGES: tuple[dict[str, Reading], ...] = (
     {"SOLID SECTION": sections.section, "BEAM SECTION": sections.section, "BEAM GENERAL SECTION": sections.general,
      "NODAL THICKNESS": sections.thickness,
      "MASS": sections.mass, "INITIAL CONDITIONS": loads.initial},
-    # After the steps: what they do depends on supports.
+    # Read after the steps, because their effect depends on supports.
     {"SPRING": sections.spring, "EQUATION": equations.equation},
 )
-# What is read with the steps, or says where parts begin and end.
+# Keywords that are read with the steps, or that delimit parts.
 TOGETHER = ("BOUNDARY", "CLOAD", "DLOAD", "TEMPERATURE", "AMPLITUDE", "STEP", "STATIC", "END STEP", "PART", "END PART",
             "ASSEMBLY", "END ASSEMBLY", "INSTANCE", "END INSTANCE", "PARAMETER")
-# The middle of a bar of three nodes: decks have eight digits, meshers put it there to six.
+# Tolerance of the middle node of a bar with three nodes: decks have eight digits, and meshers position it to six.
 MIDDLE = 1e-6
-# CalculiX takes keywords and parameters without their blanks.
+# CalculiX ignores blanks in keywords and parameters.
 BY_LETTERS = {name.replace("_", ""): (name.replace("_", " "), card) for name, card in KEYWORDS.items()}
 
 
 def read(path: Path, options: Options | None = None) -> Deck:
-    """Return what a deck says. :raises StatejumpError: one sentence with file and line"""
+    """Return the content of a deck. :raises StatejumpError: one sentence with file and line"""
     deck = Deck(path, options or Options())
     model = Model(deck)
     taken = [block for block in blocks(deck, path) if _check(model, block)]
@@ -69,7 +70,8 @@ def read(path: Path, options: Options | None = None) -> Deck:
 
 
 def _check(model: Model, block: Block) -> bool:
-    """Whether a keyword is read; it is refused, or noted as without influence, by the table."""
+    """Return whether a keyword is read; according to the table it is otherwise refused, or noted as without
+    influence."""
     deck = model.deck
     letters = block.name.replace(" ", "")
     if letters not in BY_LETTERS:
@@ -106,7 +108,7 @@ def _check_parameters(model: Model, block: Block, known: Card) -> None:
 
 
 def _steps(given: list[tuple[Block, Scope]]) -> tuple[list[loads.Step], list[tuple[Block, Scope]]]:
-    """Return the steps, of which the first has what stands outside of steps, and all blocks."""
+    """Return the steps and all blocks. The first step also has the blocks outside of steps."""
     steps = [loads.Step()]
     current = steps[0]
     for block, scope in given:
@@ -120,7 +122,7 @@ def _steps(given: list[tuple[Block, Scope]]) -> tuple[list[loads.Step], list[tup
 
 
 def _bars(model: Model) -> None:
-    """Make bars of elements, in two where something else happens at the middle node."""
+    """Make bars of elements. An element becomes two bars if something else acts at its middle node."""
     shared = Counter(end for one in model.elements.values() for end in set(one.nodes))
     shared.update(term[0] for one in model.deck.equations for term in one.terms)
     shared.update(moment.node for moment in model.deck.moments)
@@ -150,7 +152,7 @@ def _bars(model: Model) -> None:
 
 
 def _taper(model: Model, bar: Bar, section: Section) -> None:
-    """Give a bar the area and the density of one whose sizes are those of its nodes."""
+    """Give a bar with sizes at its nodes the area and the density of an equivalent uniform bar."""
     sizes = [model.thickness.get(end, (0.0, 0.0)) for end in bar.nodes]
     if found := profiles.between(section.shape, *sizes):
         bar.area, mean = found
@@ -159,7 +161,7 @@ def _taper(model: Model, bar: Bar, section: Section) -> None:
 
 
 def _splits(model: Model, one: Element, shared: Counter[str]) -> bool:
-    """Whether the middle node of an element is more than a point of a straight bar."""
+    """Return whether the middle node of an element is more than a point of a straight bar."""
     deck, middle = model.deck, one.nodes[1]
     first, between, last = (np.array(deck.nodes[end]) for end in one.nodes)
     if shared[middle] > 1 or any(deck.force.get(middle, ())) or middle in deck.mass or \

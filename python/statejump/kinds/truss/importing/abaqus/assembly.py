@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parts and instances: the blocks of a part, once for every instance with its scope."""
+"""Parts and instances: the blocks of a part are repeated for every instance, each with its scope."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -13,7 +13,7 @@ from statejump.kinds.truss.importing.model import quoted
 
 
 def flat(model: Model, blocks: list[Block]) -> list[tuple[Block, Scope]]:
-    """Return all blocks with their scopes, those of parts behind their instances."""
+    """Return all blocks with their scopes; the blocks of a part follow its instance."""
     parts: dict[str, list[Block]] = {}
     found: list[tuple[Block, Scope]] = []
     part: list[Block] | None = None

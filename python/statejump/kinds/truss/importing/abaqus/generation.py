@@ -101,7 +101,7 @@ def nfill(model: Model, block: Block, scope: Scope) -> None:
 
 
 def ncopy(model: Model, block: Block, scope: Scope) -> None:
-    """Nodes of a set, shifted and rotated, once or again and again."""
+    """Nodes of a set, shifted and rotated, once or repeatedly."""
     step = model.whole(block.line, model.needed(block, "CHANGE NUMBER"))
     source = list(model.nodes_of(block.line, model.needed(block, "OLD SET"), scope))
     times = model.whole(block.line, block.parameters.get("MULTIPLE") or "1")

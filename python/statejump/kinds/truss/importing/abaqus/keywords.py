@@ -26,7 +26,7 @@ class Block:
 
 
 def words(text: str) -> list[str]:
-    """Return what stands between commas, without blanks around; a comma in quotes is none."""
+    """Return the words between commas, without surrounding blanks; a comma in quotes does not separate."""
     if '"' not in text:
         return [word.strip() for word in text.split(",")]
     found, quoted = [""], False
@@ -78,8 +78,8 @@ def included(lines: list[str], place: int) -> tuple[str, int] | None:
 
 
 def blocks(deck: Deck, path: Path) -> Iterator[Block]:
-    """Yield every keyword with its data lines, of which those without any word are left out. Names of ``*PARAMETER`` in
-    angle brackets have their values."""
+    """Yield every keyword with its data lines, without empty ones. Names of ``*PARAMETER`` in angle brackets are
+    replaced by their values."""
     current: Block | None = None
     joined, begun = "", 0
     values: dict[str, str] = {}

@@ -19,7 +19,7 @@ STATIC = ("STATIC", "COUPLED TEMPERATURE-DISPLACEMENT", "UNCOUPLED TEMPERATURE-D
 
 @dataclass
 class Step:
-    """Blocks of a step; those of the model itself stand before the first one."""
+    """Blocks of a step; those of the model itself precede the first step."""
 
     line: int = 0
     perturbation: bool = False
@@ -32,7 +32,7 @@ class Step:
 
 @dataclass
 class State:
-    """What acts at the end of a step.
+    """Supports and loads at the end of a step.
 
     :param held: directions by node
     :param force: force by node and direction, with line
@@ -46,7 +46,7 @@ class State:
 
 
 def transform(model: Model, block: Block, scope: Scope) -> None:
-    """Directions of supports and loads of the nodes of a set."""
+    """Set the directions of supports and loads for the nodes of a set."""
     kind = block.parameters.get("TYPE", "R").upper()[:1]
     values = model.numbers(*block.data[0]) if block.data else []
     if len(values) < 6:
@@ -68,7 +68,7 @@ def transform(model: Model, block: Block, scope: Scope) -> None:
 
 
 def initial(model: Model, block: Block, scope: Scope) -> None:
-    """Temperatures at which links are free of stress."""
+    """Read the stress-free temperatures of links."""
     kind = block.parameters.get("TYPE", "").upper()
     if kind != "TEMPERATURE":
         card = f"*INITIAL CONDITIONS, TYPE={quoted(kind)[1:-1]}"
@@ -89,7 +89,7 @@ def run(model: Model, steps: list[Step]) -> None:
 
 
 def _chosen(model: Model, steps: list[Step]) -> int:
-    """Return the place of the chosen step: that of --step, else the first static one, else the first."""
+    """Return the index of the chosen step: that of --step, else the first static one, else the first."""
     wanted, count = model.deck.options.step or 0, len(steps) - 1
     if wanted > max(count, 1):
         raise NotAllowed("--step", wanted, code="undefined_step", steps=count, plural="s" if count != 1 else "")
@@ -105,8 +105,8 @@ def _chosen(model: Model, steps: list[Step]) -> int:
 
 
 def _apply(model: Model, step: Step, state: State, amplitudes: dict[str, Block], last: bool) -> None:
-    """Apply a step: OP=NEW removes what former ones left, a force replaces that of a former one, forces of one step
-    add up."""
+    """Apply a step. OP=NEW removes the state of earlier steps. A force replaces that of an earlier step; forces of one
+    step add up."""
     if last and step.perturbation and (state.force or state.gravity or state.temperature):
         model.deck.refuse("*STEP, PERTURBATION", "perturbation_step", step.line,
                           "STEP.PERTURBATION")
@@ -137,7 +137,7 @@ def _apply(model: Model, step: Step, state: State, amplitudes: dict[str, Block],
 
 
 def _clear(state: State, name: str) -> None:
-    """Remove what former steps left of a keyword."""
+    """Remove the state that earlier steps set by a keyword."""
     if name == "BOUNDARY":
         state.held.clear()
     elif name == "CLOAD":
@@ -161,7 +161,7 @@ def _factor(model: Model, block: Block, amplitudes: dict[str, Block], period: fl
     times, values = pairs[::2], pairs[1::2]
     relative = given.get("VALUE", "RELATIVE").upper() == "RELATIVE" and \
         given.get("DEFINITION", "TABULAR").upper() == "TABULAR" and block.name != "TEMPERATURE"
-    constant = len(set(values)) == 1 and len(values) == len(times)  # known at any time, whatever the step is
+    constant = len(set(values)) == 1 and len(values) == len(times)  # constant in time, for any type of step
     if not relative or not constant and (period is None or given.get("TIME")):
         model.deck.refuse(f"*{block.name}, AMPLITUDE", "amplitude_at_end_unknown", block.line,
                           f"{block.name}.AMPLITUDE")
@@ -266,7 +266,7 @@ def _finish(model: Model, state: State) -> None:
 
 
 def _gravity(model: Model, state: State) -> None:
-    """Gravity must act alike on everything that has a mass."""
+    """Raise an error unless gravity acts equally on everything that has a mass."""
     acting: dict[str, np.ndarray] = {}
     for group, (vector, line) in state.gravity.items():
         for one in model.elements_of(line, group, Scope()):

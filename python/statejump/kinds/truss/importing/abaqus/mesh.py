@@ -12,12 +12,12 @@ from statejump.kinds.truss.importing.abaqus.table import BEAM, ELEMENTS
 from statejump.kinds.truss.importing.coordinates import BASIC, Frame, by_axis
 from statejump.kinds.truss.importing.model import BENDING, quoted
 
-# Nodes of an element that is no bar: the last number of its type, as C3D20R.
+# Number of nodes of an element that is no bar: the last number of its type, for example C3D20R.
 NODES = re.compile(r"[A-Z]+(?:3D|2D)?(\d+)[A-Z]*$")
 
 
 def system(model: Model, block: Block, scope: Scope) -> None:
-    """The coordinate system of the nodes that follow; without data the basic one."""
+    """Read the coordinate system of the following nodes; without data it is the basic one."""
     if not block.data:
         model.system = BASIC
         return
@@ -62,7 +62,7 @@ def node(model: Model, block: Block, scope: Scope) -> None:
 
 
 def add_node(model: Model, line: int, name: str, values: list[float]) -> None:
-    """Add a node, which may be there already at the same position."""
+    """Add a node; it may exist already at the same position."""
     x, y, z = values
     if model.deck.nodes.get(name) == (x, y, z):
         return
@@ -111,7 +111,7 @@ def add_element(model: Model, line: int, name: str, family: str, kind: str, node
 
 
 def check_type(model: Model, block: Block) -> None:
-    """Refuse elements of which a truss has none."""
+    """Refuse elements that a truss does not support."""
     kind = model.needed(block, "TYPE").upper()
     known = ELEMENTS.get(kind)
     card = f"*ELEMENT, TYPE={quoted(kind)[1:-1]}"
@@ -122,7 +122,7 @@ def check_type(model: Model, block: Block) -> None:
 
 
 def node_set(model: Model, block: Block, scope: Scope) -> None:
-    """A set of nodes, of numbers, of other sets or of the nodes of elements."""
+    """Read a set of nodes: from numbers, other sets, or the nodes of elements."""
     _set(model, block, scope, True)
 
 

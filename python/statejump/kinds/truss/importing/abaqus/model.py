@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the readers of keywords share: numbers, names, sets of nodes and elements, scopes of instances."""
+"""Shared by the readers of keywords: numbers, names, sets of nodes and elements, scopes of instances."""
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
@@ -17,10 +17,10 @@ from statejump.kinds.truss.importing.model import Deck, quoted
 
 @dataclass(frozen=True)
 class Scope:
-    """Where a block stands: at the level of the model, or in an instance of a part.
+    """Scope of a block: the model, or an instance of a part.
 
     :param prefix: of names of nodes, elements and sets, with its full stop
-    :param move: position of a point of the part in the assembly
+    :param move: converts a position in the part to one in the assembly
     """
 
     prefix: str = ""
@@ -43,7 +43,7 @@ class Element:
 
 @dataclass
 class Material:
-    """Numbers of a material; None: the deck does not say."""
+    """Properties of a material; None: not in the deck."""
 
     young_modulus: float | None = None
     poisson_ratio: float | None = None
@@ -57,7 +57,7 @@ class Material:
 class Section:
     """Area and material of a bar.
 
-    :param shape: whose sizes are those of nodes; empty: the area is given
+    :param shape: shape whose sizes are given at nodes; empty: the area is given
     """
 
     area: float | None
@@ -101,7 +101,7 @@ class Model:
         return int(text)
 
     def name(self, line: int, text: str, scope: Scope) -> str:
-        """Return the name of a node or element: its number, behind that of its instance."""
+        """Return the name of a node or element: its number, after that of its instance."""
         instance, stop, number = text.rpartition(".")
         prefix = f"{instance.upper()}." if stop else scope.prefix
         if not number.isdecimal() or not number.isascii() or len(number) > 12:
@@ -156,7 +156,7 @@ class Model:
         return [self.elements[name] for name in found if name in self.elements]
 
     def range(self, nodes: bool, prefix: str, first: int, last: int, step: int) -> list[str]:
-        """Return the nodes or elements that are there of first, first + step, … up to last."""
+        """Return the existing nodes or elements among first, first + step, … up to last."""
         known: Collection[str] = self.deck.nodes.keys() if nodes else self.elements.keys()
         if (last - first) // step <= 2 * len(known):
             return [name for number in range(first, last + 1, step) if (name := f"{prefix}{number}") in known]
@@ -169,7 +169,7 @@ class Model:
         return [f"{prefix}{number}" for number in within if (number - first) % step == 0]
 
     def frame(self, node: str) -> Frame:
-        """Return the directions in which supports and loads of a node are given."""
+        """Return the directions in which the supports and loads of a node are given."""
         return self.frames.get(node, BASIC)
 
     def refuse(self, block: Block, known: Card, parameter: str) -> None:

@@ -23,7 +23,7 @@ def material(model: Model, block: Block, scope: Scope) -> None:
 def _of_material(model: Model, block: Block, counts: int) -> tuple[Material, list[float]] | None:
     """Return the material and its numbers; None: they depend on temperature or direction, which is refused.
 
-    :param counts: how many numbers stand before the temperature
+    :param counts: number of values before the temperature
     """
     if model.material is None:
         raise model.deck.fail(block.line, "deck_incomplete", f"*{block.name}", needed="a *MATERIAL before it")
@@ -51,7 +51,7 @@ def elastic(model: Model, block: Block, scope: Scope) -> None:
 
 
 def expansion(model: Model, block: Block, scope: Scope) -> None:
-    """Thermal expansion. ZERO matters where the coefficient depends on temperature: bars are free of stress at their
+    """Read a thermal expansion. ZERO matters if the coefficient depends on temperature. Bars are stress-free at their
     initial temperature."""
     kind = block.parameters.get("TYPE", "").upper()
     counts = {"ORTHO": 3, "ANISO": 6}.get(kind, 1)
@@ -85,7 +85,7 @@ def density(model: Model, block: Block, scope: Scope) -> None:
 
 
 def section(model: Model, block: Block, scope: Scope) -> None:
-    """Area and material of the bars of a set. Other elements of the set are refused where they are."""
+    """Read area and material of the bars of a set. The set's other elements are refused where they are defined."""
     name = model.needed(block, "MATERIAL").upper()
     if name not in model.materials:
         raise model.deck.fail(block.line, "deck_undefined", what_it_is="material", name=quoted(name))
@@ -100,7 +100,7 @@ def section(model: Model, block: Block, scope: Scope) -> None:
 
 
 def thickness(model: Model, block: Block, scope: Scope) -> None:
-    """Two sizes of nodes; one counts for both."""
+    """Read two sizes of nodes; a single one applies to both."""
     for line, words in block.data:
         sizes = model.numbers(line, words[1:3])
         if not sizes:
@@ -130,7 +130,7 @@ def _area(model: Model, block: Block, shape: str, values: list[float]) -> float 
 
 
 def general(model: Model, block: Block, scope: Scope) -> None:
-    """A section by its area, with a material of its own."""
+    """Read a section with an area and a material of its own."""
     if block.parameters.get("SECTION", "GENERAL").upper() != "GENERAL":
         model.deck.refuse("*BEAM GENERAL SECTION, SECTION", "unsupported_type", block.line,
                           "BEAM GENERAL SECTION.SECTION", only="GENERAL")

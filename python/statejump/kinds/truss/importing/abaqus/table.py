@@ -14,7 +14,7 @@ HEAT = "heat transfer: temperatures are those of *TEMPERATURE"
 CONTACT = "contact"
 TIES = "couplings of nodes, surfaces or rotations: only *EQUATION is supported"
 USER = "a routine of the user"
-# Blanks in names of keywords and parameters are written as "_" here, for blanks separate them.
+# In this table "_" stands for blanks in names of keywords and parameters, because blanks separate them.
 KEYWORDS: dict[str, Card] = table(
     used("NODE", "node", "NSET SYSTEM INPUT", refused={"INPUT": "a file of its own"}),
     used("SYSTEM", "coordinate system of nodes"),
@@ -123,7 +123,7 @@ KEYWORDS: dict[str, Card] = table(
     idle("DEPVAR", "state of routines that are not supported"),
 )
 
-# Elements: family of what becomes a link, a spring, a mass or nothing; number of nodes.
+# Elements: family (link, spring, mass or nothing) and number of nodes.
 BAR, BEAM, SPRING, MASS, NOTHING = "bar", "beam", "spring", "mass", "nothing"
 ELEMENTS: dict[str, tuple[str, int]] = {
     "T2D2": (BAR, 2), "T3D2": (BAR, 2), "T2D3": (BAR, 3), "T3D3": (BAR, 3), "T2D2T": (BAR, 2), "T3D2T": (BAR, 2),

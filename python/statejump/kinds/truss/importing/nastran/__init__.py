@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bulk data of Nastran. The table says what becomes of every card; the readers follow it."""
+"""Bulk data of Nastran. A table declares the use of every card; the readers follow it."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -15,7 +15,7 @@ from statejump.kinds.truss.importing.nastran.cards import BARE_EXPONENT, Card, s
 from statejump.kinds.truss.importing.nastran.reader import Reader
 from statejump.kinds.truss.importing.nastran.table import CARDS, PARAMS
 
-# In the order in which they are read: each needs those before it.
+# In the order of reading: each needs the ones before it.
 READERS: dict[str, Callable[[Reader, Card], None]] = {
     "MAT1": properties.mat1, "PROD": properties.simple, "PBAR": properties.simple, "PTUBE": properties.ptube,
     "PBARL": properties.pbarl, "PBEAM": properties.pbeam, "PBEAML": properties.pbeaml, "PELAS": properties.pelas,
@@ -28,13 +28,13 @@ READERS: dict[str, Callable[[Reader, Card], None]] = {
     "RBAR": bodies.rbar, "RBAR1": bodies.rbar, "RBE2": bodies.rbe2, "RBE3": bodies.rbe3, "RROD": bodies.rrod,
     "MPC": bodies.mpc,
 }
-# Cards that other functions read, all of a kind at once.
+# Cards of one kind that other functions read together.
 TOGETHER = ("GRID", "GRDSET", "CORD1R", "CORD1C", "CORD1S", "CORD2R", "CORD2C", "CORD2S", "BAROR", "BEAMOR", "PBUSH",
             "SPCADD", "MPCADD", "LOAD", "LOADADD", "TEMP", "TEMPD", "PARAM")
 
 
 def read(path: Path, options: Options | None = None) -> Deck:
-    """Return what bulk data say. :raises StatejumpError: one sentence with file and line"""
+    """Return the content of bulk data. :raises StatejumpError: one sentence with file and line"""
     deck = Deck(path, options or Options())
     lines, cards = split(deck)
     chosen = control.read(deck, lines)
@@ -63,7 +63,7 @@ def read(path: Path, options: Options | None = None) -> Deck:
     settle_bodies(deck)
     if chosen.autospc:
         singularities.hold_singular(reader)
-    if chosen.solution.startswith("106"):  # there TREF is that of the coefficient of expansion only
+    if chosen.solution.startswith("106"):  # in this solution TREF belongs to the coefficient of expansion only
         for bar in deck.bars:
             bar.reference_temperature = None
     deck.settle()
@@ -77,7 +77,7 @@ def _counts(reader: Reader, card: Card) -> bool:
 
 
 def _check(reader: Reader, card: Card, given: control.Control) -> None:
-    """Refuse a card or a field that is not supported; note those without influence."""
+    """Refuse unsupported cards and fields; record those without influence."""
     deck, known = reader.deck, CARDS.get(card.name)
     if known is None:
         deck.refuse(card.name, "unknown_card", card.line)
@@ -135,7 +135,7 @@ def _param(reader: Reader, card: Card, given: control.Control) -> None:
 
 
 def _take_together(reader: Reader) -> None:
-    """Note the cards that are read with others."""
+    """Record the cards that are read together."""
     for name in ("GRDSET", "BAROR", "BEAMOR", "PBUSH", "PARAM"):
         for card in reader.cards.get(name, []):
             if name != "PARAM" or card[0].upper() in ("WTMASS", "AUTOSPC"):

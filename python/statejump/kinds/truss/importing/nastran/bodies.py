@@ -26,7 +26,8 @@ def rbar(reader: Reader, card: Card) -> None:
             free[0] = ALL
         if not any(coupled):
             coupled = [ALL - one for one in free]
-        # One end has all components and the other's translations follow, as of a hinge, or all that are not free do.
+        # Either one end has all components and the translations of the other follow, as for a hinge; or all components
+        # that are not free follow.
         hinge = free in ([ALL, frozenset()], [frozenset(), ALL]) and MOVES <= coupled[free.index(frozenset())] and \
             not coupled[free.index(ALL)]
         if not hinge and (len(free[0]) + len(free[1]) != 6 or coupled != [ALL - one for one in free]):
@@ -36,10 +37,10 @@ def rbar(reader: Reader, card: Card) -> None:
 
 
 def rbe2(reader: Reader, card: Card) -> None:
-    """A rigid body; components of nodes at one place are equations."""
+    """Read a rigid body. For components of nodes at one position it becomes equations."""
     first, components = reader.node(card, 1), set(card[2])
     texts = [text for text in card.fields[3:] if text]
-    if texts and not texts[-1].isdecimal():  # its thermal expansion
+    if texts and not texts[-1].isdecimal():  # its coefficient of thermal expansion
         if reader.number(Card(card.line, card.name, [texts.pop()]), 0) != 0:
             reader.deck.refuse("RBE2.ALPHA", "rigid_body_expansion", card.line)
     others = reader.several(card, texts)
@@ -77,7 +78,7 @@ def rrod(reader: Reader, card: Card) -> None:
 
 def mpc(reader: Reader, card: Card) -> None:
     """An equation between displacements."""
-    # Two terms a line: a node, a component, a factor.
+    # Each line has two terms: a node, a component, a factor.
     places = [place for start in range(0, len(card.fields), 8) for place in (start + 1, start + 4) if card[place]]
     if {card[place + 1] for place in places} <= set("456"):
         reader.deck.leave(card.name, "an equation of rotations: ends of bars turn freely", card.line)

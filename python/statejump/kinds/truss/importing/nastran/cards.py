@@ -11,10 +11,10 @@ from statejump.kinds.truss.importing.lines import Source
 from statejump.kinds.truss.importing.model import Deck, quoted
 
 SMALL, LARGE, DATA_END, LINE_END = 8, 16, 72, 80
-FREE_COMMA = 10  # a line whose first comma is within so many columns has free fields
-MOST_FIELDS = 100_000  # of a card with its continuations
+FREE_COMMA = 10  # a line has free fields if its first comma is within this many columns
+MOST_FIELDS = 100_000  # largest number of fields of a card with its continuations
 NAME = re.compile(r"[A-Z][A-Z0-9]{0,7}$")
-# Files of meshers and of old courses have BEGIN_BULK and BEGING BULK.
+# Old meshers and textbooks write BEGIN_BULK and BEGING BULK.
 BEGIN_BULK = re.compile(r"\s*BEGIN(G?[\s_]+BULK\b|\s*$)", re.IGNORECASE)
 REPEAT = re.compile(r"=\(?(\d+)\)?$")
 # A number without the letter of its exponent: 7.+10, 2.3-5.
@@ -24,12 +24,12 @@ INCLUDE = re.compile(r"\s*INCLUDE\s+(\S.*)$|\s*INCLUDE(['\"].*)$", re.IGNORECASE
 
 @dataclass
 class Card:
-    """A card: its first line, its name, and the fields behind the name with those of its continuations."""
+    """A card: its first line, its name, and the fields after the name, including those of continuations."""
 
     line: int
     name: str
     fields: list[str] = field(default_factory=list)
-    rule: list[str] = field(default_factory=list)  # by which it repeats the card before it
+    rule: list[str] = field(default_factory=list)  # rule by which it repeats the card before it
 
     def __getitem__(self, place: int) -> str:
         return self.fields[place] if place < len(self.fields) else ""
@@ -40,7 +40,7 @@ class Card:
 
 
 def included(lines: list[str], place: int) -> tuple[str, int] | None:
-    """Return the file that INCLUDE names and the number of its lines; a quoted name may go over several."""
+    """Return the file that INCLUDE names, and the number of lines of the statement; a quoted name may span several."""
     found = INCLUDE.match(lines[place])
     if found is None:
         return None
@@ -69,7 +69,7 @@ def split(deck: Deck) -> tuple[list[tuple[int, str]], list[Card]]:
 
 
 def _cards(deck: Deck, lines: Iterable[tuple[int, str]]) -> list[Card]:
-    """Return the cards. A continuation belongs to the card whose last mark it repeats, else to the card before it."""
+    """Return the cards. A continuation belongs to the card with the same mark, else to the card before it."""
     cards: list[Card] = []
     marks = _Marks()
     orphans: list[tuple[int, str, list[str]]] = []
@@ -113,7 +113,7 @@ def _cards(deck: Deck, lines: Iterable[tuple[int, str]]) -> list[Card]:
         if mark:
             marks.add(mark, card)
         last_mark = mark
-    for number, own, fields in orphans:  # whose card stands below them
+    for number, own, fields in orphans:  # continuations that precede their card
         marked = marks.take(own)
         if marked is None:
             raise deck.fail(number, "deck_bad_syntax", problem=f"no card has the continuation mark {quoted(own)}")
@@ -124,7 +124,8 @@ def _cards(deck: Deck, lines: Iterable[tuple[int, str]]) -> list[Card]:
 class _Marks:
     """Cards by the mark at the end of their last line.
 
-    A continuation repeats columns 2 to 8 of the mark; its first column may be any letter: PEG goes on as +EG.
+    A continuation repeats columns 2 to 8 of the mark; its first column may be any letter: the mark PEG continues with
+    +EG.
     """
 
     def __init__(self) -> None:
@@ -144,8 +145,8 @@ class _Marks:
 
 
 def _repeat(deck: Deck, number: int, head: str, fields: list[str], cards: list[Card]) -> None:
-    """Add cards that repeat the last one: ``=`` is its field, ``*(x)`` adds x to it, ``==`` takes all further ones,
-    ``=(n)`` does so n times, by the fields behind it or by those of the last line of this kind."""
+    """Add cards that repeat the last one. ``=`` repeats its field, ``*(x)`` adds x to it, ``==`` repeats all further
+    fields, and ``=(n)`` repeats the card n times, with the fields after it or those of the last line of this kind."""
     last = cards[-1]
     count = REPEAT.match(head)
     if count and any(fields):
@@ -183,7 +184,7 @@ def _repeated(deck: Deck, number: int, rule: list[str], last: Card) -> list[str]
 
 
 def _extend(deck: Deck, number: int, card: Card, fields: list[str]) -> None:
-    # A continuation begins at a multiple of eight: a half line of large fields is filled up by the next one.
+    # A continuation begins at a multiple of eight fields: the next line completes a half line of large fields.
     if len(card.fields) > MOST_FIELDS:
         raise deck.fail(number, "deck_bad_syntax", problem=f"a card of more than {MOST_FIELDS} fields")
     if len(fields) == 8 and len(card.fields) % 8:
@@ -192,14 +193,14 @@ def _extend(deck: Deck, number: int, card: Card, fields: list[str]) -> None:
 
 
 def _fields(deck: Deck, number: int, line: str) -> tuple[str, list[str], str]:
-    """Return the first field of a line, those with data (8 in small or free form, 4 in large) and the mark of its
+    """Return the first field of a line, those with data (8 in small or free form, 4 in large), and the mark of its
     continuation."""
     if "," in line[:FREE_COMMA]:
         words = [word.strip() for word in line.split(",")]
         count = 4 if words[0].endswith("*") or words[0].startswith("*") else 8
         beyond = words[count + 1:]
         if beyond and beyond[0] and beyond[0][0] not in "+*" and (any(beyond[1:]) or _is_number(beyond[0])):
-            return words[0], words[1:], ""  # continued without a line of its own: no mark is a number
+            return words[0], words[1:], ""  # continued without a mark, because no mark is a number
         if any(beyond[1:]):
             raise deck.fail(number, "deck_bad_syntax", problem=f"a line of more than {count + 2} free fields")
         mark = words[count + 1] if len(words) > count + 1 else ""

@@ -13,7 +13,7 @@ from statejump.kinds.truss.importing.nastran.table import CONTROL
 COMMAND = re.compile(r"([A-Z][A-Z0-9]*)\s*(?:\(([^)]*)\)?)?\s*=?\s*(.*)$")
 HEAT = ("153", "159", "NLSCSH", "NLTCSH")
 DYNAMIC_SOLUTIONS = ("108", "109", "111", "112", "118", "129", "DFREQ", "DTRAN", "MFREQ", "MTRAN")
-# In which SUPORT only says what moves as a rigid body and holds nothing: modes, responses, flutter.
+# In these solutions SUPORT defines rigid-body motion only and holds nothing: modes, responses, flutter.
 FREE_SOLUTIONS = (*DYNAMIC_SOLUTIONS, "103", "107", "110", "145", "146", "MODES", "DCEIG", "MCEIG", "FLUTTER")
 # Name and option of a command, and the kind of set that it selects.
 SELECTED = {
@@ -26,11 +26,11 @@ SELECTED = {
 
 @dataclass
 class Control:
-    """What the control sections say.
+    """The content of the control sections.
 
-    :param given: whether there is a case control: without one every set counts that is the only one of its kind
+    :param given: whether there is a case control. Without one, a set counts if it is the only one of its kind
     :param chosen: sets by kind
-    :param solution: what SOL says
+    :param solution: value of SOL
     :param autospc: whether directions without stiffness are held
     """
 
@@ -53,7 +53,7 @@ class _Subcase:
 
 
 def read(deck: Deck, lines: list[tuple[int, str]]) -> Control:
-    """Return what the subcase of ``--step``, or the first one, selects."""
+    """Return the selection of the subcase of ``--step``, or of the first one."""
     cend = next((place for place, (_, text) in enumerate(lines) if text.upper().startswith("CEND")), None)
     control = Control(given=cend is not None)
     for line, text in lines[:cend or 0]:

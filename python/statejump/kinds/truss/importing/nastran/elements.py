@@ -9,11 +9,11 @@ from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.reader import Property, Reader
 from statejump.kinds.truss.importing.springs import add_spring
 
-SAME = 1e-6  # of offsets, over their size: cards have seven digits
+SAME = 1e-6  # relative difference of equal offsets: cards have seven digits
 
 
 def element(reader: Reader, card: Card, kind: str = "") -> str:
-    """Return the name of an element. Masses may have the numbers of bars, as in decks that Nastran's makers ship."""
+    """Return the name of an element. Masses may have the numbers of bars, as in decks that come with Nastran."""
     name = reader.whole(card, 0)
     if kind + name in reader.elements:
         raise reader.deck.fail(card.line, "deck_duplicate", what_it_is="element", name=name)
@@ -49,7 +49,8 @@ def bar(reader: Reader, card: Card) -> None:
 
 
 def _check_offsets(reader: Reader, card: Card, ends: tuple[str, str]) -> None:
-    """Refuse offsets that lengthen or turn a bar; equal ones shift it, which nodes without rotation do not feel."""
+    """Refuse offsets that lengthen or rotate a bar. Equal offsets shift it, which has no effect on nodes without
+    rotations."""
     offsets, kinds = [], (card[7].upper() or "GGG").ljust(3, "G")[1:]
     for place, end, kind in zip((10, 13), ends, kinds):
         given = np.array([reader.number(card, at, 0.0) for at in range(place, place + 3)])
@@ -73,7 +74,7 @@ def conrod(reader: Reader, card: Card) -> None:
 
 
 def celas(reader: Reader, card: Card) -> None:
-    """CELAS1 and CELAS2: a spring between two components, of which an empty one is the ground."""
+    """CELAS1 and CELAS2: a spring between two components; an empty one is the ground."""
     name = element(reader, card)
     if card.name == "CELAS2":
         stiffness = reader.number(card, 1, 0.0)
@@ -98,7 +99,7 @@ def celas(reader: Reader, card: Card) -> None:
 
 
 def cbush(reader: Reader, card: Card) -> None:
-    """A spring in up to three directions, to the ground or, in the first one, along its line."""
+    """Read a spring in up to three directions, to the ground or, in the first direction, along its line."""
     name = element(reader, card)
     number = reader.whole(card, 1, name)
     found = [one for one in reader.cards.get("PBUSH", []) if reader.whole(one, 0) == number]
@@ -141,7 +142,7 @@ def _bush(reader: Reader, card: Card) -> list[float]:
 
 
 def conm2(reader: Reader, card: Card) -> None:
-    """A mass at a node. Its offset acts on rotations only."""
+    """Read a mass at a node. Its offset acts on rotations only, and is omitted."""
     element(reader, card, "mass ")
     node = reader.node(card, 1)
     mass = reader.number(card, 3, 0.0)
@@ -171,7 +172,7 @@ def weigh(reader: Reader, card: Card, node: str, mass: float) -> None:
 
 
 def _section(reader: Reader, line: int, of: Bar, name: str) -> Property:
-    """Return the property of a bar: that of its kind of element, or the only one of the number."""
+    """Return the property of a bar: that of its type of element, or the only one with the number."""
     found = reader.properties.get(name, {})
     if of.kind in found:
         return found[of.kind]

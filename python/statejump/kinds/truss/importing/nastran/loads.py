@@ -15,7 +15,7 @@ COMBINED = {"spc": "SPCADD", "mpc": "MPCADD"}
 
 
 def select(reader: Reader, control: Control) -> None:
-    """Find the sets that count, and the factor of each."""
+    """Find the active sets, and the factor of each."""
     for kind in ("spc", "mpc", "load", "temperature", "initial", "deform", "nsm", "suport"):
         chosen = control.chosen.get(kind)
         if chosen is None and not control.given and kind != "initial":
@@ -31,13 +31,13 @@ def select(reader: Reader, control: Control) -> None:
 
 
 def _is_load(name: str) -> bool:
-    """Whether LOAD = may select a card, also one of heat transfer, or one that is unknown."""
+    """Return whether LOAD = may select a card, including cards of heat transfer and unknown ones."""
     known = CARDS.get(name)
     return known is None or known.sets == "load" or known.what in (HEAT, DYNAMIC) or name in ("LOAD", "LOADADD")
 
 
 def _only(reader: Reader, kind: str) -> str | None:
-    """Return the only set of a kind of a deck without case control. :raises Unreadable: there are several"""
+    """Return the only set of a kind, for a deck without case control. :raises Unreadable: there are several"""
     first: dict[str, Card] = {}
     if kind == "load":
         combined = [card for name in ("LOAD", "LOADADD") for card in reader.cards.get(name, [])]
@@ -58,7 +58,7 @@ def _only(reader: Reader, kind: str) -> str | None:
 
 
 def _expanded(reader: Reader, kind: str, chosen: str) -> dict[str, float]:
-    """Return the sets that a set consists of with their factors."""
+    """Return the sets of a combined set with their factors."""
     found: dict[str, float] = {}
     if kind == "load":
         for name in ("LOAD", "LOADADD"):
@@ -126,7 +126,7 @@ def gravity(reader: Reader, card: Card) -> None:
 
 
 def pload1(reader: Reader, card: Card) -> None:
-    """A load along a bar as forces on its ends; a load across would bend it."""
+    """Convert a load along a bar to forces on its ends; a load across would bend it."""
     factor, name = reader.factor(card, "load") or 0.0, reader.whole(card, 1)
     if name not in reader.bars:
         raise reader.fail(card, "deck_undefined", what_it_is="bar", name=name)
@@ -161,7 +161,7 @@ def pload1(reader: Reader, card: Card) -> None:
 
 
 def temperatures(reader: Reader) -> None:
-    """TEMP and TEMPD of the sets for loads and for the state free of stress."""
+    """Read TEMP and TEMPD of the sets for loads and for the stress-free state."""
     for kind, found in (("temperature", reader.deck.temperature), ("initial", reader.deck.initial)):
         default = None
         for card in reader.cards.get("TEMP", []):

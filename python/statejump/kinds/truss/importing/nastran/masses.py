@@ -34,7 +34,7 @@ def cmass(reader: Reader, card: Card) -> None:
 
 
 def take_components(reader: Reader) -> None:
-    """Give nodes the masses of their components, which must be one in all directions that are not held."""
+    """Give nodes the masses of their components, which must be equal in all directions that are not held."""
     for node, masses in reader.component_masses.items():
         card = reader.component_cards[node]
         axes = reader.frames[reader.displacement_frame[node]].directions(reader.deck.nodes[node])

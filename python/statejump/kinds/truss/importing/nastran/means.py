@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""RBE3: a node that follows the mean of others, as equations between translations.
+"""RBE3: a node whose motion is a mean of others, as equations between translations.
 
-The node moves as the rigid body whose motion is nearest to that of the others, in the sense of weighted least squares:
-u = ū + θ × d, with θ = I⁻¹ Σ w r × u about their weighted centre. All of this is linear in the translations of the
-others, so that no rotation is needed.
+The node moves as the rigid body whose motion is nearest to that of the others, by weighted least squares: u = ū + θ ×
+d, with θ = I⁻¹ Σ w r × u about their weighted centre. This is linear in the translations of the others and needs no
+rotations.
 """
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MOVES = "123"
 def equations(reader: Reader, card: Card) -> list[Equation]:
     """Return the equations of the translations in REFC; none if the card needs rotations or has weights by components.
 
-    :raises Unreadable: a field is no number, or there is no such node
+    :raises Unreadable: a field is no number, or a node does not exist
     """
     node, components = reader.node(card, 2), [one for one in card[3] if one in MOVES]
     weighted = _weights(reader, card)
@@ -41,7 +41,7 @@ def equations(reader: Reader, card: Card) -> list[Equation]:
         axis = reader.frames[reader.displacement_frame[node]].directions(reader.deck.nodes[node])[int(component) - 1]
         moment = np.cross(lever, axis)
         if np.linalg.norm(moment - inertia @ turns @ moment) > SAME * size:
-            return []  # nodes on one line do not say how the node turns about it
+            return []  # collinear nodes do not determine the rotation about their line
         shares = weights[:, None] * (axis / weights.sum() + np.cross(turns @ moment, arms))
         terms = [(node, axis, 1.0)]
         for name, share in zip(weighted, shares):

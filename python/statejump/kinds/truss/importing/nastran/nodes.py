@@ -52,7 +52,7 @@ class _Places:
         self.reader.deck.take(card.name, "coordinate system")
 
     def place_all(self) -> None:
-        """Place all nodes and systems, those first on which others depend."""
+        """Find the positions of all nodes and systems, in the order of their dependence."""
         for kind, names in (("system", list(self.systems)), ("node", list(self.grids))):
             for name in names:
                 waiting = [(kind, name)]
@@ -70,7 +70,7 @@ class _Places:
                         on_way.add(needed[0])
 
     def _needed(self, kind: str, name: str) -> list[tuple[str, str]]:
-        """Return what has no place yet and is needed for one."""
+        """Return the nodes and systems whose positions are needed first."""
         reader = self.reader
         if kind == "node":
             card = self.grids[name]
@@ -113,7 +113,7 @@ class _Places:
 
 
 def fix(reader: Reader, card: Card, components: str, nodes: list[str]) -> None:
-    """Hold nodes in components of their displacement systems; blanks may stand between the components."""
+    """Hold nodes in components of their displacement systems; blanks may separate the components."""
     components = "".join(components.split())
     if not set(components) <= set("0123456"):
         raise reader.fail(card, "deck_bad_value",

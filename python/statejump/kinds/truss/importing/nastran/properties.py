@@ -11,19 +11,19 @@ from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.reader import Material, Property, Reader
 
 STATIONS = ("YES", "YESA", "NO")
-# Elements that a property is of: properties of different elements may have one number.
+# Elements of each property, because properties of different elements may have one number.
 ELEMENTS = {"PROD": "CROD", "PTUBE": "CTUBE", "PBAR": "CBAR", "PBARL": "CBAR", "PBEAM": "CBEAM", "PBEAML": "CBEAM"}
 
 
 def mat1(reader: Reader, card: Card) -> None:
-    """Read a material, of which two of E, G and Poisson's ratio give the third."""
+    """Read a material. Two of E, G and Poisson's ratio give the third."""
     modulus, shear, ratio = (reader.optional(card, at) for at in (1, 2, 3))
     if modulus is None and shear is not None:
         modulus = 2 * (1 + (ratio or 0.0)) * shear
     elif ratio is None and modulus is not None and shear:
         ratio = modulus / (2 * shear) - 1
     if ratio is not None and not -0.99 <= ratio <= 0.49:
-        # Only the DEM's joints use it; decks of unit tests have E = G.
+        # Only the DEM's joints use the ratio, and some decks have E = G.
         reader.deck.leave("MAT1", f"Poisson's ratio {ratio:g}: outside of -0.99 to 0.49", card.line)
         ratio = None
     reader.materials[reader.whole(card, 0)] = Material(
@@ -61,8 +61,8 @@ def pbarl(reader: Reader, card: Card) -> None:
 
 
 def _shape(reader: Reader, card: Card) -> tuple[str, str]:
-    """Return the shape, and why its area would not be known."""
-    if card[2] and card[2].upper() not in ("MSCBML0", "MSCBMLO"):  # the second is a usual slip
+    """Return the shape, and the reason if its area is unknown."""
+    if card[2] and card[2].upper() not in ("MSCBML0", "MSCBMLO"):  # the second spelling is a common mistake
         return "", f"group {quoted(card[2])} has sections of its own"
     return card[3].upper(), f"section {quoted(card[3])[1:-1]}: no known shape with all its dimensions"
 
@@ -108,7 +108,7 @@ def pbeam(reader: Reader, card: Card) -> None:
         row = Card(card.line, card.name, rows[place])
         stations.append((reader.number(row, 1), reader.number(row, 2) if row[2] else stations[0][1],
                          reader.number(row, 7) if row[7] else stations[0][2]))
-        # Points of stress follow YES unless the next station does.
+        # Points of stress follow YES, unless the next station follows.
         place += 2 if row[0].upper() == "YES" and place + 1 < len(rows) \
             and rows[place + 1][0].upper() not in STATIONS else 1
     if any(any(row) for row in rows[place + 2:]):
@@ -123,7 +123,7 @@ def _tapered(reader: Reader, card: Card, stations: list[tuple[float, float | Non
         return Property(material, None, why)
     if any(not 0 <= at <= 1 for at, _, _ in known) or known[0][0] != 0:
         raise reader.fail(card, "deck_bad_value", problem="stations are not between 0 and 1")
-    if known[-1][0] < 1:  # as end A
+    if known[-1][0] < 1:  # as at end A
         known.append((1.0, known[0][1], known[0][2]))
     more = sum((end[0] - start[0]) * (start[2] + end[2]) / 2 for start, end in zip(known, known[1:]))
     area, mean = profiles.taper([(at, area) for at, area, _ in known])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the readers of cards share: numbers, nodes, sets, and what is known of the deck so far."""
+"""Shared by the readers of cards: numbers, nodes, sets, and the deck so far."""
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
@@ -27,8 +27,8 @@ class Material:
 class Property:
     """Section of a bar.
 
-    :param area: None: not known, with the reason
-    :param mass_area: mean area, which weighs; it differs from ``area`` in a taper
+    :param area: None: unknown, with the reason
+    :param mass_area: mean area, for the mass; it differs from ``area`` in a taper
     :param more: non-structural mass per length
     """
 
@@ -79,7 +79,7 @@ class Reader:
         return self.number(card, place) if card[place] else None
 
     def whole(self, card: Card, place: int, default: str | None = None) -> str:
-        """Return a whole number of a field as a name."""
+        """Return the whole number of a field as a name."""
         text = card[place]
         if not text and default is not None:
             return default
@@ -99,7 +99,7 @@ class Reader:
         return name
 
     def several(self, card: Card, items: list[str]) -> list[str]:
-        """Return the nodes of a list, of which ``THRU`` may skip numbers that are not there."""
+        """Return the nodes of a list; ``THRU`` may include numbers that do not exist."""
         nodes: list[str] = []
         place = 0
         while place < len(items):
@@ -117,7 +117,7 @@ class Reader:
         return nodes
 
     def factor(self, card: Card, kind: str) -> float | None:
-        """Return the factor of the card's set; None: the set does not count."""
+        """Return the factor of the card's set; None: the set is inactive."""
         return self.sets.get(kind, {}).get(self.whole(card, 0))
 
     def frame(self, card: Card, place: int) -> Frame:
