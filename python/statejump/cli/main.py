@@ -15,9 +15,8 @@ from typing import Any, TextIO
 
 import click
 
-from statejump import _paths
 from statejump._version import __version__
-from statejump.cli import streams
+from statejump.cli import streams, studies
 from statejump.cli.suggesting import Suggesting
 from statejump.core import errors
 from statejump.core.errors import Interrupted, StatejumpError, TolerancesMissed, printable
@@ -31,7 +30,6 @@ TASKS: dict[str, dict[str, tuple[str, str]]] = {
         "dem": ("models:dem_command", "DEM run of CASE in YADE: history."),
         "compare": ("models:compare_command",
                     "Both models of CASE side by side, or two result files of the same case."),
-        "fe": ("fe:fe_command", "CASE in finite elements (CalculiX) beside the reduced model."),
         "control": ("control:control_command", "What makes the state jump of CASE smaller, and by how much."),
         "statics": ("statics:statics_command", "Where the joint of CASE can rest, and the largest jump it can make."),
     },
@@ -57,17 +55,17 @@ TASKS: dict[str, dict[str, tuple[str, str]]] = {
         "schema": ("schema:schema_command", "JSON Schema of case and campaign files."),
     },
 }
-# Studies beside the package: there in the repository, not in an installation.
-STUDIES = "studies.paper.commands"
-SHARE = os.path.join(os.path.dirname(_paths.__file__), _paths._SHARE)
-if os.path.isfile(os.path.join(SHARE, *STUDIES.split(".")) + ".py"):
+PAPER = "studies.paper.commands"
+if studies.PRESENT:
+    TASKS["One case"]["fe"] = (
+        "studies.calculix.commands:fe_command", "CASE in finite elements (CalculiX) beside the reduced model.")
     TASKS["The paper"] = {
-        "figures": (f"{STUDIES}:figures_command", "The paper's Figs 13-16 in both models, and its claims in numbers."),
-        "slow": (f"{STUDIES}:slow_command", "Slow heating tends to the quasi-static path."),
-        "hold": (f"{STUDIES}:hold_command", "Friction that creeps and friction that holds."),
-        "convergence": (f"{STUDIES}:convergence_command",
+        "figures": (f"{PAPER}:figures_command", "The paper's Figs 13-16 in both models, and its claims in numbers."),
+        "slow": (f"{PAPER}:slow_command", "Slow heating tends to the quasi-static path."),
+        "hold": (f"{PAPER}:hold_command", "Friction that creeps and friction that holds."),
+        "convergence": (f"{PAPER}:convergence_command",
                         "DEM error of CASE against cycle duration and time step."),
-        "energy": (f"{STUDIES}:energy_command", "Energy account of CASE over time steps."),
+        "energy": (f"{PAPER}:energy_command", "Energy account of CASE over time steps."),
     }
 COMMANDS = {name: found for commands in TASKS.values() for name, found in commands.items()}
 
@@ -82,11 +80,9 @@ class Commands(Suggesting):
         if name not in COMMANDS:
             return None
         module, _, attribute = COMMANDS[name][0].partition(":")
-        if module != STUDIES:
-            module = f"statejump.cli.{module}"
-        elif SHARE not in sys.path:
-            sys.path.append(SHARE)
-        found: click.Command = getattr(import_module(module), attribute)
+        of_study = module.startswith(studies.FOLDER)
+        loaded = studies.module(module) if of_study else import_module(f"statejump.cli.{module}")
+        found: click.Command = getattr(loaded, attribute)
         return found
 
     def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:

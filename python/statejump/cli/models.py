@@ -8,6 +8,7 @@ import click
 from rich.console import Console
 
 from statejump import api
+from statejump.cli import studies
 from statejump.cli.results import compare_files
 from statejump.cli.terminal import (
     CASE, QUIET, RESULTS, CaseFile, loaded, make_console, print_comparison, print_shown, progress,
@@ -20,7 +21,7 @@ from statejump.core.run import Run, warnings_of
 from statejump.core.scratch import scratch
 from statejump.kinds import require, running
 from statejump.kinds.protocol import (
-    DemInput, DynamicModel, FiniteElements, ModelComparison, QuasiStaticModel, ReducedModel, TracedModel,
+    DemInput, DynamicModel, ModelComparison, QuasiStaticModel, ReducedModel, TracedModel,
 )
 from statejump.report.capabilities import RunText
 from statejump.results.read import is_result_file
@@ -200,15 +201,17 @@ def compare_command(files: tuple[Path, ...], dynamic: bool, finite: bool, result
 
 def _compare_case(case_file: Path, dynamic: bool, finite: bool, results: Results, console: Console) -> None:
     from statejump.core.figures import save as save_figure  # matplotlib, 0.4 s; compare alone draws
-    case = loaded(case_file, ModelComparison, DemInput, *([DynamicModel] if dynamic else []),
-                  *([FiniteElements] if finite else []))
+    case = loaded(case_file, ModelComparison, DemInput, *([DynamicModel] if dynamic else []))
+    calculix = studies.module("studies.calculix") if finite else None
+    if calculix is not None:
+        calculix.check(case)
     case.check_dem()
     with results.folder(_folder_name(case, dynamic), case) as folder:
         _check(case, folder, "reduced", "dem")
         with progress(console, "reduced model") as tell:
             reduced = case.reduced(tell, dynamic=dynamic)
         # What it refuses is refused before YADE runs.
-        elements = require(case, FiniteElements).fe(case) if finite else None
+        elements = None if calculix is None else calculix.answer(case)
         dem = _dem("compare", case, {"reduced": reduced}, folder, console)
         comparison = api.compare(reduced, dem)
         if elements is not None:

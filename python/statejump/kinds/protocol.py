@@ -151,13 +151,6 @@ class QuickModel(Protocol):
     def quick(self, case: Any) -> Run: ...
 
 
-@capability("fe")
-class FiniteElements(Protocol):
-    """The case in CalculiX beside the reduced model."""
-
-    def fe(self, case: Any) -> Any: ...
-
-
 @capability("laws")
 class JointOfLaws(Protocol):
     """The joint as the curves of the contact laws need it."""

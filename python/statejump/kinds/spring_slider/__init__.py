@@ -63,7 +63,6 @@ class SpringSlider(Kind[SpringSliderCase]):
     names = Later("statejump.kinds.spring_slider.result:names")
     scene = Later("statejump.kinds.spring_slider.result:scene")
     outcomes = Later("statejump.kinds.spring_slider.outcomes:outcomes")
-    fe = Later("statejump.kinds.spring_slider.fe:answer")
     statics = Later("statejump.kinds.spring_slider.statics:statics")
     control = Later("statejump.kinds.spring_slider.control:answer")
     sheet = Later("statejump.kinds.spring_slider.figure:sheet")

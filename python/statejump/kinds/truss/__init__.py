@@ -58,7 +58,6 @@ class Truss(Kind[TrussCase]):
     outcomes = Later("statejump.kinds.truss.outcomes:outcomes")
     surface = Later("statejump.kinds.truss.reflector:surface")
     contact_problems = Later("statejump.kinds.truss.contact_problems:contact_problems")
-    fe = Later("statejump.kinds.truss.fe:answer")
     creak = Later("statejump.kinds.truss.creak:creak")
     control = Later("statejump.kinds.truss.control.study:answer")
     answers = Later("statejump.kinds.truss.answers.study:answer")
