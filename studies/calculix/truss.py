@@ -68,9 +68,9 @@ def answer(case: TrussCase) -> ccx.Answer:
             lines, sliding = _sliding(case, truss)
             rows += sliding
             notes.append(
-                "rows that end in sliding: the sliders slip along the program, displacements are small (the solver's at "
-                f"{truss_sliding.STEP:g} of temperatures, loads, friction and play, over that); what is rigid gives way "
-                f"by 1/{truss_sliding.STICK:g} of the stiffest bar")
+                "rows that end in sliding: the sliders slip along the program, displacements are small (the "
+                f"solver's at {truss_sliding.STEP:g} of temperatures, loads, friction and play, over that); what "
+                f"is rigid gives way by 1/{truss_sliding.STICK:g} of the stiffest bar")
         except StatejumpError as refused:
             notes.append(f"sliders that slip are not followed: {refused}")
     return ccx.Answer("\n".join(lines) + "\n", tuple(rows), tuple(notes))

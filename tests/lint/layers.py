@@ -39,8 +39,6 @@ LAYERS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("design", (
         "statejump.bores", "statejump.control", "statejump.identification", "statejump.orbit",
         "statejump.kinds.spring_slider.control", "statejump.kinds.truss.answers", "statejump.kinds.truss.control",
-        "statejump.kinds.umbrella.control", "statejump.kinds.umbrella.control_ensemble",
-        "statejump.kinds.umbrella.control_loaded", "statejump.kinds.umbrella.control_parameters",
         "statejump.kinds.umbrella.quasi_static",
     )),
     ("present", (

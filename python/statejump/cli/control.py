@@ -56,7 +56,7 @@ def _told(title: str, done: Study) -> Iterator[Shown | str]:
 @click.command("control")
 @CASE
 @click.option("--jump-below", type=float, metavar="VALUE",
-              help="Wanted largest jump, in m or, for an umbrella, rad.  [default: half of the case's]")
+              help="Wanted largest jump, in m.  [default: half of the case's]")
 @click.option("--node", metavar="NAME", help="Of a truss: the node that jumps.  [default: the most moved one]")
 @click.option("--add-spring", type=(str, str), multiple=True, metavar="A B",
               help="Of a truss: two nodes between which a spring may be added; may be given again.")

@@ -70,7 +70,6 @@ class Umbrella(Kind):
     scene = Later("statejump.kinds.umbrella.result:scene")
     outcomes = Later("statejump.kinds.umbrella.outcomes:outcomes")
     laws = Later("statejump.kinds.umbrella.laws:joint")
-    control = Later("statejump.kinds.umbrella.control:answer")
     sheet = Later("statejump.kinds.umbrella.figure:sheet")
     told = Later("statejump.kinds.umbrella.words:told")
     describe = Later("statejump.kinds.umbrella.words:describe")

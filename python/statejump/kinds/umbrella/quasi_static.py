@@ -13,7 +13,6 @@ from statejump.core.errors import NotAllowed
 from statejump.core.tables import Shown, write_columns, write_rows
 from statejump.core.units import plain, unit_of
 from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.kinds.umbrella.control_loaded import has_elastic_loop
 from statejump.kinds.umbrella.reduced import linkage
 
 if TYPE_CHECKING:
@@ -96,6 +95,12 @@ class QuasiStatic:
             write_columns(path.columns(), target)
             written += [target, write_rows(folder / f"quasi_static_{links}_events.csv", path.events)]
         return written
+
+
+def has_elastic_loop(case: UmbrellaCase) -> bool:
+    """Whether the path with elastic links covers the laws of a case."""
+    velocity = laws.law("tangential_velocity", case.joint.tangential_velocity)
+    return laws.law("normal", case.joint.normal_law).point_contact and not velocity.needs_axis
 
 
 def quasi_static(case: UmbrellaCase) -> QuasiStatic:

@@ -15,8 +15,9 @@ from statejump.core.errors import StatejumpError
 from statejump.core.progress import Tell
 from statejump.kinds.umbrella import dem, reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.kinds.umbrella.control_parameters import AREA, BIAS, CLEARANCE, FRICTION, SPRING, changes
+from statejump.kinds.umbrella.quasi_static import has_elastic_loop
 from statejump.schema.paths import with_values
+from studies.rib_control.parameters import AREA, BIAS, CLEARANCE, FRICTION, SPRING, changes
 
 
 @dataclass(frozen=True)
@@ -40,12 +41,6 @@ class LoadedJump:
     def slips(self) -> bool:
         """Whether the joint slips anywhere, by that model."""
         return self.slips_elastic if self.has_elastic else self.slips_rigid
-
-
-def has_elastic_loop(case: UmbrellaCase) -> bool:
-    """Whether the path with elastic links covers the laws of a case."""
-    velocity = laws.law("tangential_velocity", case.joint.tangential_velocity)
-    return laws.law("normal", case.joint.normal_law).point_contact and not velocity.needs_axis
 
 
 def _slips(loop: Any) -> bool:

@@ -14,8 +14,8 @@ from statejump.core.errors import StatejumpError
 from statejump.core.progress import Tell
 from statejump.kinds.umbrella import dem, reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.kinds.umbrella.control_parameters import AREA, CLEARANCE, DAMPING, FRICTION, SPRING, changes
 from statejump.schema.paths import with_values
+from studies.rib_control.parameters import AREA, CLEARANCE, DAMPING, FRICTION, SPRING, changes
 
 QUANTILE = 0.95
 CONFIDENCE = 0.95

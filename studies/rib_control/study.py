@@ -2,8 +2,8 @@
 """Control of the state jump of an ``umbrella`` case.
 
 A joint that a biased torsion spring loads from the start has one quasi-static path, so one jump:
-:mod:`.control_loaded`. Without it the motion after contact is chaotic and only statistics of an ensemble mean
-anything: :mod:`.control_ensemble`.
+:mod:`.loaded`. Without it the motion after contact is chaotic and only statistics of an ensemble mean
+anything: :mod:`.ensemble`.
 """
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from typing import Any
 from statejump.control.study import RUNS, Places, Study, check_wanted, refuse_places, refuse_runs, with_notes
 from statejump.core.errors import NotAllowed
 from statejump.core.progress import Tell
-from statejump.kinds.umbrella import control_ensemble, control_loaded
 from statejump.kinds.umbrella.case import UmbrellaCase
+from studies.rib_control import ensemble, loaded
 
 
 def control(
@@ -31,10 +31,10 @@ def control(
     refuse_places(places, case)
     if case.start.mode == "loaded":
         refuse_runs(runs, case)
-        return control_loaded.study(case, jump_below, with_dem, tell)
+        return loaded.study(case, jump_below, with_dem, tell)
     if runs is not None and runs < 2:
         raise NotAllowed("--runs", runs, code="below_minimum", least=2)
-    return control_ensemble.study(case, jump_below, runs or RUNS, with_dem, tell)
+    return ensemble.study(case, jump_below, runs or RUNS, with_dem, tell)
 
 
 def answer(case: UmbrellaCase, **settings: Any) -> Study:
