@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, ParamSpec
 
 from statejump.core.case import Case, Progress
 from statejump.control.capabilities import ControlStudy, Creaking, DesignAnswers
-from statejump.control.study import Places, Study
+from statejump.control.study import DesignChoices, Study
 from statejump.core.errors import Range
 from statejump.core.progress import shown
 from statejump.kinds import require
@@ -142,7 +142,7 @@ def control(
     """
     kind = require(case, ControlStudy)
     with shown(progress, "control") as tell:
-        found = kind.control(case, jump_below=jump_below, tell=tell, places=Places(node, add_spring, scale))
+        found = kind.control(case, jump_below=jump_below, tell=tell, choices=DesignChoices(node, add_spring, scale))
     return found
 
 

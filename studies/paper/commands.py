@@ -51,7 +51,7 @@ def _study(command: str, make: Callable[..., Any], case_file: Path, results: Res
 
 
 def _print(done: Any, console: Console) -> None:
-    print_shown(done.told(), console)
+    print_shown(done.summary_lines(), console)
     console.print(f"results: {', '.join(str(path) for path in done.written)}")
 
 

@@ -361,7 +361,7 @@ class Accounts:
     results: Sequence[Result]
     written: list[Path]
 
-    def told(self) -> list[str]:
+    def summary_lines(self) -> list[str]:
         """Return the lines that a command prints."""
         lines = []
         for result in self.results:

@@ -284,7 +284,7 @@ class Held:
     creep: Prediction
     written: list[Path]
 
-    def told(self) -> list[str]:
+    def summary_lines(self) -> list[str]:
         """Return the lines that a command prints."""
         return [
             f"{run.law}, {run.model}: slide {run.drift_m:.3e} m in {self.case.period_s:g} s, contact angle "

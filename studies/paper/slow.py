@@ -308,7 +308,7 @@ class Slow:
     rows: Sequence[Row]
     written: list[Path]
 
-    def told(self) -> list[str]:
+    def summary_lines(self) -> list[str]:
         """Return the lines that a command prints."""
         return [f"{block.title}: {closing(block, self.rows)}" for block in self.blocks]
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from statejump.control.study import RUNS, Places, Study, check_wanted, refuse_places, refuse_runs, with_notes
+from statejump.control.study import RUNS, DesignChoices, Study, check_wanted, refuse_choices, refuse_runs, with_notes
 from statejump.core.errors import NotAllowed
 from statejump.core.progress import Tell
 from statejump.kinds.umbrella.case import UmbrellaCase
@@ -18,17 +18,17 @@ from studies.rib_control import ensemble, loaded
 
 def control(
     case: UmbrellaCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
-    tell: Tell = lambda share: None, places: Places = Places(),
+    tell: Tell = lambda share: None, choices: DesignChoices = DesignChoices(),
 ) -> Study:
     """Study a rib.
 
     :param jump_below: wanted largest jump of θ2 [rad]; None: half of what the case has
     :param runs: size of the ensemble; None: the default, and the only choice where none is run
-    :param places: there is nothing to choose from: none
+    :param choices: there is nothing to choose from: none
     :raises StatejumpError: bad input, or a run failed
     """
     check_wanted(jump_below, "rad")
-    refuse_places(places, case)
+    refuse_choices(choices, case)
     if case.start.mode == "loaded":
         refuse_runs(runs, case)
         return loaded.study(case, jump_below, with_dem, tell)

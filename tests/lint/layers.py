@@ -43,10 +43,10 @@ LAYERS: tuple[tuple[str, tuple[str, ...]], ...] = (
     )),
     ("present", (
         "statejump.core.figures", "statejump.core.html", "statejump.report",
-        "statejump.bores.picture", "statejump.bores.words", "statejump.campaign.plots", "statejump.control.plot",
+        "statejump.bores.picture", "statejump.bores.summary", "statejump.campaign.plots", "statejump.control.plot",
         "statejump.identification.picture", "statejump.laws.curves",
         "statejump.kinds.spring_slider.figure", "statejump.kinds.spring_slider.statics_figure",
-        "statejump.kinds.statics.figure", "statejump.kinds.statics.files", "statejump.kinds.statics.words",
+        "statejump.kinds.statics.figure", "statejump.kinds.statics.files", "statejump.kinds.statics.summary",
         "statejump.kinds.truss.answers.figure", "statejump.kinds.truss.answers.vtk",
         "statejump.kinds.truss.answers.write", "statejump.kinds.truss.creak", "statejump.kinds.truss.draw",
         "statejump.kinds.truss.draw_planar", "statejump.kinds.truss.draw_spatial", "statejump.kinds.truss.figure",

@@ -23,7 +23,7 @@ from statejump.core.comparison import models
 from statejump.core.errors import StatejumpError
 from statejump.core.run import CONTACT_STATES, Column, Event, Events, Run
 from statejump.kinds import kind, names
-from statejump.report import page, words
+from statejump.report import page, labels
 from statejump.report.decimation import kept_samples, largest_error
 from statejump.report.document import TOLERANCE, Document
 from statejump.report.drawing import round_down
@@ -423,7 +423,7 @@ UNIT_WORDS = {word for ending in units.ENDINGS for word in ending.split("_") if 
 @pytest.mark.parametrize("name", names())
 def test_no_unit_rests_in_a_label(name: str) -> None:
     """Keys of the case, columns and tables: the words of a key end before its unit, whichever it is."""
-    found, case = words.of_kind(name), kind(name).Case
+    found, case = labels.of_kind(name), kind(name).Case
     keys = [path.rpartition(".")[2] for path in keys_of(case)]
     tables = [column for _, columns in layout.TABLES.values() for column in columns]
     for key in (*keys, *kind(name).COLUMNS, *tables, "friction_v1_m_per_s", "rolling_resistance_N_m_s_per_rad"):
@@ -436,7 +436,7 @@ def test_no_unit_rests_in_a_label(name: str) -> None:
 
 
 def test_labels_of_keys() -> None:
-    found = words.Words({"link_ab": "Link AB", "tip_jump": "Jump of the tip", "stage S1": "rest"})
+    found = labels.Labels({"link_ab": "Link AB", "tip_jump": "Jump of the tip", "stage S1": "rest"})
     assert found.plain("friction_v1_m_per_s") == "Friction v1" and found.plain("tip_jump_m") == "Jump of the tip"
     assert found.parameter("link.young_modulus_Pa") == "Young's modulus of link"
     assert found.parameter("link_ab.density_kg_per_m3") == "Density of Link AB"

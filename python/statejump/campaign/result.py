@@ -88,7 +88,7 @@ class Campaign:
             raise ValueError(f"name = {name!r} is not allowed: must be {' or '.join(map(repr, found))}")
         return found[name or next(iter(found))]
 
-    def told(self) -> list[Shown | str]:
+    def summary_lines(self) -> list[Shown | str]:
         """Return what a command prints of it, tables and lines."""
         found, done = self.summary(), self.done
         rows = [(name, *(shown(entry[key]) for key in COLUMNS)) for name, entry in found["outcomes"].items()]

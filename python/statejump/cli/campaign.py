@@ -83,7 +83,7 @@ def _command(name: str, text: str) -> click.Command:
             with progress(console, f"{plan.name}, {plan.samples:,} samples") as tell:
                 campaign = run_in(plan, folder.path, scheduler, workers, restart, tell)
             written = folder.publish(campaign.write(folder.staged))
-        print_shown(campaign.told(), console)
+        print_shown(campaign.summary_lines(), console)
         console.print(f"results: {', '.join(str(path) for path in written)}")
         console.print(f"wall time: {since_start_s():.1f} s, start and figures included")
         if campaign.failed == plan.samples:

@@ -11,7 +11,7 @@ import click
 from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, print_shown, undivided
 from statejump.control import study
 from statejump.control.capabilities import ControlStudy
-from statejump.control.study import Places, Study, Sweep, number
+from statejump.control.study import DesignChoices, Study, Sweep, number
 from statejump.core.results_folder import Results
 from statejump.core.tables import Shown
 from statejump.kinds import require
@@ -37,7 +37,7 @@ def _table(title: str, done: Study, sweep: Sweep, unit: str) -> Shown:
     return Shown(f"{title}: {sweep.parameter}", heads, rows, left=("",))
 
 
-def _told(title: str, done: Study) -> Iterator[Shown | str]:
+def _lines(title: str, done: Study) -> Iterator[Shown | str]:
     yield f"measure: {done.measure}"
     for sweep in done.sweeps:
         unit = "" if sweep.display_unit == "-" else f" [{sweep.display_unit}]"
@@ -90,8 +90,8 @@ def control_command(
         with undivided(console, "control") as tell:
             done: Study = require(case, ControlStudy).control(
                 case, jump_below=jump_below, runs=runs, with_dem=with_dem, tell=tell,
-                places=Places(node, add_spring, free))
+                choices=DesignChoices(node, add_spring, free))
         written = folder.publish(
             study.write(case.name, done, folder.staged) + plot.figure(case.title, done, folder.staged))
-    print_shown(list(_told(case.title, done)), console)
+    print_shown(list(_lines(case.title, done)), console)
     console.print(f"results: {', '.join(str(path) for path in written)}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The ``statejump`` command: its commands, and how their failures are told. A command's module is loaded when the
+"""The ``statejump`` command: its commands, and how their failures are reported. A command's module is loaded when the
 command is called. Exit statuses: docs/reference/mistakes.md."""
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def cli() -> None:
     """
 
 
-def _told(error: BaseException, as_json: bool) -> int:
+def _report_failure(error: BaseException, as_json: bool) -> int:
     """Tell what ended the command on standard error; return the exit status."""
     if isinstance(error, StatejumpError):
         failure = error.fields()
@@ -145,7 +145,7 @@ def run(arguments: Sequence[str]) -> int:
     except click.exceptions.Exit as end:
         return int(end.exit_code)
     except (Exception, KeyboardInterrupt) as error:
-        return _told(error, as_json)
+        return _report_failure(error, as_json)
     return 0
 
 
@@ -157,7 +157,7 @@ def _ended(number: int, frame: Any) -> None:
 ENDING = (signal.SIGTERM, signal.SIGHUP)
 
 
-_WARNED: set[str] = set()  # what was told
+_WARNED: set[str] = set()  # what was printed
 
 
 def _warned(message: Warning | str, category: type[Warning], filename: str, lineno: int, file: TextIO | None = None,
@@ -182,9 +182,9 @@ def main() -> None:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT, *ENDING})
         status = run(arguments)
     except KeyboardInterrupt as early:
-        status = _told(early, _wants_json(arguments))
+        status = _report_failure(early, _wants_json(arguments))
     lost = streams.finish()
     if lost is not None:
-        told = _told(lost, _wants_json(arguments))
-        status = status or told
+        lost_status = _report_failure(lost, _wants_json(arguments))
+        status = status or lost_status
     sys.exit(status)

@@ -28,8 +28,8 @@ from statejump.results.read import is_result_file
 from statejump.results.record import save
 
 
-def _told(case: Case, runs: dict[str, Run], console: Console) -> None:
-    print_shown(require(case, RunText).told(case, runs), console)
+def _print_summary(case: Case, runs: dict[str, Run], console: Console) -> None:
+    print_shown(require(case, RunText).summary_lines(case, runs), console)
 
 
 def _warn(case: Case, runs: dict[str, Run], console: Console) -> None:
@@ -49,7 +49,7 @@ def _finish(model: str, case: Case, run: Run, folder: ResultsFolder, console: Co
     """Write the run of one model, and tell of it."""
     runs = {model: run}
     written = folder.publish([save(model, case, runs, folder.staged)])
-    _told(case, runs, console)
+    _print_summary(case, runs, console)
     _warn(case, runs, console)
     console.print(f"results: {written[0]}, history: {folder.path / f'{model}_history.csv'}")
 
@@ -108,7 +108,7 @@ def _quasi_static(case: Case, results: Results, console: Console) -> None:
     with results.folder(f"{case.name}_quasi_static", case) as folder:
         found = case.quasi_static()
         written = folder.publish(found.write(folder.staged))
-    print_shown(found.told(), console)
+    print_shown(found.summary_lines(), console)
     for warning in found.warnings:
         console.print(f"warning: {warning}")
     console.print(f"results: {', '.join(str(path) for path in written)}")
@@ -221,7 +221,7 @@ def _compare_case(case_file: Path, dynamic: bool, finite: bool, results: Results
         figures = save_figure(comparison.plot(), folder.staged, case.name)
         written = folder.publish(
             [save("compare", case, runs, folder.staged, comparison), files[0], *figures])
-    _told(case, runs, console)
+    _print_summary(case, runs, console)
     print_comparison(case.title, comparison.rows, console)
     for note in comparison.notes:
         console.print(note)

@@ -162,7 +162,7 @@ def creak_command(case_file: Path, node: str, results: Results, quiet: bool) -> 
         with progress(console, "motion") as tell:
             found = require(case, Creaking).creak(case, node, tell)
         written = folder.publish(found.write(folder.staged))
-    print_shown(found.told(), console)
+    print_shown(found.summary_lines(), console)
     console.print(f"results: {', '.join(str(path) for path in written)}")
 
 

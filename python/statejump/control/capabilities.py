@@ -32,7 +32,7 @@ class RestSets(Protocol):
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the sets; into given axes, or into a new figure."""
 
-    def told(self) -> list[Shown | str]:
+    def summary_lines(self) -> list[Shown | str]:
         """Return what a command prints, tables and lines."""
 
     def write(self, folder: Path) -> list[Path]:

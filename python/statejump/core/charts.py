@@ -47,7 +47,7 @@ TEMPERATURE = Axis("temperature_change_K", "Temperature change")
 TIME = Axis("time_s", "Time")
 
 
-class Part(Protocol):
+class PageSection(Protocol):
     """A part of a run's page that only one kind has: what its ability ``page`` returns.
 
     :param template: file of its HTML, which gets the part as ``part``

@@ -66,13 +66,13 @@ def on_console(console: Console, label: str) -> Iterator[Tell]:
             task = shown_bar.add_task(label, total=1.0)
             yield lambda share: shown_bar.update(task, completed=share)
         return
-    told = [-1]
+    tenths = [-1]
 
     def line(share: float) -> None:
-        if share >= 1 and told[0] < 0:
+        if share >= 1 and tenths[0] < 0:
             return  # what is over at once needs no progress
-        if int(10 * share) > told[0]:
-            told[0] = int(10 * share)
+        if int(10 * share) > tenths[0]:
+            tenths[0] = int(10 * share)
             console.print(f"{label}: {100 * share:.0f} %")
 
     yield line

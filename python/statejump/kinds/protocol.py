@@ -187,7 +187,7 @@ class Kind(Generic[CaseType]):
     COLUMNS: ClassVar[tuple[str, ...]] = ()
     # Words of this kind for report and figures: of columns, contacts, links, stages, by their keys; with "stage "
     # in front of its name what a stage means.
-    WORDS: ClassVar[Mapping[str, str]] = {}
+    LABELS: ClassVar[Mapping[str, str]] = {}
     # Names of what a campaign records of a run, in the order of its table; each ends in its unit.
     OUTCOMES: ClassVar[tuple[str, ...]] = ()
     # Numbers of a run's summary that stand for where a program ends that does not end at the reference temperature.

@@ -25,11 +25,11 @@ class RunSheet(Protocol):
     def sheet(self, case: Any, runs: Sequence[Run]) -> Sheet: ...
 
 
-@capability("told")
+@capability("summary")
 class RunText(Protocol):
     """What a command prints of runs, tables and lines."""
 
-    def told(self, case: Any, runs: Mapping[str, Run]) -> list[Shown | str]: ...
+    def summary_lines(self, case: Any, runs: Mapping[str, Run]) -> list[Shown | str]: ...
 
 
 @capability("describe")

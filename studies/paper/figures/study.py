@@ -25,7 +25,7 @@ class Figures:
     findings: Findings
     written: list[Path]
 
-    def told(self) -> list[str]:
+    def summary_lines(self) -> list[str]:
         """Return the verdicts, as a command prints them."""
         return [f"{claim.verdict}: {claim.statement}" for claim in all_claims(self.findings)]
 

@@ -109,7 +109,7 @@ class Toy(Kind[ToyCase]):
 
         return Sheet([draw], 1, (5, 4), case.title)
 
-    def told(self, case: ToyCase, runs: Mapping[str, Run]) -> list[Shown | str]:
+    def summary_lines(self, case: ToyCase, runs: Mapping[str, Run]) -> list[Shown | str]:
         return [f"jump of the tip: {run.summary['tip_jump_m']:.6e} m" for run in runs.values()]
 
     def describe(self, case: ToyCase) -> list[str]:

@@ -9,8 +9,8 @@ import numpy as np
 
 from statejump import _engine
 from statejump.control.study import (
-    Line, Places, Row, Study, Sweep, bisect, check_wanted, grid, highest, number, ranges_that_pass, refuse_places,
-    refuse_runs, with_notes,
+    DesignChoices, Line, Row, Study, Sweep, bisect, check_wanted, grid, highest, number, ranges_that_pass,
+    refuse_choices, refuse_runs, with_notes,
 )
 from statejump.core.engine_failures import engine
 from statejump.core.errors import StatejumpError
@@ -164,17 +164,17 @@ def _sweeps(case: SpringSliderCase) -> list[Sweep]:
 
 def control(
     case: SpringSliderCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
-    tell: Tell = lambda share: None, places: Places = Places(),
+    tell: Tell = lambda share: None, choices: DesignChoices = DesignChoices(),
 ) -> Study:
     """Sweep, search and, if wanted, check by DEM.
 
     :param jump_below: wanted largest jump [m]; None: half of what the case has
     :param runs: there is one exact path: None
-    :param places: there is nothing to choose from: none
+    :param choices: there is nothing to choose from: none
     :raises StatejumpError: bad input, or a run failed
     """
     check_wanted(jump_below, "m")
-    refuse_places(places, case)
+    refuse_choices(choices, case)
     refuse_runs(runs, case)
     wanted = jump_below
     now = jump_of(case)

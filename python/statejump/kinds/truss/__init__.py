@@ -62,8 +62,8 @@ class Truss(Kind[TrussCase]):
     control = Later("statejump.kinds.truss.control.study:answer")
     answers = Later("statejump.kinds.truss.answers.study:answer")
     sheet = Later("statejump.kinds.truss.figure:sheet")
-    told = Later("statejump.kinds.truss.words:told")
-    describe = Later("statejump.kinds.truss.words:describe")
+    summary_lines = Later("statejump.kinds.truss.summary:summary_lines")
+    describe = Later("statejump.kinds.truss.summary:describe")
     page = Later("statejump.kinds.truss.page:page")
     draw = Later("statejump.kinds.truss.draw:draw")
 

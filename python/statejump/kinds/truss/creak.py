@@ -100,7 +100,7 @@ class Creak:
         warm.set_ylabel("Temperature change, dashed [K]")
         warm.grid(False)
 
-    def told(self) -> list[Shown | str]:
+    def summary_lines(self) -> list[Shown | str]:
         """Return what a command prints."""
         rows = [[f"{band['low_Hz']:.4g}", f"{band['high_Hz']:.4g}", f"{band['rms_m_per_s2']:.4g}",
                  f"{band['peak_m_per_s2']:.4g}"] for band in self.bands]

@@ -76,7 +76,7 @@ class QuasiStatic:
         lost = [*self.notes, *lost]
         return lost if ELASTIC in self.paths else [*lost, "the laws of the case have no path with elastic links"]
 
-    def told(self) -> list[Shown | str]:
+    def summary_lines(self) -> list[Shown | str]:
         """Return what the command prints."""
         jumps = [(name, plain(value, unit_of(name))) for name, value in self.summary.items()]
         events = [(links, str(event["motion"]), f"{event['temperature_change_K']:.6g}", f"{event['theta2_rad']:.9g}",

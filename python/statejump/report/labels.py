@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Words for what result files name by keys. What is common to all kinds stands here; names of columns, contacts
-and links are each kind's own (``WORDS``)."""
+"""Labels for what result files name by keys. What is common to all kinds stands here; names of columns, contacts
+and links are each kind's own (``LABELS``)."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -39,8 +39,8 @@ def inside(words: str) -> str:
     return words if kept else words[:1].lower() + words[1:]
 
 
-class Words:
-    """Words for the keys of one kind.
+class Labels:
+    """Labels for the keys of one kind.
 
     :param own: the kind's own, by key, with or without its unit
     :param given: users name the parts of such cases
@@ -87,19 +87,19 @@ class Words:
         return self._own.get(name, name), self._own.get(STAGE + name, "")
 
 
-def of_kind(name: str) -> Words:
+def of_kind(name: str) -> Labels:
     """Return the words of a kind; those of all kinds where there is no such kind."""
     try:
         found = kind(name)
-        return Words(found.WORDS, any(tables_of(attribute) for attribute in fields_of(found.Case).values()))
+        return Labels(found.LABELS, any(tables_of(attribute) for attribute in fields_of(found.Case).values()))
     except StatejumpError:
-        return Words()
+        return Labels()
 
 
 def described(case: Case) -> list[str]:
     """Return a case in sentences: what its kind says of it, then its temperature program."""
-    told: list[str] = require(case, CaseText).describe(case) if has(case, CaseText) else []
-    return [*told, _temperature(case)]
+    sentences: list[str] = require(case, CaseText).describe(case) if has(case, CaseText) else []
+    return [*sentences, _temperature(case)]
 
 
 def _temperature(case: Case) -> str:
