@@ -13,7 +13,7 @@ import numpy as np
 from statejump.core import physics
 from statejump.core.errors import Interrupted
 from statejump.core.case_files import made_by
-from statejump.core.progress import Tell, one_of
+from statejump.core.progress import OnProgress, one_of
 from statejump.core.run import Run
 from statejump.core.tables import markdown, write_rows, write_markdown
 from statejump.core.units import plain
@@ -101,11 +101,11 @@ def variants(case: SpringSliderCase, decades: int = 0) -> tuple[list[SpringSlide
     )
 
 
-def convergence(case: SpringSliderCase, tell: Tell = lambda share: None, decades: int = 0) -> Convergence:
+def convergence(case: SpringSliderCase, on_progress: OnProgress = lambda share: None, decades: int = 0) -> Convergence:
     """Run the DEM with slower cycles, then with shorter steps.
 
     :param decades: how much further than usual, 0 to 3; every decade takes ten times as long
-    :param tell: takes the finished share, 0 to 1
+    :param on_progress: takes the finished share, 0 to 1
     :raises StatejumpError: a run failed
     """
     case.need_jump("'statejump convergence'")
@@ -114,7 +114,7 @@ def convergence(case: SpringSliderCase, tell: Tell = lambda share: None, decades
     runs: list[Run] = []
     for place, variant in enumerate(every):
         try:
-            runs.append(KIND.dem(variant, one_of(tell, place, len(every))))
+            runs.append(KIND.dem(variant, one_of(on_progress, place, len(every))))
         except Interrupted:
             raise Interrupted(code="table_interrupted") from None
     found = compared(case, (slower, finer), (runs[: len(slower)], runs[len(slower) :]))

@@ -16,7 +16,7 @@ from statejump.core.errors import FailedRun
 from statejump.core.figures import DEM, REDUCED, panels, save, style
 from statejump.core.results_folder import Results
 from statejump.core.physics import axial_stiffness_N_per_m
-from statejump.core.progress import Tell, counted
+from statejump.core.progress import OnProgress, counted
 from statejump.core.run import Columns, Run, energy_residue_J
 from statejump.core.tables import markdown, write_rows, write_markdown
 from statejump.kinds.umbrella import dem, reduced as model
@@ -213,7 +213,7 @@ class Result:
 
 def study(
     chosen: Sequence[Variant],
-    tell: Tell,
+    on_progress: OnProgress,
     reduced_steps: Sequence[int] = REDUCED_STEPS_PER_SECOND,
     dem_steps: Sequence[int] = DEM_STEPS_PER_SECOND,
 ) -> list[Result]:
@@ -221,7 +221,7 @@ def study(
     found: dict[str, list[Sampled]] = {}
     finest: dict[str, Run] = {}
     total = len(chosen) * (len(reduced_steps) + len(dem_steps) + len(ADAPTIVE_TOLERANCES))
-    finished = counted(tell, total)
+    finished = counted(on_progress, total)
     for variant in chosen:
         runs = found[variant.name] = []
         for rate in reduced_steps:
@@ -373,15 +373,15 @@ class Accounts:
         return lines
 
 
-def make(case: UmbrellaCase, results: Results, tell: Tell) -> Accounts:
+def make(case: UmbrellaCase, results: Results, on_progress: OnProgress) -> Accounts:
     """Run all variants of a case and write figure and tables.
 
     :param results: gets a folder of the case's name
-    :param tell: takes the finished share
+    :param on_progress: takes the finished share
     :raises NotAllowed: the study does not fit the case
     """
     chosen = variants(case)
     with results.folder(case.name, case) as folder:
-        found = study(chosen, tell)
+        found = study(chosen, on_progress)
         written = write(case, found, made_by("energy", case), folder.staged) + figure(case, found, folder.staged)
         return Accounts(found, folder.publish(written))

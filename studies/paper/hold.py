@@ -15,7 +15,7 @@ from statejump import _engine, laws
 from statejump.core.engine_failures import engine
 from statejump.core.figures import DEM, REDUCED, panels, save, style
 from statejump.core.results_folder import Results
-from statejump.core.progress import Tell, counted
+from statejump.core.progress import OnProgress, counted
 from statejump.core.run import Run
 from statejump.core.tables import markdown, write_csv, write_markdown
 from statejump.kinds.umbrella import dem, reduced as model
@@ -292,11 +292,11 @@ class Held:
         ]
 
 
-def make(case: UmbrellaCase, results: Results, tell: Tell) -> Held:
+def make(case: UmbrellaCase, results: Results, on_progress: OnProgress) -> Held:
     """Run a case left alone in both models, by both laws, and write figure and tables.
 
     :param results: gets a folder of the case's name
-    :param tell: takes the finished share
+    :param on_progress: takes the finished share
     :raises NotAllowed: nothing loads the joint of the case
     :raises FailedRun: the joint cannot be loaded as the case wants it
     """
@@ -305,7 +305,7 @@ def make(case: UmbrellaCase, results: Results, tell: Tell) -> Held:
         creep = predict(case)
     with results.folder(case.name, original) as folder:
         wanted = [(law, rate) for law in LAWS for rate in STEPS_PER_SECOND]
-        finished = counted(tell, 2 * len(wanted))
+        finished = counted(on_progress, 2 * len(wanted))
         runs = []
         for law, rate in wanted:
             runs.append(run_reduced(case, law, rate))

@@ -10,7 +10,7 @@ from pathlib import Path
 from statejump import _engine, laws
 from statejump.core.figures import DEM, REDUCED, panels, save, style
 from statejump.core.results_folder import Results
-from statejump.core.progress import Tell, counted
+from statejump.core.progress import OnProgress, counted
 from statejump.core.run import Run
 from statejump.core.tables import markdown, write_rows, write_markdown
 from statejump.kinds.umbrella import dem, reduced as model
@@ -187,13 +187,13 @@ def _rows_of(block: Block, name: str, periods: Sequence[float], found: Sequence[
 
 
 def study(
-    chosen: Sequence[Block], tell: Tell, reduced_periods_s: Sequence[float] = REDUCED_PERIODS_s
+    chosen: Sequence[Block], on_progress: OnProgress, reduced_periods_s: Sequence[float] = REDUCED_PERIODS_s
 ) -> list[Row]:
     """Run all blocks in both models; the longest DEM runs first, as many at a time as cores."""
     pairs = [(block, period) for block in chosen for period in block.dem_periods_s]
     pairs.sort(key=lambda pair: -pair[1])
     total = sum(len(block.dem_periods_s) for block in chosen) + len(chosen) * len(reduced_periods_s)
-    finished = counted(tell, total)
+    finished = counted(on_progress, total)
     rows: list[Row] = []
     for block in chosen:
         found = []
@@ -313,17 +313,17 @@ class Slow:
         return [f"{block.title}: {closing(block, self.rows)}" for block in self.blocks]
 
 
-def make(case: UmbrellaCase, results: Results, tell: Tell) -> Slow:
+def make(case: UmbrellaCase, results: Results, on_progress: OnProgress) -> Slow:
     """Run all variants of a case in both models, ever slower, and write figure and tables.
 
     :param results: gets a folder of the case's name
-    :param tell: takes the finished share
+    :param on_progress: takes the finished share
     :raises NotAllowed: the study does not fit the case
     :raises FailedRun: statics leaves the path open
     """
     chosen = blocks(case)
     with results.folder(case.name, case) as folder:
-        rows = study(chosen, tell)
+        rows = study(chosen, on_progress)
         staged = folder.staged
         written = write(case, chosen, rows, made_by("slow", case), staged) + figure(case, chosen, rows, staged)
         return Slow(chosen, rows, folder.publish(written))

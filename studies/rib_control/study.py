@@ -11,14 +11,14 @@ from typing import Any
 
 from statejump.control.study import RUNS, DesignChoices, Study, check_wanted, refuse_choices, refuse_runs, with_notes
 from statejump.core.errors import NotAllowed
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.kinds.umbrella.case import UmbrellaCase
 from studies.rib_control import ensemble, loaded
 
 
 def control(
     case: UmbrellaCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
-    tell: Tell = lambda share: None, choices: DesignChoices = DesignChoices(),
+    on_progress: OnProgress = lambda share: None, choices: DesignChoices = DesignChoices(),
 ) -> Study:
     """Study a rib.
 
@@ -31,10 +31,10 @@ def control(
     refuse_choices(choices, case)
     if case.start.mode == "loaded":
         refuse_runs(runs, case)
-        return loaded.study(case, jump_below, with_dem, tell)
+        return loaded.study(case, jump_below, with_dem, on_progress)
     if runs is not None and runs < 2:
         raise NotAllowed("--runs", runs, code="below_minimum", least=2)
-    return ensemble.study(case, jump_below, runs or RUNS, with_dem, tell)
+    return ensemble.study(case, jump_below, runs or RUNS, with_dem, on_progress)
 
 
 def answer(case: UmbrellaCase, **settings: Any) -> Study:

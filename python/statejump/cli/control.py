@@ -87,9 +87,9 @@ def control_command(
     if with_dem:
         case.check_dem()
     with results.folder(case.name, case) as folder:
-        with undivided(console, "control") as tell:
+        with undivided(console, "control") as on_progress:
             done: Study = require(case, ControlStudy).control(
-                case, jump_below=jump_below, runs=runs, with_dem=with_dem, tell=tell,
+                case, jump_below=jump_below, runs=runs, with_dem=with_dem, on_progress=on_progress,
                 choices=DesignChoices(node, add_spring, free))
         written = folder.publish(
             study.write(case.name, done, folder.staged) + plot.figure(case.title, done, folder.staged))

@@ -96,8 +96,9 @@ def write_command(case_file: Path, number: int, results: Results, quiet: bool) -
     console = make_console(quiet)
     case = loaded(case_file, ContactProblems)
     try:
-        with undivided(console, f"{case.name}, path") as tell, results.folder(f"{case.name}/fclib", case) as folder:
-            found = require(case, ContactProblems).contact_problems(case, number, tell)
+        with (undivided(console, f"{case.name}, path") as on_progress,
+              results.folder(f"{case.name}/fclib", case) as folder):
+            found = require(case, ContactProblems).contact_problems(case, number, on_progress)
             written = []
             for place, one in enumerate(found, start=1):
                 path = folder.staged / f"step_{place:0{len(str(number))}d}.hdf5"

@@ -95,8 +95,8 @@ def reduced_command(case_file: Path, dynamic: bool, slow: bool, trace: Path | No
     with results.folder(_folder_name(case, dynamic), case) as folder:
         _check(case, folder, "reduced")
         try:
-            with progress(console, "reduced model") as tell:
-                run = case.reduced(tell, dynamic=dynamic, trace=trace)
+            with progress(console, "reduced model") as on_progress:
+                run = case.reduced(on_progress, dynamic=dynamic, trace=trace)
         except Interrupted as stopped:
             raise _kept("reduced", "reduced", case, {}, folder, stopped) from None
         _finish("reduced", case, run, folder, console)
@@ -117,8 +117,8 @@ def _quasi_static(case: Case, results: Results, console: Console) -> None:
 def _dem(command: str, case: Case, before: dict[str, Run], folder: ResultsFolder, console: Console) -> Run:
     """Run the DEM; what an interrupted one has is written, with the runs before it."""
     try:
-        with progress(console, "DEM") as tell:
-            return case.dem(tell)
+        with progress(console, "DEM") as on_progress:
+            return case.dem(on_progress)
     except Interrupted as stopped:
         raise _kept(command, "dem", case, before, folder, stopped) from None
 
@@ -208,8 +208,8 @@ def _compare_case(case_file: Path, dynamic: bool, finite: bool, results: Results
     case.check_dem()
     with results.folder(_folder_name(case, dynamic), case) as folder:
         _check(case, folder, "reduced", "dem")
-        with progress(console, "reduced model") as tell:
-            reduced = case.reduced(tell, dynamic=dynamic)
+        with progress(console, "reduced model") as on_progress:
+            reduced = case.reduced(on_progress, dynamic=dynamic)
         # What it refuses is refused before YADE runs.
         elements = None if calculix is None else calculix.answer(case)
         dem = _dem("compare", case, {"reduced": reduced}, folder, console)

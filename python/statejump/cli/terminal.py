@@ -127,15 +127,15 @@ def print_comparison(title: str, rows: Sequence[Quantity], console: Console,
 @contextmanager
 def progress(console: Console, label: str) -> Iterator[Callable[[float], None]]:
     """Yield a function that takes the finished share: a bar on a terminal, with a line every 10 % elsewhere."""
-    with on_console(console, label) as tell:
-        yield tell
+    with on_console(console, label) as on_progress:
+        yield on_progress
 
 
 @contextmanager
 def undivided(console: Console, label: str) -> Iterator[Callable[[float], None]]:
     """As :func:`progress`, of runs that are written together at the end: Ctrl-C says that nothing was."""
     try:
-        with progress(console, label) as tell:
-            yield tell
+        with progress(console, label) as on_progress:
+            yield on_progress
     except (KeyboardInterrupt, Interrupted):
         raise Interrupted() from None

@@ -119,8 +119,8 @@ def _of_case(
     """Return the surface of a case, its displacements where it is farthest from its design and at the end, and its
     history."""
     design, nodes = surface.reflector_of(case)
-    with undivided(console, f"{case.name}, reduced model") as tell:
-        run = require(case, ReducedModel).reduced(case, tell)
+    with undivided(console, f"{case.name}, reduced model") as on_progress:
+        run = require(case, ReducedModel).reduced(case, on_progress)
     history = surface.history(run, measure)
     moves = np.asarray(run.history["position_m"].values)[:, nodes] - design.position_m
     worst = int(np.argmax(history["rms_design_m"]))

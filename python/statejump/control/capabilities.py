@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from statejump.control.study import Study
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.core.tables import Shown
 from statejump.kinds.protocol import capability
 
@@ -57,4 +57,4 @@ class DesignAnswers(Protocol):
 class Creaking(Protocol):
     """What a node feels while the truss moves; see :func:`statejump.truss.creak`."""
 
-    def creak(self, case: Any, node: str, tell: Tell) -> Any: ...
+    def creak(self, case: Any, node: str, on_progress: OnProgress) -> Any: ...

@@ -12,7 +12,7 @@ from statejump.core.errors import printable
 if TYPE_CHECKING:
     from rich.console import Console  # 0.1 s; a run in Python prints nothing
 
-Tell = Callable[[float], None]
+OnProgress = Callable[[float], None]
 
 
 def silent(share: float) -> None:
@@ -20,7 +20,7 @@ def silent(share: float) -> None:
 
 
 @contextmanager
-def shown(progress: bool | Tell, label: str) -> Iterator[Tell]:
+def shown(progress: bool | OnProgress, label: str) -> Iterator[OnProgress]:
     """Yield what is called with the finished share, 0 to 1.
 
     :param progress: False: nothing is told; True: shown on standard error; else what is called
@@ -30,8 +30,8 @@ def shown(progress: bool | Tell, label: str) -> Iterator[Tell]:
     elif not progress:
         yield silent
     else:
-        with bar(label) as tell:
-            yield tell
+        with bar(label) as on_progress:
+            yield on_progress
 
 
 def console(**settings: Any) -> Console:
@@ -48,14 +48,14 @@ def console(**settings: Any) -> Console:
 
 
 @contextmanager
-def bar(label: str) -> Iterator[Tell]:
+def bar(label: str) -> Iterator[OnProgress]:
     """Yield what moves a bar on a terminal, and prints a line every tenth elsewhere; on standard error."""
-    with on_console(console(stderr=True), label) as tell:
-        yield tell
+    with on_console(console(stderr=True), label) as on_progress:
+        yield on_progress
 
 
 @contextmanager
-def on_console(console: Console, label: str) -> Iterator[Tell]:
+def on_console(console: Console, label: str) -> Iterator[OnProgress]:
     """Yield what shows the finished share on a console of rich: a bar on a terminal, else a line every tenth."""
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn  # as Console
 
@@ -78,12 +78,12 @@ def on_console(console: Console, label: str) -> Iterator[Tell]:
     yield line
 
 
-def one_of(tell: Tell, done: int, total: int) -> Tell:
+def one_of(on_progress: OnProgress, done: int, total: int) -> OnProgress:
     """Return the progress function of a run after ``done`` of ``total`` equal runs; it reports their total fraction."""
-    return lambda share: tell((done + share) / total)
+    return lambda share: on_progress((done + share) / total)
 
 
-def counted(tell: Tell, total: int) -> Callable[[], None]:
+def counted(on_progress: OnProgress, total: int) -> Callable[[], None]:
     """Return a function to call after each run; it reports the finished fraction of all runs."""
     finished = count(1)
-    return lambda: tell(next(finished) / total)
+    return lambda: on_progress(next(finished) / total)

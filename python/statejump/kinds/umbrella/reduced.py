@@ -11,7 +11,7 @@ import numpy as np
 
 from statejump import _engine
 from statejump.core.engine_failures import engine
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.core.run import Columns, Run
 from statejump.kinds.umbrella import result
 from statejump.kinds.umbrella.case import UmbrellaCase, UmbrellaLink
@@ -71,10 +71,10 @@ def integrate(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> _engine
         return _engine.simulate(model, program, start, steps * cycles, steps // samples)
 
 
-def run(case: UmbrellaCase, tell: Tell = lambda share: None, offset_m: np.ndarray | None = None) -> Run:
+def run(case: UmbrellaCase, on_progress: OnProgress = lambda share: None, offset_m: np.ndarray | None = None) -> Run:
     """Run the reduced model; see :func:`integrate`."""
     made = result.reduced_run(case, integrate(case, offset_m))
-    tell(1.0)
+    on_progress(1.0)
     return made
 
 

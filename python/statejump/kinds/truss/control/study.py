@@ -8,7 +8,7 @@ from typing import Any
 
 from statejump.control.study import DesignChoices, Line, Study, Sweep, check_wanted, number, refuse_runs, with_notes
 from statejump.core.errors import NotAllowed
-from statejump.core.progress import Tell, one_of
+from statejump.core.progress import OnProgress, one_of
 from statejump.core.units import plain
 from statejump.kinds.truss.answers.jumps import most_moved, quick_path, rounding_m
 from statejump.kinds.truss.answers.verdict import RESOLVED
@@ -26,7 +26,7 @@ MICRO = 1e6
 
 def control(
     case: TrussCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
-    tell: Tell = lambda share: None, choices: DesignChoices = DesignChoices(),
+    on_progress: OnProgress = lambda share: None, choices: DesignChoices = DesignChoices(),
 ) -> Study:
     """Sweep every candidate and search where it brings the jump of a node below a bound.
 
@@ -56,7 +56,7 @@ def control(
     searches = [Search(one, Sweep(one.parameter, one.label, one.unit, 1.0, one.own, []), node, increments)
                 for one in asked]
     for done, search in enumerate(searches):
-        part = one_of(tell, done, len(searches))
+        part = one_of(on_progress, done, len(searches))
         search.scan(lambda share, part=part: part(0.7 * share))  # type: ignore[misc]
         result.sweeps.append(search.sweep)
         if wanted is not None:
