@@ -19,11 +19,12 @@ from statejump.core.physics import axial_stiffness_N_per_m
 from statejump.core.progress import OnProgress, counted
 from statejump.core.run import Columns, Run, energy_residue_J
 from statejump.core.tables import markdown, write_rows, write_markdown
-from statejump.kinds.umbrella import dem, reduced as model
+from statejump.kinds.umbrella import reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.kinds.umbrella.compare import DISSIPATED, STORED, largest_temperature
 from studies.paper.common import made_by, refused
 from statejump.schema.paths import with_values
+from studies.paper import ensembles
 
 REDUCED_STEPS_PER_SECOND = tuple(12_500 * 2**i for i in range(8))
 DEM_STEPS_PER_SECOND = tuple(50_000 * 2**i for i in range(5))
@@ -240,7 +241,7 @@ def study(
             )
             runs.append(Sampled("adaptive", adaptive.summary["steps"] / variant.case.period_s, tolerance, adaptive))
     pairs = sorted(((variant, rate) for variant in chosen for rate in dem_steps), key=lambda pair: -pair[1])
-    done = dem.execute_all([with_steps(variant.case, rate) for variant, rate in pairs], finished)
+    done = ensembles.execute_all([with_steps(variant.case, rate) for variant, rate in pairs], finished)
     for (variant, rate), run in sorted(zip(pairs, done), key=lambda entry: entry[0][1]):
         found[variant.name].append(Sampled("DEM", float(rate), None, run))
     return [_result(variant, finest[variant.name], found[variant.name]) for variant in chosen]

@@ -18,10 +18,11 @@ from statejump.core.results_folder import Results
 from statejump.core.progress import OnProgress, counted
 from statejump.core.run import Run
 from statejump.core.tables import markdown, write_csv, write_markdown
-from statejump.kinds.umbrella import dem, reduced as model
+from statejump.kinds.umbrella import reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from studies.paper.common import made_by, refused
 from statejump.schema.paths import with_values
+from studies.paper import ensembles
 
 PERIOD_s = 10.0
 STEPS_PER_SECOND = (50_000, 100_000, 200_000)
@@ -141,7 +142,7 @@ def run_reduced(case: UmbrellaCase, law: str, steps_per_second: int) -> Hold:
 def run_dem(cases: Sequence[tuple[str, int]], case: UmbrellaCase, finished: Callable[[], None]) -> list[Hold]:
     """Run the held case in the DEM, by law and steps per second."""
     wanted = [by_law(case, law, rate) for law, rate in cases]
-    runs = dem.execute_all(wanted, finished)
+    runs = ensembles.execute_all(wanted, finished)
     return [
         _measure(one, "DEM", rate, run) for one, (_, rate), run in zip(wanted, cases, runs)
     ]

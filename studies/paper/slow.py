@@ -13,11 +13,12 @@ from statejump.core.results_folder import Results
 from statejump.core.progress import OnProgress, counted
 from statejump.core.run import Run
 from statejump.core.tables import markdown, write_rows, write_markdown
-from statejump.kinds.umbrella import dem, reduced as model
+from statejump.kinds.umbrella import reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from studies.paper.common import made_by, refused
 from studies.paper.slow_statics import ANGLES, lag, lag_at_parting, quasi_static
 from statejump.schema.paths import with_values
+from studies.paper import ensembles
 
 STEPS_PER_SECOND = 100_000
 SAMPLES = 100  # only the ends of the histories are used
@@ -201,7 +202,7 @@ def study(
             found.append(jumps(model.run(at_period(block.case, period))))
             finished()
         rows += _rows_of(block, "reduced", reduced_periods_s, found)
-    runs = dem.execute_all([at_period(block.case, period) for block, period in pairs], finished)
+    runs = ensembles.execute_all([at_period(block.case, period) for block, period in pairs], finished)
     of_run = {(block.name, period): jumps(run) for (block, period), run in zip(pairs, runs)}
     for block in chosen:
         periods = block.dem_periods_s

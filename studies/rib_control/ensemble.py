@@ -12,9 +12,9 @@ import numpy as np
 from statejump.control.study import Line, Row, Study, Sweep, bisect, grid, number, ranges_that_pass
 from statejump.core.errors import StatejumpError
 from statejump.core.progress import OnProgress
-from statejump.kinds.umbrella import dem, reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.schema.paths import with_values
+from studies.paper import ensembles
 from studies.rib_control.parameters import AREA, CLEARANCE, DAMPING, FRICTION, SPRING, changes
 
 QUANTILE = 0.95
@@ -68,7 +68,7 @@ def ensemble_measure(
 
     The starts depend on the case's seed alone: the same numbers every time.
     """
-    together = model.ensemble(case, runs, progress)
+    together = ensembles.ensemble(case, runs, progress)
     jump, deflection = np.abs(together.jump_rad), np.max(np.abs(together.deflection_rad), axis=1)
     return {
         "jump_mean_rad": float(np.mean(jump)),
@@ -316,7 +316,7 @@ def _ensemble_dem(case: UmbrellaCase, result: Study, runs: int, on_progress: OnP
 
     wanted = result.wanted or 0.0
     for stiffness in points:
-        together = dem.ensemble(with_values(case, {SPRING: stiffness}), runs, step)
+        together = ensembles.dem_ensemble(with_values(case, {SPRING: stiffness}), runs, step)
         deflection = np.max(np.abs(together.deflection_rad), axis=1)
         jump = quantile(together.jump_rad)
         reduced = spring.row(stiffness).results

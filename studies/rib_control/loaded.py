@@ -13,10 +13,11 @@ from statejump import _engine, laws
 from statejump.control.study import Line, Row, Study, Sweep, bisect, grid, highest, number, ranges_that_pass
 from statejump.core.errors import StatejumpError
 from statejump.core.progress import OnProgress
-from statejump.kinds.umbrella import dem, reduced as model
+from statejump.kinds.umbrella import reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.kinds.umbrella.quasi_static import has_elastic_loop
 from statejump.schema.paths import with_values
+from studies.paper import ensembles
 from studies.rib_control.parameters import AREA, BIAS, CLEARANCE, FRICTION, SPRING, changes
 
 
@@ -297,7 +298,7 @@ def _loaded_dem(case: UmbrellaCase, result: Study, on_progress: OnProgress) -> N
         done[0] += 1
         on_progress(done[0] / len(points))
 
-    for (key, value), design, run in zip(points, designs, dem.execute_all(designs, step)):
+    for (key, value), design, run in zip(points, designs, ensembles.execute_all(designs, step)):
         jump = abs(run.summary["theta2_jump_rad"])
         exact = loaded_jump(design).size_rad
         result.dem.append({key: value, "reduced_jump_rad": exact, "dem_jump_rad": jump})
