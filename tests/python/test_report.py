@@ -24,7 +24,7 @@ from statejump.core.errors import StatejumpError
 from statejump.core.run import CONTACT_STATES, Column, Event, Events, Run
 from statejump.kinds import kind, names
 from statejump.report import page, labels
-from statejump.report.decimation import kept_samples, largest_error
+from statejump.report.decimation import errors, kept_samples
 from statejump.report.document import TOLERANCE, Document
 from statejump.report.drawing import round_down
 from statejump.results import layout, scene as drawing
@@ -388,7 +388,7 @@ def test_decimation_keeps_what_it_says() -> None:
     columns[1234, 0] = 30.0  # an impact of one sample
     for most, tolerance in ((3000, 1e-3), (25, 1e-3)):
         chosen = kept_samples(time, columns, most, tolerance, always=(17,))
-        error = largest_error(time, columns.T, chosen)
+        error = errors(time, columns.T, chosen).max()
         lines = np.stack([np.interp(time, time[chosen], column[chosen]) for column in columns.T], axis=1)
         real = np.max(np.abs(lines - columns) / np.maximum(np.ptp(columns, axis=0), 1e-300))
         assert error == pytest.approx(real, rel=1e-9)

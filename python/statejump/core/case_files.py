@@ -6,7 +6,6 @@ import os
 from pathlib import Path
 from typing import Any
 
-from statejump import _paths
 from statejump.core.case import Case
 from statejump.core.errors import NotAllowed
 from statejump.core.output import check_suffix, check_target, write_atomically
@@ -59,19 +58,3 @@ def save(case: Case, path: Path) -> Path:
     with write_atomically(path) as stream:
         stream.write(text)
     return path
-
-
-def made_by(command: str, case: Case) -> str:
-    """Return how a file was made, for its text: the command with the case file, relative to the current folder or as
-    the case that comes with the program is called.
-
-    :param command: as ``statejump hold``
-    """
-    file = case.origin.file
-    if file is None:
-        return f"`{command}` of case {case.name}, which was made in Python"
-    for folder in (Path.cwd(), _paths.SHARE):
-        if file.resolve().is_relative_to(folder.resolve()):
-            file = file.resolve().relative_to(folder.resolve())
-            break
-    return f"`{command} {file.as_posix()}`"
