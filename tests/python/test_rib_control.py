@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from statejump.control.study import Study
+from failures import failing
+from statejump.control.study import DesignChoices, Study
 from statejump.core.case import Case
 from statejump.core.errors import StatejumpError
 from statejump.kinds.loading import load_case
@@ -197,6 +198,11 @@ def test_bad_settings_get_one_sentence(cases: Path, case, settings, sentence) ->
     with pytest.raises(StatejumpError) as caught:
         study_of(load_case(cases / f"{case}.toml"), **settings)
     assert str(caught.value) == sentence and caught.value.exit_status == 2
+
+
+def test_a_node_to_choose_is_refused(loaded) -> None:
+    with failing("one_jump_only", key="--node", value="A"):
+        rib_study.answer(loaded, choices=DesignChoices("A"))
 
 
 def test_the_command_takes_the_rib_as_a_kind_of_ones_own(statejump_process, cases: Path, tmp_path: Path) -> None:
