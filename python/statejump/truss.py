@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, ParamSpec
 
 from statejump.core.case import Case, Progress
 from statejump.control.capabilities import ControlStudy, Creaking, DesignAnswers
-from statejump.control.study import Places, Study
+from statejump.control.study import DesignChoices, Study
 from statejump.core.errors import Range
 from statejump.core.progress import shown
 from statejump.kinds import require
@@ -94,8 +94,8 @@ def creak(case: Case, node: str, *, progress: Progress = False) -> Creak:
     :raises StatejumpError: the case is of another kind, the node does not exist, or a step has no solution
     """
     kind = require(case, Creaking)
-    with shown(progress, "motion") as tell:
-        found: Creak = kind.creak(case, node, tell)
+    with shown(progress, "motion") as on_progress:
+        found: Creak = kind.creak(case, node, on_progress)
     return found
 
 
@@ -141,8 +141,9 @@ def control(
     :raises StatejumpError: the case is of another kind, a node or key does not exist, or the case has no path
     """
     kind = require(case, ControlStudy)
-    with shown(progress, "control") as tell:
-        found = kind.control(case, jump_below=jump_below, tell=tell, places=Places(node, add_spring, scale))
+    with shown(progress, "control") as on_progress:
+        found = kind.control(case, jump_below=jump_below, on_progress=on_progress,
+                             choices=DesignChoices(node, add_spring, scale))
     return found
 
 

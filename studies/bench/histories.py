@@ -107,7 +107,7 @@ def write_histories(file: Path, names: list[str], times: int) -> None:
         made["members"] = np.array(names, dtype=h5py.string_dtype())
 
 
-def tell(share: float) -> bool:
+def on_progress(share: float) -> bool:
     """Say how far the path is."""
     if sys.stderr.isatty():
         print(f"\r{100 * share:5.1f} %", end="", file=sys.stderr, flush=True)
@@ -127,7 +127,8 @@ def measure(truss: str, members: int, times: int) -> str:
         read_s, read_MB = time.process_time() - started, peak_MB()
     resolved = case.resolve()
     started = time.process_time()
-    found = solve.path(resolved, increments_per_branch=1, locate_events=False, cycle_ends_only=True, progress=tell)
+    found = solve.path(resolved, increments_per_branch=1, locate_events=False, cycle_ends_only=True,
+                       progress=on_progress)
     seconds = time.process_time() - started
     assert found.complete
     rows = len(case.thermal.members.time_s)

@@ -45,13 +45,13 @@ def _case(kind: type[CaseType], command: str, case_file: Path) -> CaseType:
 def _study(command: str, make: Callable[..., Any], case_file: Path, results: Results, quiet: bool) -> None:
     console = make_console(quiet)
     case = _case(UmbrellaCase, command, case_file)
-    with undivided(console, "runs") as tell:
-        done = make(case, results, tell)
+    with undivided(console, "runs") as on_progress:
+        done = make(case, results, on_progress)
     _print(done, console)
 
 
 def _print(done: Any, console: Console) -> None:
-    print_shown(done.told(), console)
+    print_shown(done.summary_lines(), console)
     console.print(f"results: {', '.join(str(path) for path in done.written)}")
 
 
@@ -62,8 +62,8 @@ def _part(console: Console, text: str, runs: int) -> Iterator[Callable[[], None]
         console.print(f"{text}: {runs} runs")
         yield lambda: None
         return
-    with progress(console, f"{text}, {runs} runs") as tell:
-        yield counted(tell, runs)
+    with progress(console, f"{text}, {runs} runs") as on_progress:
+        yield counted(on_progress, runs)
 
 
 @click.command("figures")
@@ -142,7 +142,7 @@ def convergence_command(case_file: Path, decades: int, results: Results, quiet: 
     case = _case(SpringSliderCase, "convergence", case_file)
     case.check_dem()
     with results.folder(case.name, case) as folder:
-        with progress(console, "convergence") as tell:
-            found = convergence.convergence(case, tell, decades)
+        with progress(console, "convergence") as on_progress:
+            found = convergence.convergence(case, on_progress, decades)
         _, text = folder.publish(found.write(folder.staged))
     console.print(text.read_text(encoding="utf-8"))

@@ -12,13 +12,13 @@ import numpy as np
 
 from statejump.core import physics
 from statejump.core.errors import Interrupted
-from statejump.core.case_files import made_by
-from statejump.core.progress import Tell, one_of
+from statejump.core.progress import OnProgress, one_of
 from statejump.core.run import Run
 from statejump.core.tables import markdown, write_rows, write_markdown
 from statejump.core.units import plain
 from statejump.kinds.spring_slider import KIND, compare, dem, reduced, stable_step
 from statejump.kinds.spring_slider.case import SpringSliderCase
+from studies.paper.common import made_by
 
 PERIOD_FACTORS = (1 / 256, 1 / 64, 1 / 16, 1 / 4, 1, 4)
 # Time steps are compared on a fast cycle, because its motion is not quasi-static and depends on them. It has few
@@ -63,10 +63,10 @@ class Convergence:
         """Write ``convergence.csv`` and ``convergence.md``."""
         entries = [asdict(row) for row in self.rows]
         shown = [["" if math.isnan(value) else f"{value:.4g}" for value in entry.values()] for entry in entries]
-        command = "statejump convergence" + (f" --decades {self.decades}" if self.decades else "")
+        command = "convergence" + (f" --decades {self.decades}" if self.decades else "")
         lines = [
             f"# DEM against reduced model: {self.case.title}", "",
-            f"Made by {made_by(command, self.case)}.", "",
+            f"Made by `{made_by(command, self.case)}`.", "",
             *markdown(list(entries[0]), shown), "", *explanation(self),
         ]
         return [write_rows(folder / "convergence.csv", entries), write_markdown(folder / "convergence.md", lines)]
@@ -101,11 +101,11 @@ def variants(case: SpringSliderCase, decades: int = 0) -> tuple[list[SpringSlide
     )
 
 
-def convergence(case: SpringSliderCase, tell: Tell = lambda share: None, decades: int = 0) -> Convergence:
+def convergence(case: SpringSliderCase, on_progress: OnProgress = lambda share: None, decades: int = 0) -> Convergence:
     """Run the DEM with slower cycles, then with shorter steps.
 
     :param decades: extension beyond the default, 0 to 3; every decade takes ten times as long
-    :param tell: called with the finished fraction, 0 to 1
+    :param on_progress: called with the finished fraction, 0 to 1
     :raises StatejumpError: a run failed
     """
     case.need_jump("'statejump convergence'")
@@ -114,7 +114,7 @@ def convergence(case: SpringSliderCase, tell: Tell = lambda share: None, decades
     runs: list[Run] = []
     for place, variant in enumerate(every):
         try:
-            runs.append(KIND.dem(variant, one_of(tell, place, len(every))))
+            runs.append(KIND.dem(variant, one_of(on_progress, place, len(every))))
         except Interrupted:
             raise Interrupted(code="table_interrupted") from None
     found = compared(case, (slower, finer), (runs[: len(slower)], runs[len(slower) :]))

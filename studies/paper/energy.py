@@ -16,14 +16,15 @@ from statejump.core.errors import FailedRun
 from statejump.core.figures import DEM, REDUCED, panels, save, style
 from statejump.core.results_folder import Results
 from statejump.core.physics import axial_stiffness_N_per_m
-from statejump.core.progress import Tell, counted
+from statejump.core.progress import OnProgress, counted
 from statejump.core.run import Columns, Run, energy_residue_J
 from statejump.core.tables import markdown, write_rows, write_markdown
-from statejump.kinds.umbrella import dem, reduced as model
+from statejump.kinds.umbrella import reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.kinds.umbrella.compare import DISSIPATED, STORED, largest_temperature
 from studies.paper.common import made_by, refused
 from statejump.schema.paths import with_values
+from studies.paper import ensembles
 
 REDUCED_STEPS_PER_SECOND = tuple(12_500 * 2**i for i in range(8))
 DEM_STEPS_PER_SECOND = tuple(50_000 * 2**i for i in range(5))
@@ -213,7 +214,7 @@ class Result:
 
 def study(
     chosen: Sequence[Variant],
-    tell: Tell,
+    on_progress: OnProgress,
     reduced_steps: Sequence[int] = REDUCED_STEPS_PER_SECOND,
     dem_steps: Sequence[int] = DEM_STEPS_PER_SECOND,
 ) -> list[Result]:
@@ -221,7 +222,7 @@ def study(
     found: dict[str, list[Sampled]] = {}
     finest: dict[str, Run] = {}
     total = len(chosen) * (len(reduced_steps) + len(dem_steps) + len(ADAPTIVE_TOLERANCES))
-    finished = counted(tell, total)
+    finished = counted(on_progress, total)
     for variant in chosen:
         runs = found[variant.name] = []
         for rate in reduced_steps:
@@ -240,7 +241,7 @@ def study(
             )
             runs.append(Sampled("adaptive", adaptive.summary["steps"] / variant.case.period_s, tolerance, adaptive))
     pairs = sorted(((variant, rate) for variant in chosen for rate in dem_steps), key=lambda pair: -pair[1])
-    done = dem.execute_all([with_steps(variant.case, rate) for variant, rate in pairs], finished)
+    done = ensembles.execute_all([with_steps(variant.case, rate) for variant, rate in pairs], finished)
     for (variant, rate), run in sorted(zip(pairs, done), key=lambda entry: entry[0][1]):
         found[variant.name].append(Sampled("DEM", float(rate), None, run))
     return [_result(variant, finest[variant.name], found[variant.name]) for variant in chosen]
@@ -361,7 +362,7 @@ class Accounts:
     results: Sequence[Result]
     written: list[Path]
 
-    def told(self) -> list[str]:
+    def summary_lines(self) -> list[str]:
         """Return the lines that a command prints."""
         lines = []
         for result in self.results:
@@ -373,15 +374,15 @@ class Accounts:
         return lines
 
 
-def make(case: UmbrellaCase, results: Results, tell: Tell) -> Accounts:
+def make(case: UmbrellaCase, results: Results, on_progress: OnProgress) -> Accounts:
     """Run all variants of a case and write figure and tables.
 
     :param results: gets a folder of the case's name
-    :param tell: takes the finished share
+    :param on_progress: takes the finished share
     :raises NotAllowed: the study does not fit the case
     """
     chosen = variants(case)
     with results.folder(case.name, case) as folder:
-        found = study(chosen, tell)
+        found = study(chosen, on_progress)
         written = write(case, found, made_by("energy", case), folder.staged) + figure(case, found, folder.staged)
         return Accounts(found, folder.publish(written))

@@ -15,13 +15,14 @@ from statejump import _engine, laws
 from statejump.core.engine_failures import engine
 from statejump.core.figures import DEM, REDUCED, panels, save, style
 from statejump.core.results_folder import Results
-from statejump.core.progress import Tell, counted
+from statejump.core.progress import OnProgress, counted
 from statejump.core.run import Run
 from statejump.core.tables import markdown, write_csv, write_markdown
-from statejump.kinds.umbrella import dem, reduced as model
+from statejump.kinds.umbrella import reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from studies.paper.common import made_by, refused
 from statejump.schema.paths import with_values
+from studies.paper import ensembles
 
 PERIOD_s = 10.0
 STEPS_PER_SECOND = (50_000, 100_000, 200_000)
@@ -141,7 +142,7 @@ def run_reduced(case: UmbrellaCase, law: str, steps_per_second: int) -> Hold:
 def run_dem(cases: Sequence[tuple[str, int]], case: UmbrellaCase, finished: Callable[[], None]) -> list[Hold]:
     """Run the held case in the DEM, by law and steps per second."""
     wanted = [by_law(case, law, rate) for law, rate in cases]
-    runs = dem.execute_all(wanted, finished)
+    runs = ensembles.execute_all(wanted, finished)
     return [
         _measure(one, "DEM", rate, run) for one, (_, rate), run in zip(wanted, cases, runs)
     ]
@@ -284,7 +285,7 @@ class Held:
     creep: Prediction
     written: list[Path]
 
-    def told(self) -> list[str]:
+    def summary_lines(self) -> list[str]:
         """Return the lines that a command prints."""
         return [
             f"{run.law}, {run.model}: slide {run.drift_m:.3e} m in {self.case.period_s:g} s, contact angle "
@@ -292,11 +293,11 @@ class Held:
         ]
 
 
-def make(case: UmbrellaCase, results: Results, tell: Tell) -> Held:
+def make(case: UmbrellaCase, results: Results, on_progress: OnProgress) -> Held:
     """Run a case left alone in both models, by both laws, and write figure and tables.
 
     :param results: gets a folder of the case's name
-    :param tell: takes the finished share
+    :param on_progress: takes the finished share
     :raises NotAllowed: nothing loads the joint of the case
     :raises FailedRun: the joint cannot be loaded as the case wants it
     """
@@ -305,7 +306,7 @@ def make(case: UmbrellaCase, results: Results, tell: Tell) -> Held:
         creep = predict(case)
     with results.folder(case.name, original) as folder:
         wanted = [(law, rate) for law in LAWS for rate in STEPS_PER_SECOND]
-        finished = counted(tell, 2 * len(wanted))
+        finished = counted(on_progress, 2 * len(wanted))
         runs = []
         for law, rate in wanted:
             runs.append(run_reduced(case, law, rate))

@@ -10,14 +10,15 @@ from pathlib import Path
 from statejump import _engine, laws
 from statejump.core.figures import DEM, REDUCED, panels, save, style
 from statejump.core.results_folder import Results
-from statejump.core.progress import Tell, counted
+from statejump.core.progress import OnProgress, counted
 from statejump.core.run import Run
 from statejump.core.tables import markdown, write_rows, write_markdown
-from statejump.kinds.umbrella import dem, reduced as model
+from statejump.kinds.umbrella import reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from studies.paper.common import made_by, refused
 from studies.paper.slow_statics import ANGLES, lag, lag_at_parting, quasi_static
 from statejump.schema.paths import with_values
+from studies.paper import ensembles
 
 STEPS_PER_SECOND = 100_000
 SAMPLES = 100  # only the ends of the histories are used
@@ -187,13 +188,13 @@ def _rows_of(block: Block, name: str, periods: Sequence[float], found: Sequence[
 
 
 def study(
-    chosen: Sequence[Block], tell: Tell, reduced_periods_s: Sequence[float] = REDUCED_PERIODS_s
+    chosen: Sequence[Block], on_progress: OnProgress, reduced_periods_s: Sequence[float] = REDUCED_PERIODS_s
 ) -> list[Row]:
     """Run all blocks in both models; the longest DEM runs first, as many at a time as cores."""
     pairs = [(block, period) for block in chosen for period in block.dem_periods_s]
     pairs.sort(key=lambda pair: -pair[1])
     total = sum(len(block.dem_periods_s) for block in chosen) + len(chosen) * len(reduced_periods_s)
-    finished = counted(tell, total)
+    finished = counted(on_progress, total)
     rows: list[Row] = []
     for block in chosen:
         found = []
@@ -201,7 +202,7 @@ def study(
             found.append(jumps(model.run(at_period(block.case, period))))
             finished()
         rows += _rows_of(block, "reduced", reduced_periods_s, found)
-    runs = dem.execute_all([at_period(block.case, period) for block, period in pairs], finished)
+    runs = ensembles.execute_all([at_period(block.case, period) for block, period in pairs], finished)
     of_run = {(block.name, period): jumps(run) for (block, period), run in zip(pairs, runs)}
     for block in chosen:
         periods = block.dem_periods_s
@@ -308,22 +309,22 @@ class Slow:
     rows: Sequence[Row]
     written: list[Path]
 
-    def told(self) -> list[str]:
+    def summary_lines(self) -> list[str]:
         """Return the lines that a command prints."""
         return [f"{block.title}: {closing(block, self.rows)}" for block in self.blocks]
 
 
-def make(case: UmbrellaCase, results: Results, tell: Tell) -> Slow:
+def make(case: UmbrellaCase, results: Results, on_progress: OnProgress) -> Slow:
     """Run all variants of a case in both models, ever slower, and write figure and tables.
 
     :param results: gets a folder of the case's name
-    :param tell: takes the finished share
+    :param on_progress: takes the finished share
     :raises NotAllowed: the study does not fit the case
     :raises FailedRun: statics leaves the path open
     """
     chosen = blocks(case)
     with results.folder(case.name, case) as folder:
-        rows = study(chosen, tell)
+        rows = study(chosen, on_progress)
         staged = folder.staged
         written = write(case, chosen, rows, made_by("slow", case), staged) + figure(case, chosen, rows, staged)
         return Slow(chosen, rows, folder.publish(written))

@@ -94,10 +94,10 @@ def statejump(
             return statejump_process(*words, **environment)
         output, errors = io.StringIO(), io.StringIO()
         ended: list[BaseException] = []
-        report = main._told
+        report = main._report_failure
         with monkeypatch.context() as there, redirect_stdout(output), redirect_stderr(errors):
             there.chdir(tmp_path)
-            there.setattr(main, "_told", lambda error, as_json: (ended.append(error), report(error, as_json))[1])
+            there.setattr(main, "_report_failure", lambda error, as_json: (ended.append(error), report(error, as_json))[1])
             try:
                 status = main.run(words)
             except SystemExit as end:

@@ -490,12 +490,12 @@ def test_workers_that_vanish_end_the_campaign_and_keep_what_is_finished(
     with _no_main_file(), LocalCluster(
         n_workers=1, threads_per_worker=1, dashboard_address="127.0.0.1:0", local_directory=str(tmp_path)
     ) as cluster, journal.Journal(tmp_path / "trial", campaign, restart=False) as kept:
-        def tell(fraction: float) -> None:
+        def on_progress(fraction: float) -> None:
             if fraction > 0:
                 kill_workers(cluster)
 
         with pytest.raises(StatejumpError) as failure:
-            execute.run_missing(campaign, kept, cluster.scheduler_address, None, tell)
+            execute.run_missing(campaign, kept, cluster.scheduler_address, None, on_progress)
     assert str(failure.value).startswith("the dask scheduler has had no workers for 0.2 s; finished samples are kept")
     assert 0 < len(kept.finished) < campaign.samples
 

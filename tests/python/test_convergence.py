@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 import statejump as sj
-from statejump.core.case_files import made_by
 from statejump.core.run import Column, Run
 from statejump.kinds.spring_slider import result
 from statejump.kinds.spring_slider.case import SpringSliderCase
@@ -92,14 +91,5 @@ def test_text_of_another_case(table1: SpringSliderCase, tmp_path: Path) -> None:
     assert isinstance(case, SpringSliderCase)
     _, text = found_of(case).write(tmp_path)
     said = text.read_text()
-    assert "which was made in Python" in said and "first slip" not in said.rpartition("What stays")[2]
+    assert "Made by `statejump convergence`" in said and "first slip" not in said.rpartition("What stays")[2]
     assert "stop" not in said.rpartition("What stays")[2] and "off the normal force" not in said
-
-
-def test_how_a_file_was_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cases: Path) -> None:
-    (tmp_path / "own.toml").write_text((cases / "table1.toml").read_text())
-    own = sj.load(tmp_path / "own.toml").definition
-    assert made_by("statejump hold", own) == f"`statejump hold {tmp_path / 'own.toml'}`"
-    monkeypatch.chdir(tmp_path)
-    assert made_by("statejump hold", own) == "`statejump hold own.toml`"
-    assert made_by("statejump hold", sj.load("ring_12").definition) == "`statejump hold cases/trusses/ring_12.toml`"

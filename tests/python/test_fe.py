@@ -11,9 +11,9 @@ import pytest
 from conftest import Outcome
 
 import statejump as sj
-from statejump.kinds.spring_slider.fe import kinks
-from statejump.kinds.truss import fe
 from statejump.kinds.truss.generate.document import to_toml
+from studies import calculix
+from studies.calculix.spring_slider import kinks
 
 BAR = {"young_modulus_Pa": 7e10, "cross_section_area_m2": 1e-4, "thermal_expansion_per_K": 2.3e-5,
        "density_kg_per_m3": 2700.0}
@@ -98,7 +98,7 @@ with_calculix = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX
 @with_calculix
 @pytest.mark.parametrize("what", TRUSSES)
 def test_a_truss_with_locked_joints_agrees_to_1e_8(what: str) -> None:
-    found = fe.answer(sj.load(TRUSSES[what]()).definition)
+    found = calculix.answer(sj.load(TRUSSES[what]()).definition)
     moved, force, *_ = found.rows
     assert moved.passed and force.passed and (what == "between walls" or moved.values["reduced"] > 1e-4)
     assert what == "free expansion" or force.values["reduced"] > 100
@@ -134,7 +134,7 @@ def with_play() -> dict[str, Any]:
 def test_sliders_slip_in_both_alike(what: str) -> None:
     """Friction that sticks and bricks that are stretched leave a few millionths."""
     case = sj.load("cases/trusses/chain_10.toml" if what == "chain" else with_play())
-    rows = {row.name: row for row in fe.answer(case.definition).rows}
+    rows = {row.name: row for row in calculix.answer(case.definition).rows}
     moved = rows["largest_displacement_sliding"]
     assert moved.values["reduced"] > 1e-4 and moved.difference < 1e-5 and moved.passed
     if what == "chain":  # a closed form: every block is held by f l/(E A) ahead of the one before
@@ -148,7 +148,7 @@ def test_sliders_slip_in_both_alike(what: str) -> None:
 def test_events_and_jump_of_table_1_agree_within_a_thousandth(statejump: Callable[..., Outcome]) -> None:
     told = statejump("fe", "cases/table1.toml")
     assert told.status == 0, told.errors
-    rows = {row.name: row for row in sj.load("table1").definition.behaviour.fe(sj.load("table1").definition).rows}
+    rows = {row.name: row for row in calculix.answer(sj.load("table1").definition).rows}
     assert list(rows) == ["slide_1_temperature_change", "rest_2_temperature_change", "slide_3_temperature_change",
                           "state_jump"]
     # Sticking that gives way by 1/STICK, stops by 1/PUSH of what the bar does.

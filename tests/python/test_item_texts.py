@@ -12,7 +12,7 @@ from statejump.kinds.loading import parse_case
 from statejump.kinds.truss import generate
 from statejump.schema import texts as module
 from statejump.schema.item_tables import ItemTable, once
-from statejump.schema.texts import InBlocks, Names, Numbering, Texts, Words, coded
+from statejump.schema.texts import InBlocks, Names, Numbering, Texts, TextPool, coded
 
 
 def test_numbers_are_those_of_the_order_of_appearance() -> None:
@@ -47,7 +47,7 @@ def test_places_of_many_bytes(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_texts_that_are_not_printed_are_known() -> None:
-    words = Words(["a", "b\x1b", "ä", "\n"])
+    words = TextPool(["a", "b\x1b", "ä", "\n"])
     words.add([b"c", b"d\x7f"])
     assert words.unprintable == [2, 4, 6]
 
@@ -67,7 +67,7 @@ def test_names_are_a_sequence(names: Names | InBlocks, monkeypatch: pytest.Monke
 
 
 def test_texts_that_are_not_given() -> None:
-    words = Words(["x", "y"])
+    words = TextPool(["x", "y"])
     one = Texts(np.array([2, 0, 1]), words, "none")
     assert one.plain() == ["y", "none", "x"] and one.has("none").tolist() == [False, True, False]
     rows = Texts(np.array([[1, 0, 2], [0, 0, 0]]), words)

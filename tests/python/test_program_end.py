@@ -183,7 +183,7 @@ def test_campaign_follows() -> None:
     campaign = sj.montecarlo(case, vary, samples=3)
     frame = campaign.frame()
     assert (frame["state_jump_m"] < 0).all() and (frame["displacement_at_program_end_m"] < -2e-4).all()
-    assert f"note: {NOTE}" in campaign.told() and campaign.summary()["notes"] == [NOTE]
+    assert f"note: {NOTE}" in campaign.summary_lines() and campaign.summary()["notes"] == [NOTE]
     kept = sj.load("table1").changed(KEPT)
     found = outcome(kept.definition, "reduced")
     assert isnan(found["state_jump_m"])

@@ -23,8 +23,8 @@ from statejump.core.comparison import models
 from statejump.core.errors import StatejumpError
 from statejump.core.run import CONTACT_STATES, Column, Event, Events, Run
 from statejump.kinds import kind, names
-from statejump.report import page, words
-from statejump.report.decimation import kept_samples, largest_error
+from statejump.report import page, labels
+from statejump.report.decimation import errors, kept_samples
 from statejump.report.document import TOLERANCE, Document
 from statejump.report.drawing import round_down
 from statejump.results import layout, scene as drawing
@@ -388,7 +388,7 @@ def test_decimation_keeps_what_it_says() -> None:
     columns[1234, 0] = 30.0  # an impact of one sample
     for most, tolerance in ((3000, 1e-3), (25, 1e-3)):
         chosen = kept_samples(time, columns, most, tolerance, always=(17,))
-        error = largest_error(time, columns.T, chosen)
+        error = errors(time, columns.T, chosen).max()
         lines = np.stack([np.interp(time, time[chosen], column[chosen]) for column in columns.T], axis=1)
         real = np.max(np.abs(lines - columns) / np.maximum(np.ptp(columns, axis=0), 1e-300))
         assert error == pytest.approx(real, rel=1e-9)
@@ -423,7 +423,7 @@ UNIT_WORDS = {word for ending in units.ENDINGS for word in ending.split("_") if 
 @pytest.mark.parametrize("name", names())
 def test_no_unit_rests_in_a_label(name: str) -> None:
     """Keys of the case, columns and tables: the words of a key end before its unit, whichever it is."""
-    found, case = words.of_kind(name), kind(name).Case
+    found, case = labels.of_kind(name), kind(name).Case
     keys = [path.rpartition(".")[2] for path in keys_of(case)]
     tables = [column for _, columns in layout.TABLES.values() for column in columns]
     for key in (*keys, *kind(name).COLUMNS, *tables, "friction_v1_m_per_s", "rolling_resistance_N_m_s_per_rad"):
@@ -436,7 +436,7 @@ def test_no_unit_rests_in_a_label(name: str) -> None:
 
 
 def test_labels_of_keys() -> None:
-    found = words.Words({"link_ab": "Link AB", "tip_jump": "Jump of the tip", "stage S1": "rest"})
+    found = labels.Labels({"link_ab": "Link AB", "tip_jump": "Jump of the tip", "stage S1": "rest"})
     assert found.plain("friction_v1_m_per_s") == "Friction v1" and found.plain("tip_jump_m") == "Jump of the tip"
     assert found.parameter("link.young_modulus_Pa") == "Young's modulus of link"
     assert found.parameter("link_ab.density_kg_per_m3") == "Density of Link AB"

@@ -19,7 +19,7 @@ from statejump.cli.report import result_files
 from statejump.core import units
 from statejump.core.run import GROUPS
 from statejump.kinds.truss.page import SHOWN_JUMP
-from statejump.report import words
+from statejump.report import labels
 from statejump.report.document import Document
 from statejump.report.drawing import round_down
 from statejump.results.contents import Result
@@ -60,7 +60,7 @@ def test_numbers_on_the_page_are_those_of_the_answers(statejump: Callable[..., O
         assert row["joint"] in found.words and units.text(row["contribution"], "m", 4) in found.words
     strongest = max(answers.tables["sensitivities"], key=lambda row: abs(row["elasticity"]))
     key = strongest["parameter"].rpartition(".")[2]
-    assert words.of_kind("truss").plain(key) + " of all revolutes" in found.words
+    assert labels.of_kind("truss").plain(key) + " of all revolutes" in found.words
     assert f"{strongest['elasticity']:+.3g}" in found.words
     assert "30 nodes and 24 links" in found.words and "take 0.5 to 1 of the temperature change" in found.words
     assert "Both models" not in found.words and "contributions of all joints add up to" in found.words
@@ -193,7 +193,7 @@ def test_a_hundred_joints_in_space(tmp_path: Path, statejump: Callable[..., Outc
                  "Joints of the reduced model stick elastically, as those of the DEM."]),
 ])
 def test_case_in_words(kind: str, sentences: list[str]) -> None:
-    described = words.described(sj.load(TRUSSES / f"{kind}.toml").definition)
+    described = labels.described(sj.load(TRUSSES / f"{kind}.toml").definition)
     for sentence in sentences:
         assert sentence in described, described
     assert described[-1].startswith("The temperature changes by 100\u202fK")

@@ -19,7 +19,7 @@ from statejump.core.temperature_columns import read_columns as temperatures_of
 from statejump.identification.loop import COLUMNS, WORDS
 from statejump.kinds.loading import load_case
 from statejump.kinds.truss.importing.tables import read as read_deck
-from statejump.surface.told import read_nodes
+from statejump.surface.summary import read_nodes
 
 # 0, 0.25, 1 s; 0, 12.5, -3 mm; 0, 1.25, -0.5 kN
 TABLES = {

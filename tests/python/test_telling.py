@@ -121,7 +121,7 @@ def test_signal_while_the_engine_is_at_work(
 def test_internal_fault_has_a_status_of_its_own(tmp_path: Path) -> None:
     """Also where the fault comes while a failure is told, or before there is anybody to tell it."""
     launcher = Path(COMMAND).read_text()
-    for broken in ("import statejump.cli.main as cli; cli._told = None; cli.cli = None", "raise MemoryError"):
+    for broken in ("import statejump.cli.main as cli; cli._report_failure = None; cli.cli = None", "raise MemoryError"):
         script = tmp_path / "broken.py"
         script.write_text(launcher.replace("from statejump.cli.main import main", f"{broken}\nfrom statejump.cli.main import main"))
         done = subprocess.run([sys.executable, str(script), "reduced", "x"], capture_output=True, text=True)

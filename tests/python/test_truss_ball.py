@@ -17,10 +17,11 @@ import statejump as statejump_package
 from statejump import _paths
 from statejump.core.errors import StatejumpError
 from statejump.kinds.loading import parse_case
-from statejump.kinds.truss import fe, generate, solve
+from statejump.kinds.truss import generate, solve
 from statejump.kinds.truss.contact_problems import contact_problems
 from statejump.kinds.truss.generate.document import to_toml
 from statejump.results.read import read
+from studies.calculix.truss import pinned
 
 TRIPOD = _paths.SHARE / "cases" / "trusses" / "ball_tripod.toml"
 
@@ -121,8 +122,8 @@ def test_alone_it_is_no_contact_problem() -> None:
 
 def test_locked_it_is_a_pin() -> None:
     truss = parse_case(tripod()).resolve()
-    pinned = fe._pinned(truss)
-    assert len(pinned.nodes.names) == len(truss.nodes.names) - 1 and not pinned.joints["ball_joint"].names
+    locked = pinned(truss)
+    assert len(locked.nodes.names) == len(truss.nodes.names) - 1 and not locked.joints["ball_joint"].names
 
 
 def test_dem_rolls_and_slips_out_of_any_plane_as_the_path(statejump: Callable[..., Outcome], tmp_path: Path) -> None:

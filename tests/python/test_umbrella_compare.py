@@ -13,6 +13,7 @@ from statejump.core.errors import StatejumpError
 from statejump.kinds.loading import load_case
 from statejump.kinds.umbrella import dem, reduced as model
 from statejump.schema.paths import with_values
+from studies.paper import ensembles
 
 
 def quantities(folder: Path) -> dict[str, dict]:
@@ -143,17 +144,17 @@ def test_steps_too_long_are_refused_by_both_models(cases: Path) -> None:
 def test_ensembles_repeat_bit_for_bit(cases: Path) -> None:
     case = with_values(load_case(cases / "umbrella.toml"),
                          {"ensemble.reduced_steps_per_cycle": 20_000, "output.samples_per_cycle": 20})
-    few, many = model.ensemble(case, 3), model.ensemble(case, 5)
+    few, many = ensembles.ensemble(case, 3), ensembles.ensemble(case, 5)
     assert np.array_equal(few.theta2_rad, many.theta2_rad[:3])
-    other = model.ensemble(with_values(case, {"ensemble.seed": 2}), 3)
+    other = ensembles.ensemble(with_values(case, {"ensemble.seed": 2}), 3)
     assert not np.array_equal(few.theta2_rad, other.theta2_rad)
-    radii = [np.hypot(*offset) for offset in model.start_offsets(case, 50)]
+    radii = [np.hypot(*offset) for offset in ensembles.start_offsets(case, 50)]
     assert 0 < min(radii) and max(radii) <= case.ensemble.start_spread_m
 
 
 def test_dem_repeats_bit_for_bit(cases: Path) -> None:
     case = with_values(load_case(cases / "umbrella.toml"), {"dem.steps_per_cycle": 50_000})
-    first, second = (run.flat() for run in dem.execute_all([case, case]))
+    first, second = (run.flat() for run in ensembles.execute_all([case, case]))
     assert "theta2_rad" in first and "thermal_work_J" in first
     for name, values in first.items():
         assert np.array_equal(values, second[name]), name

@@ -15,7 +15,7 @@ from click.testing import CliRunner
 
 from conftest import BUILT, REPOSITORY
 from statejump import _paths
-from studies.paper import commands
+from studies.paper import commands, ensembles
 from statejump.core import yade_process
 from statejump.core.errors import StatejumpError
 from statejump.kinds.loading import load_case
@@ -87,7 +87,7 @@ def test_dem_jump_is_the_reduced_one(bias):
     # that costs omega^2 dt^2 of its amplitude, c atan(mu) at most; over the joint's height h that is an
     # angle. omega^2 = F |AC|^2/(c I): pendulum of both links' inertia I under the joint force F.
     case = slow.at_period(bias, 2.0)
-    ours, other = slow.jumps(model.run(case)), slow.jumps(dem.execute_all([case])[0])
+    ours, other = slow.jumps(model.run(case)), slow.jumps(ensembles.execute_all([case])[0])
     height, play = bias.ideal_position_m[1], bias.joint.radial_clearance_m
     force = bias.torsion_spring.stiffness_N_m_per_rad * bias.torsion_spring.bias_rad / height
     inertia = sum(link.mass_kg / 3 * link.stress_free_length_m**2 for link in (bias.link_ab, bias.link_bc))
@@ -244,8 +244,8 @@ def test_ensemble_does_not_depend_on_the_number_of_workers(cases, monkeypatch):
         "ensemble.reduced_steps_per_cycle": 20_000, "output.samples_per_cycle": 100})
     found = {}
     for workers in (1, 2):
-        monkeypatch.setattr(model.os, "cpu_count", lambda workers=workers: workers)
-        found[workers] = model.ensemble(case, runs=6)
+        monkeypatch.setattr(ensembles.os, "cpu_count", lambda workers=workers: workers)
+        found[workers] = ensembles.ensemble(case, runs=6)
     for name in ("time_s", "theta2_rad", "end_eccentricity_m"):
         assert getattr(found[1], name).tobytes() == getattr(found[2], name).tobytes(), name
     assert len(np.unique(found[1].jump_rad)) == 6  # the starts do differ

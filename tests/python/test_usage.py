@@ -21,7 +21,7 @@ from failures import Failure, failing, failure
 from statejump.campaign.summary import statistics
 from statejump.core.comparison import models
 from statejump.core.run import Events
-from statejump.report.words import of_kind
+from statejump.report.labels import of_kind
 
 TABLE1 = {"thermal.temperature_change_max_K": 200.0}
 RING = {"thermal.temperature_change_max_K": 150.0}
@@ -314,7 +314,7 @@ def test_extremes_name_their_samples() -> None:
     assert (found["minimum"], found["minimum_sample"], found["maximum"], found["maximum_sample"]) == (-3.0, 2, 5.0, 4)
     assert statistics(np.array([np.nan]))["maximum_sample"] is None
     swept = sj.sweep(sj.load("table1"), {"joint.friction_coefficient": [0.1, 0.3, 0.2]})
-    table = swept.told()[0]
+    table = swept.summary_lines()[0]
     assert not isinstance(table, str)
     row = dict(zip(table.header[-3:], next(row for row in table.rows if row[0] == "state_jump_m")[-3:]))
     assert table.header[-2:] == ("largest", "in sample") and row["in sample"] == "1"

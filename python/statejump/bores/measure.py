@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _DRAWN, _SAVED = Later("statejump.bores.picture:drawn"), Later("statejump.core.figures:save")
-_TOLD, _HTML, _WRITTEN = (Later(f"statejump.bores.words:{name}") for name in ("told", "html", "write"))
+_SUMMARY_LINES, _HTML, _WRITTEN = (
+    Later(f"statejump.bores.summary:{name}") for name in ("summary_lines", "html", "write"))
 ANGLES = 1024  # samples around a section
 SECTIONS = 5  # along the bore
 HARMONICS = range(2, 13)
@@ -162,9 +163,9 @@ class Bore:
         """
         return _DRAWN(self, axes)
 
-    def told(self) -> list[Shown | str]:
+    def summary_lines(self) -> list[Shown | str]:
         """Return what a command prints of it."""
-        return _TOLD(self)
+        return _SUMMARY_LINES(self)
 
     def write(self, folder: Path) -> list[Path]:
         """Write ``bore.csv`` and the picture into a folder; return the paths."""

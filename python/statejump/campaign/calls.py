@@ -57,5 +57,5 @@ def _run(
         outputs = [outputs]
     plan = plan_for(case, command, ((f"vary[{key!r}]", table) for key, table in tables.items()), model=model,
                     samples=samples, seed=seed, asked=outputs)
-    with shown(progress, f"{plan.name}, {plan.samples:,} samples") as tell:
-        return run(plan, workers, tell)
+    with shown(progress, f"{plan.name}, {plan.samples:,} samples") as on_progress:
+        return run(plan, workers, on_progress)

@@ -11,7 +11,7 @@ from statejump.campaign.batches import Batches
 from statejump.campaign.journal import Kept
 from statejump.campaign.plan import Plan
 from statejump.campaign.work import Batch, run_samples
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 
 # Time for which samples are run in this process before workers are started: about the start time of workers.
 HERE_S = 2.0
@@ -41,8 +41,8 @@ class Statistics:
 class _Account:
     """Keeps finished batches and counts them."""
 
-    def __init__(self, campaign: Plan, kept: Kept, done: Statistics, tell: Tell) -> None:
-        self.campaign, self.kept, self.done, self.tell = campaign, kept, done, tell
+    def __init__(self, campaign: Plan, kept: Kept, done: Statistics, on_progress: OnProgress) -> None:
+        self.campaign, self.kept, self.done, self.on_progress = campaign, kept, done, on_progress
 
     def add(self, seconds: float, batch: Batch) -> None:
         done = self.done
@@ -50,25 +50,27 @@ class _Account:
         done.run_now += len(batch.indices)
         done.worker_time_s += seconds
         done.batch_sizes.append(len(batch.indices))
-        self.tell((done.already_there + done.run_now) / self.campaign.samples)
+        self.on_progress((done.already_there + done.run_now) / self.campaign.samples)
 
 
-def run_missing(campaign: Plan, kept: Kept, scheduler: str | None, workers: int | None, tell: Tell) -> Statistics:
+def run_missing(
+    campaign: Plan, kept: Kept, scheduler: str | None, workers: int | None, on_progress: OnProgress,
+) -> Statistics:
     """Run the missing samples. Every finished batch is stored before the next is counted.
 
     :param kept: the stored samples; receives finished ones
     :param scheduler: address of a running scheduler; None: a cluster on this machine
     :param workers: number of processes of that cluster; None: one per core, or none for a reduced model that takes this
         process about as long as starting them
-    :param tell: called with the finished fraction of all samples
+    :param on_progress: called with the finished fraction of all samples
     :raises StatejumpError: no cluster; finished samples are stored
     """
     missing = [index for index in range(campaign.samples) if index not in kept.finished]
     done = Statistics(already_there=campaign.samples - len(missing))
     if not missing:
         return done
-    account = _Account(campaign, kept, done, tell)
-    tell(done.already_there / campaign.samples)
+    account = _Account(campaign, kept, done, on_progress)
+    on_progress(done.already_there / campaign.samples)
     if scheduler is None and workers is None and campaign.model == "reduced":
         missing = _here(campaign, missing, account)
     if missing:

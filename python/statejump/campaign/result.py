@@ -16,7 +16,7 @@ from statejump.campaign.summary import COLUMNS, shown, summary, write_summary
 from statejump.campaign.tables import Table, make_table, write_csv, write_hdf5
 from statejump.core.errors import Interrupted
 from statejump.core.later import Later
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.core.tables import Shown, write_json
 from statejump.core.yade_process import find_yade
 
@@ -88,7 +88,7 @@ class Campaign:
             raise ValueError(f"name = {name!r} is not allowed: must be {' or '.join(map(repr, found))}")
         return found[name or next(iter(found))]
 
-    def told(self) -> list[Shown | str]:
+    def summary_lines(self) -> list[Shown | str]:
         """Return the tables and lines that a command prints."""
         found, done = self.summary(), self.done
         rows = [(name, *(shown(entry[key]) for key in COLUMNS)) for name, entry in found["outcomes"].items()]
@@ -144,16 +144,16 @@ class Campaign:
         return f"<h4>{escape(title)}</h4>{_TABLE(('outcome', *COLUMNS.values()), rows)}{failures}"
 
 
-def run(plan: Plan, workers: int | None, tell: Tell) -> Campaign:
+def run(plan: Plan, workers: int | None, on_progress: OnProgress) -> Campaign:
     """Run a campaign that leaves no files."""
     kept = Kept()
     _check_yade(plan, None)
-    done = execute.run_missing(plan, kept, None, workers, tell)
+    done = execute.run_missing(plan, kept, None, workers, on_progress)
     return Campaign(plan, make_table(plan, kept.batches), done)
 
 
 def run_in(
-    plan: Plan, folder: Path, scheduler: str | None, workers: int | None, restart: bool, tell: Tell
+    plan: Plan, folder: Path, scheduler: str | None, workers: int | None, restart: bool, on_progress: OnProgress
 ) -> Campaign:
     """Run the samples that the journal in a folder lacks.
 
@@ -162,7 +162,7 @@ def run_in(
     _check_yade(plan, scheduler)
     with Journal(folder, plan, restart) as kept:
         try:
-            done = execute.run_missing(plan, kept, scheduler, workers, tell)
+            done = execute.run_missing(plan, kept, scheduler, workers, on_progress)
             done.note = kept.note
         except KeyboardInterrupt:
             finished = sum(index < plan.samples for index in kept.finished)

@@ -45,5 +45,5 @@ def bore_command(
         raise
     with results.folder(f"bore_{file.stem}") as folder:
         written = folder.publish(bore.write(folder.staged))
-    print_shown(bore.told(), console)
+    print_shown(bore.summary_lines(), console)
     console.print(f"results: {', '.join(str(path) for path in written)}")

@@ -80,10 +80,10 @@ def _command(name: str, text: str) -> click.Command:
             console.print(f"table of {plan.samples:,} samples: {table}")
             return
         with results.folder(plan.name) as folder:
-            with progress(console, f"{plan.name}, {plan.samples:,} samples") as tell:
-                campaign = run_in(plan, folder.path, scheduler, workers, restart, tell)
+            with progress(console, f"{plan.name}, {plan.samples:,} samples") as on_progress:
+                campaign = run_in(plan, folder.path, scheduler, workers, restart, on_progress)
             written = folder.publish(campaign.write(folder.staged))
-        print_shown(campaign.told(), console)
+        print_shown(campaign.summary_lines(), console)
         console.print(f"results: {', '.join(str(path) for path in written)}")
         console.print(f"wall time: {since_start_s():.1f} s, start and figures included")
         if campaign.failed == plan.samples:

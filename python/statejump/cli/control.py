@@ -11,7 +11,7 @@ import click
 from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, print_shown, undivided
 from statejump.control import study
 from statejump.control.capabilities import ControlStudy
-from statejump.control.study import Places, Study, Sweep, number
+from statejump.control.study import DesignChoices, Study, Sweep, number
 from statejump.core.results_folder import Results
 from statejump.core.tables import Shown
 from statejump.kinds import require
@@ -37,7 +37,7 @@ def _table(title: str, done: Study, sweep: Sweep, unit: str) -> Shown:
     return Shown(f"{title}: {sweep.parameter}", heads, rows, left=("",))
 
 
-def _told(title: str, done: Study) -> Iterator[Shown | str]:
+def _lines(title: str, done: Study) -> Iterator[Shown | str]:
     yield f"measure: {done.measure}"
     for sweep in done.sweeps:
         unit = "" if sweep.display_unit == "-" else f" [{sweep.display_unit}]"
@@ -56,7 +56,7 @@ def _told(title: str, done: Study) -> Iterator[Shown | str]:
 @click.command("control")
 @CASE
 @click.option("--jump-below", type=float, metavar="VALUE",
-              help="Wanted largest jump, in m or, for an umbrella, rad.  [default: half of the case's]")
+              help="Wanted largest jump, in m.  [default: half of the case's]")
 @click.option("--node", metavar="NAME", help="Of a truss: the node that jumps.  [default: the most moved one]")
 @click.option("--add-spring", type=(str, str), multiple=True, metavar="A B",
               help="Of a truss: two nodes between which a spring may be added; may be given again.")
@@ -87,11 +87,11 @@ def control_command(
     if with_dem:
         case.check_dem()
     with results.folder(case.name, case) as folder:
-        with undivided(console, "control") as tell:
+        with undivided(console, "control") as on_progress:
             done: Study = require(case, ControlStudy).control(
-                case, jump_below=jump_below, runs=runs, with_dem=with_dem, tell=tell,
-                places=Places(node, add_spring, free))
+                case, jump_below=jump_below, runs=runs, with_dem=with_dem, on_progress=on_progress,
+                choices=DesignChoices(node, add_spring, free))
         written = folder.publish(
             study.write(case.name, done, folder.staged) + plot.figure(case.title, done, folder.staged))
-    print_shown(list(_told(case.title, done)), console)
+    print_shown(list(_lines(case.title, done)), console)
     console.print(f"results: {', '.join(str(path) for path in written)}")

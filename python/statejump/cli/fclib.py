@@ -31,7 +31,7 @@ def fclib_command() -> None:
     """
 
 
-def _told(name: str, merit: Merit) -> str:
+def _merit_line(name: str, merit: Merit) -> str:
     return f"{name}: merit {merit.natural_map:.3g}, scaled {merit.scaled:.3g}"
 
 
@@ -66,9 +66,9 @@ def solve_command(file: Path, output: Path | None, tolerance: float, method: str
     problem = fclib.read(file)
     console.print(f"{problem.title or file.name}: {problem.contacts} contacts in {problem.dimension}-D")
     for stored in problem.stored:
-        console.print(_told(f"stored {stored.name}", fclib.merit(problem, stored.reactions)))
+        console.print(_merit_line(f"stored {stored.name}", fclib.merit(problem, stored.reactions)))
     solution = fclib.solve(problem, tolerance=tolerance, method=method, most_sweeps=most_sweeps)
-    console.print(_told(f"found by {solution.method.replace('_', ' ')}", solution.merit))
+    console.print(_merit_line(f"found by {solution.method.replace('_', ' ')}", solution.merit))
     console.print(f"iterations: {solution.effort}; {solution.seconds:.3g} s")
     if not solution.solved:
         raise fclib.NotSolved(solution, tolerance, file=file)
@@ -96,8 +96,9 @@ def write_command(case_file: Path, number: int, results: Results, quiet: bool) -
     console = make_console(quiet)
     case = loaded(case_file, ContactProblems)
     try:
-        with undivided(console, f"{case.name}, path") as tell, results.folder(f"{case.name}/fclib", case) as folder:
-            found = require(case, ContactProblems).contact_problems(case, number, tell)
+        with (undivided(console, f"{case.name}, path") as on_progress,
+              results.folder(f"{case.name}/fclib", case) as folder):
+            found = require(case, ContactProblems).contact_problems(case, number, on_progress)
             written = []
             for place, one in enumerate(found, start=1):
                 path = folder.staged / f"step_{place:0{len(str(number))}d}.hdf5"

@@ -63,6 +63,6 @@ def identify_command(
                 refused.remedy = f"--ignore {quote(str(refused.key))} leaves it out"
             raise
         written = folder.publish(found.write(folder.staged))
-    print_shown(found.told(), console)
+    print_shown(found.summary_lines(), console)
     console.print(found.joint(), markup=False, highlight=False)
     console.print(f"results: {', '.join(str(path) for path in written)}")

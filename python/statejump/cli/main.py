@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The ``statejump`` command: its commands, and how their failures are told. A command's module is loaded when the
+"""The ``statejump`` command: its commands, and how their failures are reported. A command's module is loaded when the
 command is called. Exit statuses: docs/reference/mistakes.md."""
 from __future__ import annotations
 
@@ -15,9 +15,8 @@ from typing import Any, TextIO
 
 import click
 
-from statejump import _paths
 from statejump._version import __version__
-from statejump.cli import streams
+from statejump.cli import streams, studies
 from statejump.cli.suggesting import Suggesting
 from statejump.core import errors
 from statejump.core.errors import Interrupted, StatejumpError, TolerancesMissed, printable
@@ -31,7 +30,6 @@ TASKS: dict[str, dict[str, tuple[str, str]]] = {
         "dem": ("models:dem_command", "DEM run of CASE in YADE: history."),
         "compare": ("models:compare_command",
                     "Both models of CASE side by side, or two result files of the same case."),
-        "fe": ("fe:fe_command", "CASE in finite elements (CalculiX) beside the reduced model."),
         "control": ("control:control_command", "What makes the state jump of CASE smaller, and by how much."),
         "statics": ("statics:statics_command", "Where the joint of CASE can rest, and the largest jump it can make."),
     },
@@ -57,17 +55,17 @@ TASKS: dict[str, dict[str, tuple[str, str]]] = {
         "schema": ("schema:schema_command", "JSON Schema of case and campaign files."),
     },
 }
-# Studies beside the package: there in the repository, not in an installation.
-STUDIES = "studies.paper.commands"
-SHARE = os.path.join(os.path.dirname(_paths.__file__), _paths._SHARE)
-if os.path.isfile(os.path.join(SHARE, *STUDIES.split(".")) + ".py"):
+PAPER = "studies.paper.commands"
+if studies.PRESENT:
+    TASKS["One case"]["fe"] = (
+        "studies.calculix.commands:fe_command", "CASE in finite elements (CalculiX) beside the reduced model.")
     TASKS["The paper"] = {
-        "figures": (f"{STUDIES}:figures_command", "The paper's Figs 13-16 in both models, and its claims in numbers."),
-        "slow": (f"{STUDIES}:slow_command", "Slow heating tends to the quasi-static path."),
-        "hold": (f"{STUDIES}:hold_command", "Friction that creeps and friction that holds."),
-        "convergence": (f"{STUDIES}:convergence_command",
+        "figures": (f"{PAPER}:figures_command", "The paper's Figs 13-16 in both models, and its claims in numbers."),
+        "slow": (f"{PAPER}:slow_command", "Slow heating tends to the quasi-static path."),
+        "hold": (f"{PAPER}:hold_command", "Friction that creeps and friction that holds."),
+        "convergence": (f"{PAPER}:convergence_command",
                         "DEM error of CASE against cycle duration and time step."),
-        "energy": (f"{STUDIES}:energy_command", "Energy account of CASE over time steps."),
+        "energy": (f"{PAPER}:energy_command", "Energy account of CASE over time steps."),
     }
 COMMANDS = {name: found for commands in TASKS.values() for name, found in commands.items()}
 
@@ -82,11 +80,9 @@ class Commands(Suggesting):
         if name not in COMMANDS:
             return None
         module, _, attribute = COMMANDS[name][0].partition(":")
-        if module != STUDIES:
-            module = f"statejump.cli.{module}"
-        elif SHARE not in sys.path:
-            sys.path.append(SHARE)
-        found: click.Command = getattr(import_module(module), attribute)
+        of_study = module.startswith(studies.FOLDER)
+        loaded = studies.module(module) if of_study else import_module(f"statejump.cli.{module}")
+        found: click.Command = getattr(loaded, attribute)
         return found
 
     def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
@@ -107,7 +103,7 @@ def cli() -> None:
     """
 
 
-def _told(error: BaseException, as_json: bool) -> int:
+def _report_failure(error: BaseException, as_json: bool) -> int:
     """Tell what ended the command on standard error; return the exit status."""
     if isinstance(error, StatejumpError):
         failure = error.fields()
@@ -149,7 +145,7 @@ def run(arguments: Sequence[str]) -> int:
     except click.exceptions.Exit as end:
         return int(end.exit_code)
     except (Exception, KeyboardInterrupt) as error:
-        return _told(error, as_json)
+        return _report_failure(error, as_json)
     return 0
 
 
@@ -161,7 +157,7 @@ def _ended(number: int, frame: Any) -> None:
 ENDING = (signal.SIGTERM, signal.SIGHUP)
 
 
-_WARNED: set[str] = set()  # what was told
+_WARNED: set[str] = set()  # what was printed
 
 
 def _warned(message: Warning | str, category: type[Warning], filename: str, lineno: int, file: TextIO | None = None,
@@ -186,9 +182,9 @@ def main() -> None:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT, *ENDING})
         status = run(arguments)
     except KeyboardInterrupt as early:
-        status = _told(early, _wants_json(arguments))
+        status = _report_failure(early, _wants_json(arguments))
     lost = streams.finish()
     if lost is not None:
-        told = _told(lost, _wants_json(arguments))
-        status = status or told
+        lost_status = _report_failure(lost, _wants_json(arguments))
+        status = status or lost_status
     sys.exit(status)

@@ -8,6 +8,7 @@ import click
 from rich.console import Console
 
 from statejump import api
+from statejump.cli import studies
 from statejump.cli.results import compare_files
 from statejump.cli.terminal import (
     CASE, QUIET, RESULTS, CaseFile, loaded, make_console, print_comparison, print_shown, progress,
@@ -20,15 +21,15 @@ from statejump.core.run import Run, warnings_of
 from statejump.core.scratch import scratch
 from statejump.kinds import require, running
 from statejump.kinds.protocol import (
-    DemInput, DynamicModel, FiniteElements, ModelComparison, QuasiStaticModel, ReducedModel, TracedModel,
+    DemInput, DynamicModel, ModelComparison, QuasiStaticModel, ReducedModel, TracedModel,
 )
 from statejump.report.capabilities import RunText
 from statejump.results.read import is_result_file
 from statejump.results.record import save
 
 
-def _told(case: Case, runs: dict[str, Run], console: Console) -> None:
-    print_shown(require(case, RunText).told(case, runs), console)
+def _print_summary(case: Case, runs: dict[str, Run], console: Console) -> None:
+    print_shown(require(case, RunText).summary_lines(case, runs), console)
 
 
 def _warn(case: Case, runs: dict[str, Run], console: Console) -> None:
@@ -48,7 +49,7 @@ def _finish(model: str, case: Case, run: Run, folder: ResultsFolder, console: Co
     """Write the run of one model, and tell of it."""
     runs = {model: run}
     written = folder.publish([save(model, case, runs, folder.staged)])
-    _told(case, runs, console)
+    _print_summary(case, runs, console)
     _warn(case, runs, console)
     console.print(f"results: {written[0]}, history: {folder.path / f'{model}_history.csv'}")
 
@@ -94,8 +95,8 @@ def reduced_command(case_file: Path, dynamic: bool, slow: bool, trace: Path | No
     with results.folder(_folder_name(case, dynamic), case) as folder:
         _check(case, folder, "reduced")
         try:
-            with progress(console, "reduced model") as tell:
-                run = case.reduced(tell, dynamic=dynamic, trace=trace)
+            with progress(console, "reduced model") as on_progress:
+                run = case.reduced(on_progress, dynamic=dynamic, trace=trace)
         except Interrupted as stopped:
             raise _kept("reduced", "reduced", case, {}, folder, stopped) from None
         _finish("reduced", case, run, folder, console)
@@ -107,7 +108,7 @@ def _quasi_static(case: Case, results: Results, console: Console) -> None:
     with results.folder(f"{case.name}_quasi_static", case) as folder:
         found = case.quasi_static()
         written = folder.publish(found.write(folder.staged))
-    print_shown(found.told(), console)
+    print_shown(found.summary_lines(), console)
     for warning in found.warnings:
         console.print(f"warning: {warning}")
     console.print(f"results: {', '.join(str(path) for path in written)}")
@@ -116,8 +117,8 @@ def _quasi_static(case: Case, results: Results, console: Console) -> None:
 def _dem(command: str, case: Case, before: dict[str, Run], folder: ResultsFolder, console: Console) -> Run:
     """Run the DEM; what an interrupted one has is written, with the runs before it."""
     try:
-        with progress(console, "DEM") as tell:
-            return case.dem(tell)
+        with progress(console, "DEM") as on_progress:
+            return case.dem(on_progress)
     except Interrupted as stopped:
         raise _kept(command, "dem", case, before, folder, stopped) from None
 
@@ -200,15 +201,17 @@ def compare_command(files: tuple[Path, ...], dynamic: bool, finite: bool, result
 
 def _compare_case(case_file: Path, dynamic: bool, finite: bool, results: Results, console: Console) -> None:
     from statejump.core.figures import save as save_figure  # matplotlib, 0.4 s; compare alone draws
-    case = loaded(case_file, ModelComparison, DemInput, *([DynamicModel] if dynamic else []),
-                  *([FiniteElements] if finite else []))
+    case = loaded(case_file, ModelComparison, DemInput, *([DynamicModel] if dynamic else []))
+    calculix = studies.module("studies.calculix") if finite else None
+    if calculix is not None:
+        calculix.check(case)
     case.check_dem()
     with results.folder(_folder_name(case, dynamic), case) as folder:
         _check(case, folder, "reduced", "dem")
-        with progress(console, "reduced model") as tell:
-            reduced = case.reduced(tell, dynamic=dynamic)
+        with progress(console, "reduced model") as on_progress:
+            reduced = case.reduced(on_progress, dynamic=dynamic)
         # What it refuses is refused before YADE runs.
-        elements = require(case, FiniteElements).fe(case) if finite else None
+        elements = None if calculix is None else calculix.answer(case)
         dem = _dem("compare", case, {"reduced": reduced}, folder, console)
         comparison = api.compare(reduced, dem)
         if elements is not None:
@@ -218,7 +221,7 @@ def _compare_case(case_file: Path, dynamic: bool, finite: bool, results: Results
         figures = save_figure(comparison.plot(), folder.staged, case.name)
         written = folder.publish(
             [save("compare", case, runs, folder.staged, comparison), files[0], *figures])
-    _told(case, runs, console)
+    _print_summary(case, runs, console)
     print_comparison(case.title, comparison.rows, console)
     for note in comparison.notes:
         console.print(note)

@@ -28,5 +28,5 @@ def statics_command(case_file: Path, results: Results, quiet: bool) -> None:
     with results.folder(case.name, case) as folder:
         statics = api.statics(case)
         written = folder.publish(statics.write(folder.staged))
-    print_shown(statics.told(), console)
+    print_shown(statics.summary_lines(), console)
     console.print(f"results: {', '.join(str(path) for path in written)}")

@@ -128,8 +128,8 @@ def print_comparison(title: str, rows: Sequence[Quantity], console: Console,
 def progress(console: Console, label: str) -> Iterator[Callable[[float], None]]:
     """Yield a function of the finished fraction: it moves a bar on a terminal, and prints a line every 10 %
     elsewhere."""
-    with on_console(console, label) as tell:
-        yield tell
+    with on_console(console, label) as on_progress:
+        yield on_progress
 
 
 @contextmanager
@@ -137,7 +137,7 @@ def undivided(console: Console, label: str) -> Iterator[Callable[[float], None]]
     """As :func:`progress`, for runs that are written together at the end. On Ctrl-C it reports that nothing was
     written."""
     try:
-        with progress(console, label) as tell:
-            yield tell
+        with progress(console, label) as on_progress:
+            yield on_progress
     except (KeyboardInterrupt, Interrupted):
         raise Interrupted() from None

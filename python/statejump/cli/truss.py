@@ -159,10 +159,10 @@ def creak_command(case_file: Path, node: str, results: Results, quiet: bool) -> 
     console = make_console(quiet)
     case = loaded(case_file, Creaking)
     with results.folder(f"{case.name}_creak", case) as folder:
-        with progress(console, "motion") as tell:
-            found = require(case, Creaking).creak(case, node, tell)
+        with progress(console, "motion") as on_progress:
+            found = require(case, Creaking).creak(case, node, on_progress)
         written = folder.publish(found.write(folder.staged))
-    print_shown(found.told(), console)
+    print_shown(found.summary_lines(), console)
     console.print(f"results: {', '.join(str(path) for path in written)}")
 
 

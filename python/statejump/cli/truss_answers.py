@@ -12,7 +12,7 @@ from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, p
 from statejump.control.capabilities import DesignAnswers
 from statejump.core.errors import Interrupted, NotAllowed, Range
 from statejump.core.results_folder import Results
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.core.units import plain
 from statejump.kinds import require
 from statejump.schema.rules import WHOLE, Rule
@@ -54,7 +54,7 @@ def answers_command(
     console = make_console(quiet)
     case = loaded(case_file, DesignAnswers)
 
-    def phase(label: str) -> AbstractContextManager[Tell]:
+    def phase(label: str) -> AbstractContextManager[OnProgress]:
         return progress(console, f"{case.name}, {label}")
 
     try:

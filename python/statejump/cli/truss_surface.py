@@ -18,7 +18,7 @@ from statejump.core.tables import Shown, write_columns, write_csv
 from statejump.core.units import plain
 from statejump.kinds import require
 from statejump.kinds.protocol import ReducedModel
-from statejump.surface import repeatability, told
+from statejump.surface import repeatability, summary
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -75,7 +75,7 @@ def surface_command(
     case: Case | None = None
     try:
         if file.suffix.lower() in SUFFIXES:
-            drawn, moved = told.read_nodes(file)
+            drawn, moved = summary.read_nodes(file)
             design = surface.Design.of(drawn, (0, 0, 1) if axis is None else axis, focal_length)
             states, name = {"nodes": moved}, file.stem
         else:
@@ -85,9 +85,10 @@ def surface_command(
             case = loaded(file, ReducedModel)
             name, notes = case.name, list(case.thermal_notes)
             design, states, history = _of_case(case, measure, console)
-        tables = {state: [*told.state_rows(design, moved, measure, direction), *told.zernike_rows(design, moved, terms)]
-                  for state, moved in states.items()}
-        shown: list[Shown | str] = [_shown("drawn surface", told.design_rows(design))]
+        tables = {
+            state: [*summary.state_rows(design, moved, measure, direction), *summary.zernike_rows(design, moved, terms)]
+            for state, moved in states.items()}
+        shown: list[Shown | str] = [_shown("drawn surface", summary.design_rows(design))]
         shown += [_shown(state, rows) for state, rows in tables.items()]
         if design.profile:
             shown.append("note: the nodes lie in one plane with the axis: this is a profile against a parabola")
@@ -102,7 +103,7 @@ def surface_command(
         raise
     with results.folder(name, case) as folder:
         path = folder.staged / "surface.csv"
-        write_csv(path, ("state", *told.HEADER), [(state, *row) for state, rows in tables.items() for row in rows])
+        write_csv(path, ("state", *summary.HEADER), [(state, *row) for state, rows in tables.items() for row in rows])
         written = [path]
         if history:
             written.append(folder.staged / "surface_history.csv")
@@ -118,8 +119,8 @@ def _of_case(
     """Return the surface of a case, its displacements in the sample farthest from the design and at the end, and its
     history."""
     design, nodes = surface.reflector_of(case)
-    with undivided(console, f"{case.name}, reduced model") as tell:
-        run = require(case, ReducedModel).reduced(case, tell)
+    with undivided(console, f"{case.name}, reduced model") as on_progress:
+        run = require(case, ReducedModel).reduced(case, on_progress)
     history = surface.history(run, measure)
     moves = np.asarray(run.history["position_m"].values)[:, nodes] - design.position_m
     worst = int(np.argmax(history["rms_design_m"]))

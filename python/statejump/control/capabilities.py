@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from statejump.control.study import Study
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.core.tables import Shown
 from statejump.kinds.protocol import capability
 
@@ -32,7 +32,7 @@ class RestSets(Protocol):
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the sets into the given axes, or into a new figure."""
 
-    def told(self) -> list[Shown | str]:
+    def summary_lines(self) -> list[Shown | str]:
         """Return the tables and lines that a command prints."""
 
     def write(self, folder: Path) -> list[Path]:
@@ -57,4 +57,4 @@ class DesignAnswers(Protocol):
 class Creaking(Protocol):
     """Slips and the acceleration of a node in motion; see :func:`statejump.truss.creak`."""
 
-    def creak(self, case: Any, node: str, tell: Tell) -> Any: ...
+    def creak(self, case: Any, node: str, on_progress: OnProgress) -> Any: ...

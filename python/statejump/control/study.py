@@ -72,7 +72,7 @@ class Sweep:
 
 
 @dataclass(frozen=True)
-class Places:
+class DesignChoices:
     """The node whose jump counts, and the changes that are allowed, for a case with many nodes and parameters.
 
     :param node: node whose jump counts; None: the one that moves most
@@ -150,11 +150,11 @@ def refuse_runs(runs: int | None, case: Case) -> None:
         raise NotAllowed("--runs", runs, code="exact_path_without_ensemble", name_of_case=case.name)
 
 
-def refuse_places(places: Places, case: Case) -> None:
+def refuse_choices(choices: DesignChoices, case: Case) -> None:
     """Raise NotAllowed for a choice of nodes and parameters, for a kind of case with one jump and a study of all
     parameters."""
-    asked = (("--node", [places.node] if places.node else []),
-             ("--add-spring", [" ".join(ends) for ends in places.add_spring]), ("--free", places.scale))
+    asked = (("--node", [choices.node] if choices.node else []),
+             ("--add-spring", [" ".join(ends) for ends in choices.add_spring]), ("--free", choices.scale))
     for option, values in asked:
         for value in values:
             raise NotAllowed(option, value, code="one_jump_only", kind=case.kind)

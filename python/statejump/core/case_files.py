@@ -6,7 +6,6 @@ import os
 from pathlib import Path
 from typing import Any
 
-from statejump import _paths
 from statejump.core.case import Case
 from statejump.core.errors import NotAllowed
 from statejump.core.output import check_suffix, check_target, write_atomically
@@ -59,19 +58,3 @@ def save(case: Case, path: Path) -> Path:
     with write_atomically(path) as stream:
         stream.write(text)
     return path
-
-
-def made_by(command: str, case: Case) -> str:
-    """Return the command that made a file, for the text of the file. The case file is relative to the current folder,
-    or has the name of a shipped case.
-
-    :param command: for example ``statejump hold``
-    """
-    file = case.origin.file
-    if file is None:
-        return f"`{command}` of case {case.name}, which was made in Python"
-    for folder in (Path.cwd(), _paths.SHARE):
-        if file.resolve().is_relative_to(folder.resolve()):
-            file = file.resolve().relative_to(folder.resolve())
-            break
-    return f"`{command} {file.as_posix()}`"

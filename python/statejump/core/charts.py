@@ -47,7 +47,7 @@ TEMPERATURE = Axis("temperature_change_K", "Temperature change")
 TIME = Axis("time_s", "Time")
 
 
-class Part(Protocol):
+class PageSection(Protocol):
     """The part of a run's page that only one kind has: the result of its capability ``page``.
 
     :param template: file of its HTML, in which the part is ``part``

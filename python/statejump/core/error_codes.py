@@ -448,6 +448,9 @@ CODES: dict[str, Code] = {
         remedy="leave out 'dynamic' or 'trace'",
     ),
     "command_not_for_kind": Code(cause="'statejump {command}' is for {kinds}"),
+    "studies_missing": Code(
+        what="{module} is not here", cause="the studies are in the repository", remedy="run the command in its build",
+    ),
     "kind_not_loaded": Code(what="kind {name!r} cannot be loaded"),
     "too_little_memory": Code(
         cause=(

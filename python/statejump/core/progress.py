@@ -12,7 +12,7 @@ from statejump.core.errors import printable
 if TYPE_CHECKING:
     from rich.console import Console  # 0.1 s; a run in Python prints nothing
 
-Tell = Callable[[float], None]
+OnProgress = Callable[[float], None]
 
 
 def silent(share: float) -> None:
@@ -20,7 +20,7 @@ def silent(share: float) -> None:
 
 
 @contextmanager
-def shown(progress: bool | Tell, label: str) -> Iterator[Tell]:
+def shown(progress: bool | OnProgress, label: str) -> Iterator[OnProgress]:
     """Yield a function of the finished fraction, 0 to 1.
 
     :param progress: False: it does nothing; True: it shows the fraction on standard error; else the function to call
@@ -30,8 +30,8 @@ def shown(progress: bool | Tell, label: str) -> Iterator[Tell]:
     elif not progress:
         yield silent
     else:
-        with bar(label) as tell:
-            yield tell
+        with bar(label) as on_progress:
+            yield on_progress
 
 
 def console(**settings: Any) -> Console:
@@ -48,14 +48,14 @@ def console(**settings: Any) -> Console:
 
 
 @contextmanager
-def bar(label: str) -> Iterator[Tell]:
+def bar(label: str) -> Iterator[OnProgress]:
     """Yield a function that moves a bar on a terminal, and prints a line every 10 % elsewhere; on standard error."""
-    with on_console(console(stderr=True), label) as tell:
-        yield tell
+    with on_console(console(stderr=True), label) as on_progress:
+        yield on_progress
 
 
 @contextmanager
-def on_console(console: Console, label: str) -> Iterator[Tell]:
+def on_console(console: Console, label: str) -> Iterator[OnProgress]:
     """Yield a function that shows the finished fraction on a console of rich: a bar on a terminal, else a line every 10
     %."""
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn  # as Console
@@ -67,24 +67,24 @@ def on_console(console: Console, label: str) -> Iterator[Tell]:
             task = shown_bar.add_task(label, total=1.0)
             yield lambda share: shown_bar.update(task, completed=share)
         return
-    told = [-1]
+    tenths = [-1]
 
     def line(share: float) -> None:
-        if share >= 1 and told[0] < 0:
+        if share >= 1 and tenths[0] < 0:
             return  # a run that ends at once needs no progress
-        if int(10 * share) > told[0]:
-            told[0] = int(10 * share)
+        if int(10 * share) > tenths[0]:
+            tenths[0] = int(10 * share)
             console.print(f"{label}: {100 * share:.0f} %")
 
     yield line
 
 
-def one_of(tell: Tell, done: int, total: int) -> Tell:
+def one_of(on_progress: OnProgress, done: int, total: int) -> OnProgress:
     """Return the progress function of a run after ``done`` of ``total`` equal runs; it reports their total fraction."""
-    return lambda share: tell((done + share) / total)
+    return lambda share: on_progress((done + share) / total)
 
 
-def counted(tell: Tell, total: int) -> Callable[[], None]:
+def counted(on_progress: OnProgress, total: int) -> Callable[[], None]:
     """Return a function to call after each run; it reports the finished fraction of all runs."""
     finished = count(1)
-    return lambda: tell(next(finished) / total)
+    return lambda: on_progress(next(finished) / total)

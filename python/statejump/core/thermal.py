@@ -135,7 +135,7 @@ class Ending:
 
 
 def ending(
-    programs: Sequence[Thermal | MemberProgram], returns: bool, period_s: float | None, key: str = "thermal.period_s",
+    programs: Sequence[Thermal | MemberProgram], returns: bool, period_s: float | None,
 ) -> Ending | None:
     """Return the ending of the programs of a case, if it is not at the reference temperature.
 
@@ -165,6 +165,7 @@ def ending(
     if period_s is not None and abs(period_s - lasts) > SAME_TIME * lasts:
         takes = period_s - lasts
     if takes < 0:
+        key = "thermal.period_s"
         raise NotAllowed(key, period_s, code="return_too_late", lasts=lasts, key_to_leave_out=key)
     return Ending((cycles - 1) * (lasts + takes) + lasts, last, takes)
 

@@ -19,7 +19,7 @@ import numpy as np
 from statejump import _paths
 from statejump.core.case import Case
 from statejump.core.errors import FailedRun, Interrupted, StatejumpError
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.core.run import Run
 from statejump.core.samples import read_samples
 from statejump.core.thermal import parameters
@@ -97,17 +97,17 @@ def _dying_with_us() -> Callable[[], None]:
     return ask
 
 
-def run(case: Case, values: Mapping[str, Any], make_run: MakeRun, tell: Tell) -> Run:
+def run(case: Case, values: Mapping[str, Any], make_run: MakeRun, on_progress: OnProgress) -> Run:
     """Run a case in YADE.
 
     :param values: data of the script, see :func:`common_values`
     :param make_run: makes the run from its samples
-    :param tell: receives the finished fraction, 0 to 1
+    :param on_progress: receives the finished fraction, 0 to 1
     :raises FailedRun: YADE is missing, failed or was killed
     :raises Interrupted: Ctrl-C; its ``run`` has the samples so far, None if there are none
     """
     try:
-        done = execute(values, tell)
+        done = execute(values, on_progress)
     except Interrupted as stopped:
         if stopped.run is not None:
             samples: Samples = stopped.run
@@ -119,7 +119,7 @@ def run(case: Case, values: Mapping[str, Any], make_run: MakeRun, tell: Tell) ->
     return make_run(case, done.columns, done.about)
 
 
-def execute(values: Mapping[str, Any], tell: Tell) -> Samples:
+def execute(values: Mapping[str, Any], on_progress: OnProgress) -> Samples:
     """Run a resolved case in YADE; see :func:`run`. The ``run`` of an interruption is :class:`Samples`."""
     from statejump.core.scratch import scratch  # as which
 
@@ -138,7 +138,7 @@ def execute(values: Mapping[str, Any], tell: Tell) -> Samples:
             TMPDIR=str(folder),  # YADE's own temporary folder is removed with this one
         )
         try:
-            _watch(command, environment, tell)
+            _watch(command, environment, on_progress)
         except KeyboardInterrupt:
             raise _interrupted(output) from None
         except OSError as error:
@@ -152,7 +152,7 @@ def execute(values: Mapping[str, Any], tell: Tell) -> Samples:
             raise FailedRun(code="dem_without_result", case=name, cause=str(error)) from None
 
 
-def _watch(command: list[str], environment: dict[str, str], tell: Tell) -> None:
+def _watch(command: list[str], environment: dict[str, str], on_progress: OnProgress) -> None:
     """Run the command and report its progress. :raises FailedRun: it failed"""
     import subprocess  # as which
 
@@ -175,7 +175,7 @@ def _watch(command: list[str], environment: dict[str, str], tell: Tell) -> None:
                 message = _message(said)
                 if "progress" in message:
                     finished = message["progress"] >= 1
-                    tell(message["progress"])
+                    on_progress(message["progress"])
                 elif "failure" in message:
                     failure = message["failure"]
                 elif said:

@@ -16,7 +16,7 @@ from statejump.core.errors import NotAllowed, Range, StatejumpError
 from statejump.core.later import Later
 from statejump.core.tables import Shown, write_columns, write_csv, write_text
 from statejump.core.units import plain
-from statejump.identification import paste
+from statejump.identification import case_section
 from statejump.identification.fit import Fit, Fits, Interval, intervals
 from statejump.identification.loop import Loop, read_loop
 from statejump.identification.models import MODELS, PARAMETERS
@@ -50,7 +50,7 @@ class Identification:
         range
     :param limits: for parameters that the joint lacks: the larger joint that has them, and their interval there
     :param confidence: of the intervals
-    :param target: item of a case that the joint becomes, one of paste.TARGETS
+    :param target: item of a case that the joint becomes, one of case_section.TARGETS
     :param normal_force_N: in the test; None: unknown
     :param journal_radius_m: of a joint that rotates; None: unknown
     """
@@ -81,24 +81,24 @@ class Identification:
         return self.fit.model.answer(self.fit.values, self.loop.displacement, self.loop.memory)
 
     @property
-    def entries(self) -> list[paste.Entry]:
+    def entries(self) -> list[case_section.Entry]:
         """Keys of the case file."""
-        return paste.entries(self.target, self.fit.values, self.intervals, self.confidence, self.normal_force_N,
-                             self.journal_radius_m, self.loop.angular)
+        return case_section.entries(self.target, self.fit.values, self.intervals, self.confidence,
+                                    self.normal_force_N, self.journal_radius_m, self.loop.angular)
 
     def joint(self) -> str:
         """Return the section of a case file; parameters that the loop does not determine are comments."""
-        return "\n".join(paste.section(self.target, self.entries, self.loop.name))
+        return "\n".join(case_section.section(self.target, self.entries, self.loop.name))
 
     def changes(self) -> dict[str, float]:
         """Return the argument of ``case.changed``: values by key, for the determined parameters."""
-        before = paste.TARGETS[self.target][1]
+        before = case_section.TARGETS[self.target][1]
         return {f"{before}.{entry.key}": entry.value for entry in self.entries if entry.value is not None}
 
     def distributions(self) -> dict[str, dict[str, float | str]]:
         """Return the argument of ``sj.montecarlo``: how well this loop determines the parameters of this joint.
         Parameters are drawn independently. Scatter between joints needs tests of several joints."""
-        return paste.distributions(self.target, self.entries)
+        return case_section.distributions(self.target, self.entries)
 
     @cached_property
     def notes(self) -> list[str]:
@@ -117,32 +117,32 @@ class Identification:
                 f"{each.bic - best.bic:.1f}" for each in near]
 
     def _unbounded(self) -> list[str]:
-        told = []
+        sentences = []
         for name, interval in self.intervals.items():
             if not interval.bounded:
                 cause = self.because.get(name)
                 why = f", it depends on {cause}, which reaches the end of its range" if cause else ""
-                told.append(f"{name} is not identifiable from this loop{why}: {self._words(name, interval)}")
-        return told
+                sentences.append(f"{name} is not identifiable from this loop{why}: {self._words(name, interval)}")
+        return sentences
 
     def _laws(self) -> list[str]:
         """What the section has no key for."""
         if self.target in ("slider", "spring_slider"):
             return ["the play of a case carries no force: play_m is play (1 - play_ratio)"] \
                 if self.fit.values.get("play_ratio") else []
-        return [f"{name} has no key in {paste.TARGETS[self.target][0]}: the section leaves it out"
+        return [f"{name} has no key in {case_section.TARGETS[self.target][0]}: the section leaves it out"
                 for name in ("play", "stop_stiffness") if name in self.fit.values]
 
     def _absent(self) -> list[str]:
-        told = []
+        sentences = []
         for name, (model, interval) in self.limits.items():
             why = f"the path meets no stop there (joint {model})"
             if name == "friction":
                 why = f"the loop {'never slides' if self.model == 'linear' else 'needs none'} (joint {model})"
-            told.append(f"{name} is not identifiable from this loop, {why}: {self._words(name, interval)}")
+            sentences.append(f"{name} is not identifiable from this loop, {why}: {self._words(name, interval)}")
         if self.model == "linear":
-            told.append("clearance is not identifiable from this loop: no gap is crossed")
-        return told
+            sentences.append("clearance is not identifiable from this loop: no gap is crossed")
+        return sentences
 
     def _extrapolated(self) -> list[str]:
         """For partial slip, gross slip is extrapolated before it is reached."""
@@ -207,7 +207,7 @@ class Identification:
         """Draw loop, fit and residual; into two given axes, or into a new figure."""
         return _DRAWN(self, axes)
 
-    def told(self) -> list[Shown | str]:
+    def summary_lines(self) -> list[Shown | str]:
         """Return what the command prints."""
         force = self.loop.unit("force")
         models = Shown("joints, the best by BIC first", ("joint", "parameters", f"noise [{force}]", "BIC difference"),
@@ -231,7 +231,7 @@ class Identification:
             write_csv(folder / "models.csv", MODEL_COLUMNS, self._rows_of_models()), rows,
             write_text(folder / "joint.toml", [*self.joint().splitlines(), *note]),
             write_text(folder / "vary.toml", [f"# identified from {self.loop.name}: how well its loop knows this joint",
-                                              *paste.vary(self.distributions())]),
+                                              *case_section.vary(self.distributions())]),
             *_SAVED(self.plot(), folder, "loop"),
         ]
 
@@ -239,7 +239,7 @@ class Identification:
         return f"Identification({self.loop.name!r}, {self.model}, {self.fit.rows:,} rows)"
 
     def _repr_html_(self) -> str:
-        head, *parts = (part for part in self.told() if isinstance(part, Shown))
+        head, *parts = (part for part in self.summary_lines() if isinstance(part, Shown))
         return "".join(f"<h4>{part.title}</h4>{_TABLE(part.header, part.rows)}" for part in (*parts, head)) + "".join(
             f"<p>{note}</p>" for note in self.notes)
 
@@ -268,7 +268,7 @@ def identified(
         raise NotAllowed("model", model, code="no_joint_model")
     loop = read_loop(source, start, ignored)
     chosen_target = target or ("umbrella" if loop.angular else "spring_slider")
-    paste.check(chosen_target, loop.angular)
+    case_section.check(chosen_target, loop.angular)
     try:
         fits = Fits(loop)
         chosen = fits.ranked(names)[0].model.name

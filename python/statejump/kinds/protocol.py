@@ -22,7 +22,7 @@ from statejump.core.case import Case as Definition
 from statejump.core.comparison import Comparison, Quantity
 from statejump.core.errors import NotAllowed
 from statejump.core.later import Later
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.core.run import Columns, Run
 from statejump.schema.structure import structure
 
@@ -51,9 +51,9 @@ def methods_of(protocol: type) -> list[str]:
 
 @capability("reduced")
 class ReducedModel(Protocol):
-    """The reduced model; ``tell`` takes the finished share."""
+    """The reduced model; ``on_progress`` takes the finished share."""
 
-    def reduced(self, case: Any, tell: Tell) -> Run: ...
+    def reduced(self, case: Any, on_progress: OnProgress) -> Run: ...
 
 
 @capability("reduced --trace")
@@ -62,7 +62,7 @@ class TracedModel(Protocol):
 
     ``trace`` is a CSV file, or a function that takes each row."""
 
-    def traced(self, case: Any, tell: Tell, trace: Path | Callable[[tuple[Any, ...]], object]) -> Run: ...
+    def traced(self, case: Any, on_progress: OnProgress, trace: Path | Callable[[tuple[Any, ...]], object]) -> Run: ...
 
 
 @capability("reduced --quasi-static")
@@ -76,7 +76,7 @@ class QuasiStaticModel(Protocol):
 class DynamicModel(Protocol):
     """The reduced model with inertia, of a kind whose reduced model has none."""
 
-    def dynamic(self, case: Any, tell: Tell) -> Run: ...
+    def dynamic(self, case: Any, on_progress: OnProgress) -> Run: ...
 
 
 @capability("dem")
@@ -104,7 +104,7 @@ class DemResult(Protocol):
 class DemModel(Protocol):
     """The DEM as a whole; :class:`Kind` makes it of input and result."""
 
-    def dem(self, case: Any, tell: Tell) -> Run: ...
+    def dem(self, case: Any, on_progress: OnProgress) -> Run: ...
 
     def check_dem(self, case: Any) -> None: ...
 
@@ -151,13 +151,6 @@ class QuickModel(Protocol):
     def quick(self, case: Any) -> Run: ...
 
 
-@capability("fe")
-class FiniteElements(Protocol):
-    """The case in CalculiX beside the reduced model."""
-
-    def fe(self, case: Any) -> Any: ...
-
-
 @capability("laws")
 class JointOfLaws(Protocol):
     """The joint as the curves of the contact laws need it."""
@@ -169,7 +162,7 @@ class JointOfLaws(Protocol):
 class ContactProblems(Protocol):
     """Frictional contact problems of steps of the path."""
 
-    def contact_problems(self, case: Any, number: int, tell: Tell) -> list[Any]: ...
+    def contact_problems(self, case: Any, number: int, on_progress: OnProgress) -> list[Any]: ...
 
 
 @capability("truss surface")
@@ -194,7 +187,7 @@ class Kind(Generic[CaseType]):
     COLUMNS: ClassVar[tuple[str, ...]] = ()
     # Words of this kind for report and figures: of columns, contacts, links, stages, by their keys; with "stage "
     # in front of its name what a stage means.
-    WORDS: ClassVar[Mapping[str, str]] = {}
+    LABELS: ClassVar[Mapping[str, str]] = {}
     # Names of what a campaign records of a run, in the order of its table; each ends in its unit.
     OUTCOMES: ClassVar[tuple[str, ...]] = ()
     # Numbers of a run's summary that stand for where a program ends that does not end at the reference temperature.
@@ -204,9 +197,9 @@ class Kind(Generic[CaseType]):
     # Module that builds the scene in YADE, or the path of its file; by default scene_NAME beside the runner.
     SCENE: ClassVar[str] = ""
 
-    def dem(self, case: CaseType, tell: Tell) -> Run:
+    def dem(self, case: CaseType, on_progress: OnProgress) -> Run:
         """Run a case in YADE. A kind whose scene needs more than the case itself has its own."""
-        return yade_process.run(case, self.dem_values(case), needed(self, DemResult, case).dem_run, tell)
+        return yade_process.run(case, self.dem_values(case), needed(self, DemResult, case).dem_run, on_progress)
 
     def check_dem(self, case: CaseType) -> None:
         """Raise StatejumpError where the DEM cannot run a case, as far as that is known before anything is solved. A

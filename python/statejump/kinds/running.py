@@ -9,7 +9,7 @@ from typing import Any
 from statejump.core import yade_input, yade_process
 from statejump.core.case import Case, Progress
 from statejump.core.errors import StatejumpError
-from statejump.core.progress import Tell, shown
+from statejump.core.progress import OnProgress, shown
 from statejump.core.run import Run
 from statejump.kinds import require
 from statejump.kinds.limits import check_memory
@@ -37,8 +37,8 @@ def run(case: Case, name: str, progress: Progress, *, trace: Trace | None = None
     else:
         model = require(case, DynamicModel).dynamic if name == "dynamic" else require(case, ReducedModel).reduced
     check_memory(case, "dem" if name == "dem" else "reduced")
-    with shown(progress, LABELS[name]) as tell:
-        return model(case, tell)
+    with shown(progress, LABELS[name]) as on_progress:
+        return model(case, on_progress)
 
 
 def _traced(case: Case, name: str, progress: Progress, trace: Trace) -> Run:
@@ -46,16 +46,16 @@ def _traced(case: Case, name: str, progress: Progress, trace: Trace) -> Run:
         raise StatejumpError(code="trace_of_motion", case=case.name)
     model = require(case, TracedModel)
     check_memory(case, "reduced")
-    with shown(progress, LABELS[name]) as tell:
-        return model.traced(case, tell, trace if callable(trace) else Path(trace))
+    with shown(progress, LABELS[name]) as on_progress:
+        return model.traced(case, on_progress, trace if callable(trace) else Path(trace))
 
 
-def _keeping(case: Case, folder: Path) -> Callable[[Any, Tell], Run]:
+def _keeping(case: Case, folder: Path) -> Callable[[Any, OnProgress], Run]:
     """Return a DEM run whose input is in a folder."""
     make_run = require(case, DemResult).dem_run
     values = require(case, DemValues).dem_values(case)
     yade_input.keep_input(values, folder)
-    return lambda _, tell: yade_process.run(case, values, make_run, tell)
+    return lambda _, on_progress: yade_process.run(case, values, make_run, on_progress)
 
 
 def keep_input(case: Case, folder: Path) -> str:

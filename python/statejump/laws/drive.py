@@ -179,12 +179,12 @@ def _check(columns: Mapping[str, np.ndarray], kind: str, law: Law) -> None:
         raise NotAllowed("normal_force_N", code="law_needs_penetration", law=law.name)
 
 
-def _one_of(columns: Mapping[str, np.ndarray], names: tuple[str, ...], told: str) -> None:
+def _one_of(columns: Mapping[str, np.ndarray], names: tuple[str, ...], needs: str) -> None:
     there = [name for name in names if name in columns]
     if not there:
-        raise MissingKey(names[0], code="history_column_missing", section=f"column {names[0]}", needs_=told)
+        raise MissingKey(names[0], code="history_column_missing", section=f"column {names[0]}", needs_=needs)
     if len(there) > 1:
-        raise NotAllowed(there[1], code="history_columns_exclude", other=there[0], needs_=told)
+        raise NotAllowed(there[1], code="history_columns_exclude", other=there[0], needs_=needs)
 
 
 def _refined(columns: Mapping[str, np.ndarray], steps: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:

@@ -50,8 +50,8 @@ class Law:
 def catalogue(kind: str) -> tuple[Law, ...]:
     """Return the laws of a kind, one of ``KINDS``, in the order of the catalogue. :raises ValueError: no such kind"""
     return tuple(
-        Law(**dict(told, parameters=tuple(Parameter(**each) for each in told["parameters"])))
-        for told in _engine.laws(kind)
+        Law(**dict(declared, parameters=tuple(Parameter(**each) for each in declared["parameters"])))
+        for declared in _engine.laws(kind)
     )
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from statejump.core.errors import Unreadable
 from statejump.core.hdf5 import is_ours, objects, opened
 from statejump.core.units import scale_of, text
-from statejump.report import words
+from statejump.report import labels
 
 BARS = 60  # of a histogram, as in the figures of the commands
 QUANTILES = ("quantile_5", "median", "quantile_95")
@@ -76,7 +76,7 @@ class CampaignDocument:
                 objects(file, path)
                 attributes = {key: _one(key, value) for key, value in file.attrs.items()}
                 header = json.loads(attributes["case"])["case"]
-                self._words = words.of_kind(str(header["kind"]))
+                self._labels = labels.of_kind(str(header["kind"]))
                 self.case = str(header["name"])
                 self.samples = len(file["sample"])
                 self.parameters = self._variables(file["parameters"])
@@ -93,7 +93,7 @@ class CampaignDocument:
             self.text = str(attributes["campaign"])
             campaign = tomllib.loads(self.text)["campaign"]
             self.command, self.model = str(attributes["command"]), str(attributes["model"])
-            if self.command not in (plan.MONTECARLO, plan.SWEEP) or self.model not in words.MODELS:
+            if self.command not in (plan.MONTECARLO, plan.SWEEP) or self.model not in labels.MODELS:
                 raise ValueError(f"no campaign is {self.command!r} of model {self.model!r}")
         except (KeyError, ValueError, TypeError, AttributeError) as error:
             raise Unreadable(code="damaged", cause=" ".join(str(error).split()), file=path, object="/") from None
@@ -110,7 +110,7 @@ class CampaignDocument:
             if dataset.dtype.kind not in "iuf" or dataset.shape != (self.samples,):
                 raise ValueError(f"{dataset.name} is not a number for each of {self.samples} samples")
             found.append(Variable(name, _one(f"{dataset.name}@unit", dataset.attrs["unit"]), dataset[()].astype(float),
-                                  self._words.parameter(name)))
+                                  self._labels.parameter(name)))
         return found
 
     @property
@@ -140,10 +140,10 @@ class CampaignDocument:
         """The campaign in words."""
         drawn = "on a grid" if self.command == "sweep" else "drawn at random"
         seed = f" (seed {self.seed})" if self.seed is not None else ""
-        names = [words.inside(parameter.title) for parameter in self.parameters]
+        names = [labels.inside(parameter.title) for parameter in self.parameters]
         varied = names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
         return [
-            f"{_count(self.samples)} samples of case {self.case} in the {words.inside(words.MODELS[self.model])}, "
+            f"{_count(self.samples)} samples of case {self.case} in the {labels.inside(labels.MODELS[self.model])}, "
             f"{drawn}{seed}.",
             f"Varied: {varied}.",
         ]
@@ -183,7 +183,7 @@ class CampaignDocument:
     def provenance(self) -> list[tuple[str, str]]:
         """What computed the samples."""
         return [("Table of samples", self.source)] + [
-            (self._words.plain(key), str(value)) for key, value in self.attributes.items()
+            (self._labels.plain(key), str(value)) for key, value in self.attributes.items()
         ]
 
     def payload(self) -> dict[str, Any]:
@@ -234,7 +234,7 @@ class CampaignDocument:
                     "z": text(float(second.values[place]), second.unit, 4) if second is not None else "",
                 })
         return {
-            "title": f"{outcome.title} over {words.inside(first.title)}",
+            "title": f"{outcome.title} over {labels.inside(first.title)}",
             "x": first.label, "y": outcome.label, "z": second.title if second is not None else "", "points": points,
         }
 

@@ -25,11 +25,11 @@ class RunSheet(Protocol):
     def sheet(self, case: Any, runs: Sequence[Run]) -> Sheet: ...
 
 
-@capability("told")
+@capability("summary")
 class RunText(Protocol):
     """Printed tables and lines of runs."""
 
-    def told(self, case: Any, runs: Mapping[str, Run]) -> list[Shown | str]: ...
+    def summary_lines(self, case: Any, runs: Mapping[str, Run]) -> list[Shown | str]: ...
 
 
 @capability("describe")

@@ -15,7 +15,7 @@ from statejump.core.run import Run
 from statejump.core.thin_loops import straight_part
 from statejump.kinds import has, require
 from statejump.report.capabilities import PageCharts
-from statejump.report.words import Words
+from statejump.report.labels import Labels
 
 # Columns about the model itself, not about the structure.
 NOT_SHOWN = {"time_s", "temperature_change_K", "slipping", "stop_contact", "stage"}
@@ -23,7 +23,7 @@ MOST_OTHER_LOOPS = 4
 STATE_UNITS = {"m", "rad"}  # units of displacements: forces have no state jump
 
 
-def charts_of(case: Case | None, run: Run, words: Words) -> list[Chart]:
+def charts_of(case: Case | None, run: Run, labels: Labels) -> list[Chart]:
     """Return the charts of a run: those of its kind, or loops of its first plain columns.
 
     :param case: None: this version does not support the case of the file
@@ -32,7 +32,7 @@ def charts_of(case: Case | None, run: Run, words: Words) -> list[Chart]:
         found: list[Chart] = require(case, PageCharts).charts(case)
         return found
     return [
-        Chart(TEMPERATURE, Axis(name), f"{words.plain(name)} over temperature", marks=True)
+        Chart(TEMPERATURE, Axis(name), f"{labels.plain(name)} over temperature", marks=True)
         for name in _plain_columns(run)[:MOST_OTHER_LOOPS]
     ]
 
@@ -49,7 +49,7 @@ LEFT = " less its straight part"  # suffix of the name of a column
 
 
 def with_thin_loops(
-    given: Sequence[Chart], columns: Mapping[str, dict[str, np.ndarray]], units_of: dict[str, str], words: Words
+    given: Sequence[Chart], columns: Mapping[str, dict[str, np.ndarray]], units_of: dict[str, str], labels: Labels
 ) -> list[Chart]:
     """Return the charts, each followed by one without the reversible part if its loop is thin. The new column is added
     to ``columns`` and ``units_of``. The subtracted line is that of the first model."""
@@ -67,24 +67,24 @@ def with_thin_loops(
         scale, written = units.scale_of(unit, abs(line.slope))
         slope = f"{line.slope * scale:.5g} {written}/K".replace("-", "−", 1)
         # The label is short, because its length is limited by the height of the chart.
-        found.append(replace(chart, y=Axis(y + LEFT, chart.y.label or words.plain(y)),
+        found.append(replace(chart, y=Axis(y + LEFT, chart.y.label or labels.plain(y)),
                              title=f"{chart.title},{LEFT} of {slope}"))
     return found
 
 
-def _shown_axis(axis: Axis, columns: Columns, unit_of: Mapping[str, str], words: Words) -> dict[str, Any]:
+def _shown_axis(axis: Axis, columns: Columns, unit_of: Mapping[str, str], labels: Labels) -> dict[str, Any]:
     """Return an axis for the page: offset and factor of the values, label with unit."""
     found = [values[axis.column] for values in columns.values() if axis.column in values]
     start = float(found[0][0]) if axis.from_start else 0.0
     size = max(float(np.nanmax(np.abs(values - start))) for values in found)
     scale, unit = units.scale_of(unit_of.get(axis.column, "-"), size)
-    label = axis.label or words.plain(axis.column)
+    label = axis.label or labels.plain(axis.column)
     return {"column": axis.column, "label": f"{label} [{unit}]" if unit else label, "unit": unit, "scale": scale,
             "start": start}
 
 
 def shown(
-    chart: Chart, columns: Columns, unit_of: Mapping[str, str], marks: Sequence[dict[str, Any]], words: Words
+    chart: Chart, columns: Columns, unit_of: Mapping[str, str], marks: Sequence[dict[str, Any]], labels: Labels
 ) -> dict[str, Any] | None:
     """Return a chart for the page; None if no model has its columns.
 
@@ -96,7 +96,7 @@ def shown(
     models = [model for model, values in columns.items() if {chart.x.column, chart.y.column} <= set(values)]
     if not models:
         return None
-    x, y = (_shown_axis(axis, columns, unit_of, words) for axis in (chart.x, chart.y))
+    x, y = (_shown_axis(axis, columns, unit_of, labels) for axis in (chart.x, chart.y))
     if chart.equal:  # one unit for both
         larger = min(x, y, key=lambda axis: float(axis["scale"]))
         for axis in (x, y):

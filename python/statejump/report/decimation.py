@@ -61,8 +61,3 @@ def errors(time_s: np.ndarray, columns: Iterable[np.ndarray], kept: np.ndarray) 
         missed = np.max(np.abs(np.interp(time_s, time_s[kept], values[kept]) - values)) if span > 0 else 0.0
         found.append(float(missed) / span if span > 0 else 0.0)
     return np.array(found)
-
-
-def largest_error(time_s: np.ndarray, columns: Iterable[np.ndarray], kept: np.ndarray) -> float:
-    """Return the largest of the :func:`errors`, 0 without columns."""
-    return float(errors(time_s, columns, kept).max(initial=0.0))

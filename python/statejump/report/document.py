@@ -16,13 +16,13 @@ from typing import Any
 import numpy as np
 
 from statejump.core.case import Case
-from statejump.core.charts import Part
+from statejump.core.charts import PageSection
 from statejump.core.comparison import Quantity, sides
 from statejump.core.errors import StatejumpError
 from statejump.core.run import Event, Run
 from statejump.core.units import scale_of, text, unit_of
 from statejump.kinds import has, require
-from statejump.report import charts, words
+from statejump.report import charts, labels
 from statejump.report.capabilities import EventReasons, PagePart
 from statejump.report.decimation import errors, kept_samples
 from statejump.report.drawing import Drawing
@@ -65,24 +65,24 @@ class Document:
     def __init__(self, result: Result, source: str, identifier: str, budget_bytes: float) -> None:
         self.result, self.source, self.identifier = result, source, identifier
         self._values: dict[str, Any] = json.loads(result.case_json)
-        self._words = words.of_kind(result.kind)
+        self._labels = labels.of_kind(result.kind)
         self._run = next(iter(result.models.values()))
         case = _case_of(result)
         self.accounts: dict[str, Account] = {
-            model: account(run, self._words) for model, run in result.models.items()
+            model: account(run, self._labels) for model, run in result.models.items()
         }
-        self._drawing = Drawing(result, self._words)
-        self.sentences = [] if case is None else words.described(case)
+        self._drawing = Drawing(result, self._labels)
+        self.sentences = [] if case is None else labels.described(case)
         self._case = case
         self._cycles = 1 if case is None else case.thermal.cycles
-        self.part: Part | None = None
+        self.part: PageSection | None = None
         if case is not None and has(case, PagePart):
             self.part = require(case, PagePart).page(result, case)
-        self._charts = charts.charts_of(case, self._run, self._words) if self.part is None else self.part.charts()
+        self._charts = charts.charts_of(case, self._run, self._labels) if self.part is None else self.part.charts()
         self._columns = {model: self._full_columns(model, run) for model, run in result.models.items()}
         self._units = {name: column.unit for name, column in self._run.history.items()}
         self._units |= dict(self.part.units if self.part else {})
-        self._charts = charts.with_thin_loops(self._charts, self._columns, self._units, self._words)
+        self._charts = charts.with_thin_loops(self._charts, self._columns, self._units, self._labels)
         self.kept: list[Kept] = []
         self._thin: dict[str, dict[str, np.ndarray]] = {}
         for model in result.models:
@@ -117,7 +117,7 @@ class Document:
         if self.part is not None and self.part.verdict:
             return "none", self.part.verdict
         if rows is None:
-            only = " and ".join(words.MODELS[model] for model in self.result.models)
+            only = " and ".join(labels.MODELS[model] for model in self.result.models)
             return "none", f"{only}: one model alone, nothing is compared."
         missed = [row for row in rows if not row.passed]
         if missed:
@@ -134,9 +134,9 @@ class Document:
         cards = [] if self.part is None else self.part.cards()
         cards += [
             {
-                "label": self._words.plain(name),
+                "label": self._labels.plain(name),
                 "values": [
-                    (words.MODELS[model], text(run.summary[name], unit_of(name)))
+                    (labels.MODELS[model], text(run.summary[name], unit_of(name)))
                     for model, run in models.items() if name in run.summary
                 ],
             }
@@ -146,9 +146,9 @@ class Document:
             found = {model: run.events.first(kind) for model, run in models.items()}
             if any(found.values()):
                 cards.append({
-                    "label": words.EVENTS[kind].capitalize() + " at ΔT",
+                    "label": labels.EVENTS[kind].capitalize() + " at ΔT",
                     "values": [
-                        (words.MODELS[model], text(event.temperature_change_K if event else None, "K"))
+                        (labels.MODELS[model], text(event.temperature_change_K if event else None, "K"))
                         for model, event in found.items()
                     ],
                 })
@@ -171,7 +171,7 @@ class Document:
     def _compared(self, row: Quantity) -> dict[str, Any]:
         name, _, rest = row.name.partition(", ")
         return {
-            "name": self._words.plain(name) + (f", {rest}" if rest else ""),
+            "name": self._labels.plain(name) + (f", {rest}" if rest else ""),
             "values": [text(row.values[side], row.unit) if side in row.values else "" for side in self.sides],
             "difference": text(row.difference, row.unit, 3), "tolerance": text(row.tolerance, row.unit, 3),
             # Used fraction of the tolerance: a bar in the table.
@@ -209,8 +209,8 @@ class Document:
 
     def _event_row(self, event: Event) -> dict[str, Any]:
         return {
-            "key": (event.kind, event.joint), "kind": words.EVENTS.get(event.kind, self._words.plain(event.kind)),
-            "joint": self._words.named(event.joint) if event.joint else "", "time_s": event.time_s, "at": {},
+            "key": (event.kind, event.joint), "kind": labels.EVENTS.get(event.kind, self._labels.plain(event.kind)),
+            "joint": self._labels.named(event.joint) if event.joint else "", "time_s": event.time_s, "at": {},
         }
 
     def _reason(self, event: Event, having: set[str]) -> str:
@@ -237,7 +237,7 @@ class Document:
             change = run.history["temperature_change_K"].values
             starts = np.append(0, np.flatnonzero(values[1:] != values[:-1]) + 1)
             ends = np.append(starts[1:], len(values) - 1)
-            named = [self._words.stage(label) for label in column.labels]
+            named = [self._labels.stage(label) for label in column.labels]
             return [
                 {
                     **dict(zip(("name", "meaning"), named[int(values[start])])),
@@ -250,14 +250,14 @@ class Document:
 
     def provenance(self) -> list[tuple[str, str]]:
         """What computed the result."""
-        rows = [(self._words.plain(key), str(value)) for key, value in self.result.provenance.items() if value != ""]
+        rows = [(self._labels.plain(key), str(value)) for key, value in self.result.provenance.items() if value != ""]
         return [("Result file", self.source), ("Command", self.command_line), *rows]
 
     def payload(self) -> dict[str, Any]:
         """Data for the page's script."""
         run, part = self._run, self.part
         marks = [
-            {"time_s": event.time_s, "label": words.EVENTS[kind], "value": text(event.temperature_change_K, "K", 4),
+            {"time_s": event.time_s, "label": labels.EVENTS[kind], "value": text(event.temperature_change_K, "K", 4),
              "role": "event"}
             for kind in MARKED_EVENTS if (event := run.events.first(kind)) is not None
         ]
@@ -266,14 +266,14 @@ class Document:
             marks.append({"time_s": float(run.time_s[-1]), "label": "state jump", "role": "jump", "value": ""})
         shown = [
             made for chart in self._charts
-            if (made := charts.shown(chart, self._columns, self._units, marks, self._words)) is not None
+            if (made := charts.shown(chart, self._columns, self._units, marks, self._labels)) is not None
         ]
         return {
             "id": self.identifier,
             "title": self.title,
             "models": [
                 {
-                    "key": model, "label": words.MODELS[model],
+                    "key": model, "label": labels.MODELS[model],
                     "columns": {name: _encoded(values) for name, values in columns.items()},
                 }
                 for model, columns in self._thin.items()
@@ -316,7 +316,7 @@ class Document:
             guides = [moving[place] for place in np.argsort(-missed)[:MOST_GUIDES]]
         error = float(missed.max(initial=0.0))
         self._thin[model] = {name: values[chosen] for name, values in columns.items()}
-        self.kept.append(Kept(words.MODELS[model], len(time_s), len(chosen), error))
+        self.kept.append(Kept(labels.MODELS[model], len(time_s), len(chosen), error))
 
     def _energy_chart(self) -> dict[str, Any] | None:
         size = max((found.turnover_J for found in self.accounts.values()), default=0.0)

@@ -17,7 +17,7 @@ import numpy as np
 
 from statejump.core.errors import Unreadable
 from statejump.core.run import Run
-from statejump.report.words import STATES, Words
+from statejump.report.labels import STATES, Labels
 from statejump.results.contents import Result
 from statejump.results.growth import growth
 from statejump.results.scene import resolve, resolve_point
@@ -49,8 +49,8 @@ class Drawing:
     columns by model and name.
     """
 
-    def __init__(self, result: Result, words: Words) -> None:
-        self.result, self._words = result, words
+    def __init__(self, result: Result, labels: Labels) -> None:
+        self.result, self._labels = result, labels
         self.columns: dict[str, dict[str, np.ndarray]] = {model: {} for model in result.models}
         self._points: dict[str, int] = {}
         self._parts = {part["name"]: part for part in result.scene["parts"]}
@@ -143,7 +143,7 @@ class Drawing:
         return name
 
     def _part(self, part: dict[str, Any]) -> dict[str, Any]:
-        drawn: dict[str, Any] = {"name": part["name"], "label": self._words.named(part["name"]), "type": part["type"]}
+        drawn: dict[str, Any] = {"name": part["name"], "label": self._labels.named(part["name"]), "type": part["type"]}
         drawn["points"] = [self._points[json.dumps(point, sort_keys=True)] for point in _points_of(part)]
         for key in ("width_m", "radius_m", "half_width_m", "half_height_m", "axis"):
             if key in part:
@@ -175,7 +175,7 @@ class Drawing:
         names = self.result.names
         return {
             "name": contact["name"],
-            "label": self._words.named(contact["name"]),
+            "label": self._labels.named(contact["name"]),
             "on": list(self._parts).index(contact["on"]),
             "from": list(self._parts).index(contact["from"]),
             "state": self._column(
@@ -214,7 +214,7 @@ class Drawing:
     def _forces(self) -> list[dict[str, Any]]:
         drawn = [
             self._force(
-                place, f"{force['kind'].capitalize()} force on {self._words.named(force['on'], True)}", force["kind"],
+                place, f"{force['kind'].capitalize()} force on {self._labels.named(force['on'], True)}", force["kind"],
                 force["on"], force["at"], partial(self._vector_N, force),
             )
             for place, force in enumerate(self.result.scene["forces"])
@@ -230,7 +230,7 @@ class Drawing:
         of the drawn link."""
         first, second = (self._points[json.dumps(end, sort_keys=True)] for end in link["ends"])
         return {
-            "label": f"Axial force of {self._words.named(link['name'])}", "kind": "axial", "point": second,
+            "label": f"Axial force of {self._labels.named(link['name'])}", "kind": "axial", "point": second,
             "arm": [0.0, 0.0, 0.0], "from": first,
             "vector": [self._column(f"force{place}", lambda run: resolve(axial, run, self.result.names))],
         }

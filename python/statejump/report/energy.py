@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from statejump.core.run import Run
-from statejump.report.words import Words
+from statejump.report.labels import Labels
 
 # The ending of a column's name determines its side of the account.
 ROLES = {"_work_J": "supplied", "_energy_J": "stored", "_dissipation_J": "dissipated"}
@@ -33,7 +33,7 @@ class Account:
     columns: dict[str, np.ndarray]  # sums over time, [J]
 
 
-def account(run: Run, words: Words) -> Account:
+def account(run: Run, labels: Labels) -> Account:
     """Return the account of a run from its energy columns; all changes since the first sample."""
     zero = np.zeros(len(run.time_s))
     sums = {role: zero.copy() for role in ROLES.values()}
@@ -47,7 +47,7 @@ def account(run: Run, words: Words) -> Account:
         sums[role] += change
         if name.startswith("friction"):
             friction += change
-        entries.append(Entry(words.plain(name), role, float(change[-1])))
+        entries.append(Entry(labels.plain(name), role, float(change[-1])))
     order = list(ROLES.values())
     entries.sort(key=lambda entry: order.index(entry.role))
     residue = sums["supplied"] - sums["stored"] - sums["dissipated"]

@@ -15,7 +15,7 @@ from statejump._version import __version__
 from statejump.core import units
 from statejump.core.errors import NotWritten, StatejumpError, Unreadable
 from statejump.core.output import write_atomically
-from statejump.report import words
+from statejump.report import labels
 from statejump.report.campaign import CampaignDocument
 from statejump.report.document import Document
 from statejump.report.unsolved import UnsolvedDocument
@@ -81,8 +81,8 @@ def render(documents: Sequence[Document | CampaignDocument | UnsolvedDocument]) 
         documents=documents,
         title=documents[0].title if len(documents) == 1 else f"{len(documents)} runs",
         version=__version__,
-        models=words.MODELS,
-        sides=words.SIDES,
+        models=labels.MODELS,
+        sides=labels.SIDES,
         data=embedded_json({
             "runs": [_payload(document) for document in documents if isinstance(document, Document)],
             "campaigns": [_payload(document) for document in documents if isinstance(document, CampaignDocument)],

@@ -12,7 +12,7 @@ from statejump.core.case import Case
 from statejump.core.errors import NotAllowed
 from statejump.core.figures import style
 from statejump.kinds import has, require
-from statejump.report import words
+from statejump.report import labels
 from statejump.report.capabilities import CaseDrawing
 from statejump.report.inputs import sections_of
 from statejump.schema.fields import attached_to_json
@@ -35,7 +35,7 @@ class UnsolvedDocument:
             raise NotAllowed("case.kind", case.kind, code="page_only_of_truss", file=case.origin.file, source=source)
         self._case, self.source, self.identifier = case, source, identifier
         self.title, self.case_name, self.text = case.title, case.name, case.origin.text
-        self.sentences = words.described(case)
+        self.sentences = labels.described(case)
 
     def cards(self) -> list[dict[str, Any]]:
         """No number is known yet."""

@@ -53,19 +53,18 @@ def ref(data: str, item: str = "", scale: float = 1.0, offset: float = 0.0) -> d
     return found
 
 
-def link(name: str, ends: list[Point], section: Any, item: str = "") -> dict[str, Any]:
+def link(name: str, ends: list[Point], section: Any) -> dict[str, Any]:
     """Return the part of a link whose columns are below ``links``.
 
     :param section: has ``cross_section_area_m2``, ``stress_free_length_m``, ``young_modulus_Pa``,
         ``thermal_expansion_per_K``
-    :param item: its name in those columns if another
     """
     return {
         "name": name, "type": "link", "ends": ends, "width_m": section.cross_section_area_m2**0.5,
         "stress_free_length_m": section.stress_free_length_m, "young_modulus_Pa": section.young_modulus_Pa,
         "cross_section_area_m2": section.cross_section_area_m2,
         "thermal_expansion_per_K": section.thermal_expansion_per_K,
-        "values": {key: ref(f"links/{key}", item or name) for key in ("axial_force_N", "thermal_strain")},
+        "values": {key: ref(f"links/{key}", name) for key in ("axial_force_N", "thermal_strain")},
     }
 
 

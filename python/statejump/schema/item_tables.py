@@ -19,7 +19,7 @@ import numpy as np
 from statejump.core.errors import MissingKey, NotAllowed, UnknownKey
 from statejump.schema.fields import Section, default_of, fields_of, is_required, rule_of
 from statejump.schema.rules import NUMBER, NUMBERS, TEXT, TEXTS, WHOLE, Rule, suggestion
-from statejump.schema.texts import BLOCK, Texts, Words, coded
+from statejump.schema.texts import BLOCK, Texts, TextPool, coded
 
 ItemType = TypeVar("ItemType", bound=Section)
 
@@ -168,9 +168,9 @@ class ItemColumns(Sequence[ItemType], Generic[ItemType]):
         if found is None:
             default = default_of(self._fields[key])
             if not isinstance(default, list):
-                return Texts(np.broadcast_to(np.int32(0), self._length), Words(), default)
+                return Texts(np.broadcast_to(np.int32(0), self._length), TextPool(), default)
             row = np.arange(1, 1 + max(len(default), 1), dtype=np.int32) * bool(default)
-            return Texts(np.broadcast_to(row, (self._length, len(row))), Words(default))
+            return Texts(np.broadcast_to(row, (self._length, len(row))), TextPool(default))
         assert isinstance(found, Texts)
         return found
 
@@ -228,7 +228,7 @@ class Named(Mapping[str, Any]):
 NONE, UNKNOWN = -1, -2  # indices of a missing value, and of an unknown name
 
 
-class Places:
+class ItemIndex:
     """The indices of items by their names, which are all different.
 
     :param items: one by one or in columns

@@ -19,7 +19,7 @@ SHORT = (1 << 32) - 1  # size of texts below which 4 bytes are enough for an ind
 _AS_IT_IS = "surrogatepass"
 
 
-class Words:
+class TextPool:
     """Texts by number, as UTF-8. Number 0 means a missing text.
 
     :param texts: texts of the numbers from 1 on
@@ -66,7 +66,7 @@ class Numbering:
     """Assigns numbers to texts among words; new texts get new numbers. Discarded after all texts are read."""
 
     def __init__(self) -> None:
-        self.words = Words()
+        self.words = TextPool()
         self._numbers = {b"": 0}
 
     def numbers(self, texts: Sequence[bytes]) -> np.ndarray:
@@ -91,7 +91,7 @@ class Texts:
     """
 
     numbers: np.ndarray
-    words: Words
+    words: TextPool
     none: str | None = None
 
     @property
@@ -154,7 +154,7 @@ def coded(values: np.ndarray) -> Texts:
     words: dict[Any, int] = {None: 0}
     flat = [text if text or values.ndim == 1 else None for text in values.reshape(-1).tolist()]
     numbers = np.fromiter((words.setdefault(text, len(words)) for text in flat), np.int32, len(flat))
-    return Texts(numbers.reshape(values.shape), Words(text for text in words if text is not None))
+    return Texts(numbers.reshape(values.shape), TextPool(text for text in words if text is not None))
 
 
 class Names(Sequence[str]):

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from statejump.core.figures import panels as new_panels, save, style
 from statejump.core.run import Run
-from statejump.kinds.umbrella import reduced as model
+from studies.paper import ensembles
 from studies.paper.figures.closed_forms import (
     CIRCLE, closed_form_first_contact, envelope, quasi_static, static_deflection, static_deflection_elastic,
 )
@@ -100,7 +100,7 @@ def _draw_curves(panel: Axes, variant: Variant) -> None:
                        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8})
 
 
-def _temperature_scale(panel: Axes, ensemble: model.EnsembleOfRuns, labelled: bool) -> None:
+def _temperature_scale(panel: Axes, ensemble: ensembles.EnsembleOfRuns, labelled: bool) -> None:
     above = panel.twiny()
     above.set_xlim(panel.get_xlim())
     ticks = np.linspace(ensemble.time_s[0], ensemble.time_s[-1], 5)
@@ -169,7 +169,7 @@ def _legend_below(drawing: Figure, entries: dict[str, Any]) -> None:
     drawing.legend(entries.values(), entries.keys(), loc="lower center", ncol=4, fontsize=8, frameon=False)
 
 
-def figure_13(base: Variant, dem_ensemble: model.EnsembleOfRuns, title: str, folder: Path) -> list[Path]:
+def figure_13(base: Variant, dem_ensemble: ensembles.EnsembleOfRuns, title: str, folder: Path) -> list[Path]:
     """Write the paths of both centres and of the bearing's relative to the journal's."""
     with style():
         drawing, panels = new_panels(1, 3, (12.6, 4.9))

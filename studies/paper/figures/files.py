@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from statejump.core.tables import write_csv, write_json, write_markdown
-from statejump.kinds.umbrella import reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
+from studies.paper import ensembles
 from studies.paper.claims.findings import Findings
 from studies.paper.claims.measures import all_claims
 from studies.paper.claims.page import page
@@ -27,11 +27,11 @@ def thin(length: int, points: int) -> np.ndarray:
 
 
 def write_ensembles(
-    done: Sequence[tuple[Study, Sequence[Variant]]], dem_ensemble: model.EnsembleOfRuns, base: Variant, folder: Path
+    done: Sequence[tuple[Study, Sequence[Variant]]], dem_ensemble: ensembles.EnsembleOfRuns, base: Variant, folder: Path
 ) -> None:
     """Write ``ensembles.csv``: one row per run."""
 
-    def of(figure: str, key: str, value: float, name: str, runs: model.EnsembleOfRuns) -> Iterator[Sequence[Any]]:
+    def of(figure: str, key: str, value: float, name: str, runs: ensembles.EnsembleOfRuns) -> Iterator[Sequence[Any]]:
         largest = np.abs(runs.deflection_rad).max(axis=1)
         for i, end in enumerate(runs.end_eccentricity_m):
             yield (figure, key, float(value), name, i, float(largest[i]), float(runs.range_rad[i]),
@@ -44,7 +44,7 @@ def write_ensembles(
             for v in variants:
                 yield from of(study.figure, study.key, v.value, "reduced ensemble", v.ensemble)
                 for name in ("reduced", "dem"):
-                    single = model.gather([getattr(v, name)])
+                    single = ensembles.gather([getattr(v, name)])
                     yield from of(study.figure, study.key, v.value, f"{name} single", single)
 
     _write_table(

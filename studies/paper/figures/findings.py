@@ -11,6 +11,7 @@ from statejump.core.run import Run
 from statejump.kinds.umbrella import compare, reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.kinds.umbrella.compare import first_contact_K
+from studies.paper import ensembles
 from studies.paper.claims.findings import Amplification, Envelope, Findings, FirstContact
 from studies.paper.claims.statistics import Groups, two_sample_test
 from studies.paper.figures.closed_forms import (
@@ -24,7 +25,7 @@ ONSET = 0.01  # of c/|AB| at the smallest clearance: AB has begun to deflect
 
 def findings_of(
     case: UmbrellaCase, done: Sequence[tuple[Study, Sequence[Variant]]], base: Variant,
-    dem_ensemble: model.EnsembleOfRuns, contacts: tuple[FirstContact, ...], stiffness: Groups,
+    dem_ensemble: ensembles.EnsembleOfRuns, contacts: tuple[FirstContact, ...], stiffness: Groups,
 ) -> Findings:
     """Return the results of the runs.
 
@@ -110,7 +111,7 @@ def _slack(case: UmbrellaCase, run: Run) -> float:
 
 
 def _check_envelopes(
-    groups: Sequence[tuple[str, Sequence[Variant]]], dem_ensemble: model.EnsembleOfRuns, base: Variant
+    groups: Sequence[tuple[str, Sequence[Variant]]], dem_ensemble: ensembles.EnsembleOfRuns, base: Variant
 ) -> tuple[Envelope, ...]:
     def check(case: UmbrellaCase, margin: float, change: np.ndarray, theta2: np.ndarray) -> tuple[float, int]:
         low, high = envelope(case, change)
@@ -151,9 +152,9 @@ def _groups(variants: Sequence[Variant], quantity: Callable[[Variant], np.ndarra
     return Groups(tuple(v.value for v in variants), tuple(quantity(v) for v in variants))
 
 
-def _end_shift(case: UmbrellaCase, runs: model.EnsembleOfRuns) -> np.ndarray:
+def _end_shift(case: UmbrellaCase, runs: ensembles.EnsembleOfRuns) -> np.ndarray:
     """Displacement of the journal in the play from the start of each run to its end [m]."""
     angle = case.start.eccentricity_angle_rad
     centre = case.start.eccentricity_m * np.array([np.cos(angle), np.sin(angle)])
-    starts = centre + np.array(list(model.start_offsets(case, len(runs.theta2_rad))))
+    starts = centre + np.array(list(ensembles.start_offsets(case, len(runs.theta2_rad))))
     return np.hypot(*(runs.end_eccentricity_m - starts).T)

@@ -11,13 +11,14 @@ import numpy as np
 
 from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.core.run import Run
-from statejump.kinds.umbrella import dem, reduced as model
+from statejump.kinds.umbrella import reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.kinds.umbrella.compare import first_contact_K
 from studies.paper.claims.findings import FirstContact
 from studies.paper.claims.statistics import Groups
 from studies.paper.figures.closed_forms import closed_form_first_contact
 from statejump.schema.paths import with_values
+from studies.paper import ensembles
 
 CLEARANCES = (0.5, 1.0, 1.5, 2.0, 3.0)  # over that of the case
 FRICTIONS = (0.0, 0.1, 0.3, 0.5)
@@ -35,7 +36,7 @@ class Variant:
     value: float
     case: UmbrellaCase
     reduced: Run
-    ensemble: model.EnsembleOfRuns
+    ensemble: ensembles.EnsembleOfRuns
     dem: Run
 
     @property
@@ -97,13 +98,13 @@ def run_variants(case: UmbrellaCase, study: Study, known: dict[str, Variant], pa
     cases = [variant_case(case, study.key, value) for value in study.values]
     new = [variant for variant in cases if _key(variant) not in known]
     with part(f"{study.figure}, reduced", len(new) * (case.ensemble.reduced_runs + 1)) as step:
-        ensembles = [model.ensemble(variant, progress=step) for variant in new]
+        ensembles = [ensembles.ensemble(variant, progress=step) for variant in new]
         singles = []
         for variant in new:
             singles.append(model.run(variant))
             step()
     with part(f"{study.figure}, DEM", len(new)) as step:
-        dem_runs = dem.execute_all(new, step)
+        dem_runs = ensembles.execute_all(new, step)
     for variant, ensemble, single, dem_run in zip(new, ensembles, singles, dem_runs):
         known[_key(variant)] = Variant(0.0, variant, single, ensemble, dem_run)
     return [
@@ -121,7 +122,7 @@ def first_contacts(case: UmbrellaCase, values: Sequence[float], part: Part) -> t
     start = {"start.mode": "matched", "start.eccentricity_m": 0.0}
     cases = [with_values(variant_case(case, "joint.radial_clearance_m", value), start) for value in values]
     with part("first contact, both models", 2 * len(cases)) as step:
-        dem_runs = dem.execute_all(cases, step)
+        dem_runs = ensembles.execute_all(cases, step)
         result = []
         for value, variant, dem_run in zip(values, cases, dem_runs):
             exact = closed_form_first_contact(variant)
@@ -144,7 +145,7 @@ def stiffness_jumps(case: UmbrellaCase, base: Variant, part: Part) -> Groups:
                 f"{name}.cross_section_area_m2": factor * getattr(case, name).cross_section_area_m2
                 for name in ("link_ab", "link_bc")
             }
-            jumps[factor] = model.ensemble(with_values(case, areas), progress=step).jump_rad
+            jumps[factor] = ensembles.ensemble(with_values(case, areas), progress=step).jump_rad
     return Groups(SECTIONS, tuple(jumps[factor] for factor in SECTIONS))
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from statejump.core.errors import Interrupted
 from statejump.core.results_folder import Results
-from statejump.kinds.umbrella import dem, reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
+from studies.paper import ensembles
 from studies.paper.claims.findings import Findings
 from studies.paper.claims.measures import all_claims
 from studies.paper.common import made_by, refused
@@ -25,7 +25,7 @@ class Figures:
     findings: Findings
     written: list[Path]
 
-    def told(self) -> list[str]:
+    def summary_lines(self) -> list[str]:
         """Return the verdicts, as a command prints them."""
         return [f"{claim.verdict}: {claim.statement}" for claim in all_claims(self.findings)]
 
@@ -41,7 +41,7 @@ def make(case: UmbrellaCase, results: Results, part: Part) -> Figures:
     if case.start.mode == "loaded":
         raise refused(case, "start.mode", "loaded", "the figures vary what would load the joint")
     command = made_by("figures", case)
-    original, case = case, model.for_ensemble(case)
+    original, case = case, ensembles.for_ensemble(case)
     written: list[Path] = []
     with results.folder(case.name, original) as folder:
         try:
@@ -49,7 +49,7 @@ def make(case: UmbrellaCase, results: Results, part: Part) -> Figures:
             itself = Study("fig13", "joint.radial_clearance_m", (case.joint.radial_clearance_m,), "", "", "")
             (base,) = run_variants(case, itself, known, part)
             with part("fig13, DEM ensemble", case.ensemble.dem_runs) as step:
-                dem_ensemble = dem.ensemble(case, progress=step)
+                dem_ensemble = ensembles.dem_ensemble(case, progress=step)
             written += folder.publish(figure_13(base, dem_ensemble, case.title, folder.staged))
             done = []
             for study in studies(case):

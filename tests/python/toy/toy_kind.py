@@ -14,7 +14,7 @@ import numpy as np
 from statejump.core.case import Case
 from statejump.core.comparison import Comparison, Quantity, models
 from statejump.core.figures import Sheet
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.core.run import Events, Run, columns_of
 from statejump.core.tables import Shown
 from statejump.kinds.protocol import Kind
@@ -72,15 +72,15 @@ class Toy(Kind[ToyCase]):
         return Run(model, plain, energy, {}, {}, Events([]), {"tip_jump_m": float(tip[-1] - tip[0])}, self.names(case),
                    lambda: case)
 
-    def reduced(self, case: ToyCase, tell: Tell) -> Run:
-        tell(1.0)
+    def reduced(self, case: ToyCase, on_progress: OnProgress) -> Run:
+        on_progress(1.0)
         return self._run(case, "reduced", 0.0)
 
     def dem_input(self, case: ToyCase) -> dict[str, Any]:
         return case.to_dict()
 
-    def dem(self, case: ToyCase, tell: Tell) -> Run:
-        tell(1.0)
+    def dem(self, case: ToyCase, on_progress: OnProgress) -> Run:
+        on_progress(1.0)
         return self._run(case, "dem", case.numerics.error_m)
 
     def compare(self, case: ToyCase, reduced: Run, dem: Run) -> Comparison:
@@ -109,7 +109,7 @@ class Toy(Kind[ToyCase]):
 
         return Sheet([draw], 1, (5, 4), case.title)
 
-    def told(self, case: ToyCase, runs: Mapping[str, Run]) -> list[Shown | str]:
+    def summary_lines(self, case: ToyCase, runs: Mapping[str, Run]) -> list[Shown | str]:
         return [f"jump of the tip: {run.summary['tip_jump_m']:.6e} m" for run in runs.values()]
 
     def describe(self, case: ToyCase) -> list[str]:

@@ -7,7 +7,7 @@ from typing import ClassVar
 from statejump.core.later import Later
 from statejump.kinds.protocol import Kind
 from statejump.kinds.spring_slider.case import SpringSliderCase
-from statejump.kinds.spring_slider.words import WORDS
+from statejump.kinds.spring_slider.summary import LABELS
 
 _SAMPLES = Later("statejump.kinds.spring_slider.reduced:number_of_samples")
 
@@ -17,7 +17,7 @@ class SpringSlider(Kind[SpringSliderCase]):
 
     name: ClassVar[str] = "spring_slider"
     Case = SpringSliderCase
-    WORDS = WORDS
+    LABELS = LABELS
     # Same names for both models; a model has some of them.
     COLUMNS = (
         "time_s",
@@ -63,14 +63,13 @@ class SpringSlider(Kind[SpringSliderCase]):
     names = Later("statejump.kinds.spring_slider.result:names")
     scene = Later("statejump.kinds.spring_slider.result:scene")
     outcomes = Later("statejump.kinds.spring_slider.outcomes:outcomes")
-    fe = Later("statejump.kinds.spring_slider.fe:answer")
     statics = Later("statejump.kinds.spring_slider.statics:statics")
     control = Later("statejump.kinds.spring_slider.control:answer")
     sheet = Later("statejump.kinds.spring_slider.figure:sheet")
-    told = Later("statejump.kinds.spring_slider.words:told")
-    describe = Later("statejump.kinds.spring_slider.words:describe")
+    summary_lines = Later("statejump.kinds.spring_slider.summary:summary_lines")
+    describe = Later("statejump.kinds.spring_slider.summary:describe")
     charts = Later("statejump.kinds.spring_slider.charts:charts")
-    event_reason = Later("statejump.kinds.spring_slider.words:event_reason")
+    event_reason = Later("statejump.kinds.spring_slider.summary:event_reason")
 
 
 KIND = SpringSlider()

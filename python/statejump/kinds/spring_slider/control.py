@@ -9,12 +9,12 @@ import numpy as np
 
 from statejump import _engine
 from statejump.control.study import (
-    Line, Places, Row, Study, Sweep, bisect, check_wanted, grid, highest, number, ranges_that_pass, refuse_places,
-    refuse_runs, with_notes,
+    DesignChoices, Line, Row, Study, Sweep, bisect, check_wanted, grid, highest, number, ranges_that_pass,
+    refuse_choices, refuse_runs, with_notes,
 )
 from statejump.core.engine_failures import engine
 from statejump.core.errors import StatejumpError
-from statejump.core.progress import Tell, one_of
+from statejump.core.progress import OnProgress, one_of
 from statejump.kinds import require
 from statejump.kinds.protocol import DemModel
 from statejump.kinds.spring_slider import reduced
@@ -164,17 +164,17 @@ def _sweeps(case: SpringSliderCase) -> list[Sweep]:
 
 def control(
     case: SpringSliderCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
-    tell: Tell = lambda share: None, places: Places = Places(),
+    on_progress: OnProgress = lambda share: None, choices: DesignChoices = DesignChoices(),
 ) -> Study:
     """Sweep, search and, if wanted, check with the DEM.
 
     :param jump_below: largest allowed jump [m]; None: half of that of the case
     :param runs: must be None: there is one exact path
-    :param places: must be empty: a case has one jump
+    :param choices: must be empty: a case has one jump
     :raises StatejumpError: invalid input, or a run failed
     """
     check_wanted(jump_below, "m")
-    refuse_places(places, case)
+    refuse_choices(choices, case)
     refuse_runs(runs, case)
     wanted = jump_below
     now = jump_of(case)
@@ -190,7 +190,7 @@ def control(
         _recommend(case, result, wanted)
     result.remarks += [*reduced.solve(case, np.array([0.0])).warnings, *reduced.warnings(case)]
     if with_dem:
-        _check_by_dem(case, result, tell)
+        _check_by_dem(case, result, on_progress)
     return result
 
 
@@ -242,12 +242,12 @@ def _recommend(case: SpringSliderCase, result: Study, wanted: float) -> None:
     )
 
 
-def _check_by_dem(case: SpringSliderCase, result: Study, tell: Tell) -> None:
+def _check_by_dem(case: SpringSliderCase, result: Study, on_progress: OnProgress) -> None:
     preload = result.sweep(PRELOAD)
     wanted = {preload.own, preload.own if preload.recommended is None else preload.recommended}
     for done, stiffness in enumerate(sorted(wanted)):
         design = with_values(case, {PRELOAD: stiffness})
-        run = require(case, DemModel).dem(design, one_of(tell, done, len(wanted)))
+        run = require(case, DemModel).dem(design, one_of(on_progress, done, len(wanted)))
         jump, exact = abs(run.summary["state_jump_m"]), jump_of(design).size_m
         result.dem.append({PRELOAD: stiffness, "reduced_jump_m": exact, "dem_jump_m": jump})
         preload.row(stiffness).dem_jump = jump

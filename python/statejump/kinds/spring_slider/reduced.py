@@ -9,7 +9,7 @@ import numpy as np
 
 from statejump import _engine
 from statejump.kinds.limits import WHOLE_HISTORY
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.core.run import Events, Run
 from statejump.core.thermal import program
 from statejump.kinds.spring_slider import result
@@ -91,13 +91,13 @@ def cycles_shown(case: SpringSliderCase) -> int:
     return min(max(WHOLE_HISTORY // (10 * case.dem_settings.samples_per_cycle), 1), case.thermal.cycles // 2)
 
 
-def run(case: SpringSliderCase, tell: Tell) -> Run:
+def run(case: SpringSliderCase, on_progress: OnProgress) -> Run:
     """Return the exact path as a run; at other times it is as exact."""
     times = sample_times(case)
     found = _run_at(case, times)
     if not is_whole(case):
         found = _without_what_is_between(case, found)
-    tell(1.0)
+    on_progress(1.0)
     return found
 
 

@@ -67,7 +67,7 @@ class RestSets:
         """Draw the places of rest over the temperature; into given axes, or into a new figure."""
         return _DRAWN(self, axes)
 
-    def told(self) -> list[Shown | str]:
+    def summary_lines(self) -> list[Shown | str]:
         """Return what a command prints."""
         rows = [tuple(plain(value, "K" if place == 0 else "m") for place, value in
                       enumerate((part.temperature_change_K, part.from_m, part.to_m, part.length_m)))

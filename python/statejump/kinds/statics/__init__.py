@@ -16,7 +16,7 @@ class Statics(Kind):
     Case = StaticsCase
 
     statics = Later("statejump.kinds.statics.solve:solve")
-    describe = Later("statejump.kinds.statics.words:describe")
+    describe = Later("statejump.kinds.statics.summary:describe")
 
 
 KIND = Statics()

@@ -108,9 +108,9 @@ def _drawn(statics: Statics) -> list[tuple[str, dict[str, Any]]]:
     return list(zip(COLOURS, statics.each))
 
 
-def _arrow(panel: Axes, start: np.ndarray, end: np.ndarray, colour: str, style: str = "-|>") -> None:
+def _arrow(panel: Axes, start: np.ndarray, end: np.ndarray, colour: str) -> None:
     panel.annotate("", xy=tuple(end), xytext=tuple(start), zorder=6,
-                   arrowprops=dict(arrowstyle=style, color=colour, linewidth=1.6, shrinkA=0, shrinkB=0,
+                   arrowprops=dict(arrowstyle="-|>", color=colour, linewidth=1.6, shrinkA=0, shrinkB=0,
                                    mutation_scale=13))
 
 

@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _DRAWN, _WRITTEN = Later("statejump.kinds.statics.figure:drawn"), Later("statejump.kinds.statics.files:write")
-_TOLD, _HTML = Later("statejump.kinds.statics.words:told"), Later("statejump.kinds.statics.words:html")
+_SUMMARY_LINES = Later("statejump.kinds.statics.summary:summary_lines")
+_HTML = Later("statejump.kinds.statics.summary:html")
 SPHERE_LEVEL = 4  # 5120 triangles
 FRICTION = "joint.friction_coefficient"
 
@@ -89,9 +90,9 @@ class Statics:
         """
         return _DRAWN(self, axes)
 
-    def told(self) -> list[Shown | str]:
+    def summary_lines(self) -> list[Shown | str]:
         """Return the tables and lines that a command prints."""
-        return _TOLD(self)
+        return _SUMMARY_LINES(self)
 
     def write(self, folder: Path) -> list[Path]:
         """Write ``statics.json``, the picture and, for positions in space, a ParaView file; return their paths.

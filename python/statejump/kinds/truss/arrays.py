@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from statejump.schema.fields import fields_of, rule_of
-from statejump.schema.item_tables import ItemColumns, Places, once
+from statejump.schema.item_tables import ItemColumns, ItemIndex, once
 from statejump.schema.items import Item
 from statejump.schema.rules import NUMBERS, SWITCH, TEXT, TEXTS, WHOLE
 from statejump.schema.texts import BLOCK, Names
@@ -130,9 +130,9 @@ class References:
 
     dimension: int
     position_m: np.ndarray  # (n, 3) of the nodes
-    node: Places
-    link: Places
-    program: Places  # of [[program]], one less than their index: 0 is the common one
+    node: ItemIndex
+    link: ItemIndex
+    program: ItemIndex  # of [[program]], one less than their index: 0 is the common one
     member: dict[str, int]  # programs of members that have histories of their own
 
     def programs_of(self, items: Sequence[Any]) -> np.ndarray:
@@ -150,12 +150,12 @@ class References:
         return unit(vectors(items, "axis", self.dimension))
 
 
-def indices(items: Sequence[Any], key: str, among: Places) -> np.ndarray:
+def indices(items: Sequence[Any], key: str, among: ItemIndex) -> np.ndarray:
     """Return the index of the item that a key of every item names (items,); GROUND if it names none."""
     return among.of(items, key)
 
 
-def pairs(items: Sequence[Any], key: str, among: Places) -> np.ndarray:
+def pairs(items: Sequence[Any], key: str, among: ItemIndex) -> np.ndarray:
     """Return the indices of the one or two items that a key of every item names (items, 2); GROUND for a missing
     second."""
     found = np.full((len(items), 2), GROUND, dtype=np.int32)

@@ -18,7 +18,7 @@ from statejump.kinds.truss.elements.protocol import listed_elements
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.references import Around, known_name, known_nodes, wrong_ends
-from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns, Places, by_name, each, where_wrong
+from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns, ItemIndex, by_name, each, where_wrong
 
 if TYPE_CHECKING:
     from statejump.kinds.truss.sections import Link, TrussSections
@@ -29,7 +29,7 @@ _WITH_TEMPERATURE = [joint for joint in JOINTS if joint.has_temperature]
 def check_references(case: TrussSections) -> None:
     """Raise StatejumpError for the first name that does not exist or does not match."""
     nodes, links = by_name(case.node), by_name(case.link)
-    node_places, link_places = Places(case.node), Places(case.link)
+    node_places, link_places = ItemIndex(case.node), ItemIndex(case.link)
     for link in where_wrong(case.link, lambda items: wrong_ends(node_places.of(items, "nodes"), 2)):
         known_nodes(link.nodes, 2, nodes, {"item": f"link {link.name!r}"})
     _programs(case)
@@ -70,7 +70,7 @@ def _followers(case: TrussSections) -> Iterator[tuple[Any, dict[str, Any], bool]
 
 
 def _programs(case: TrussSections) -> None:
-    programs, places = by_name(case.program), Places(case.program)
+    programs, places = by_name(case.program), ItemIndex(case.program)
     followers: Iterator[tuple[Any, Any]] = (
         (items, where) for items, where in (
             (case.link, lambda name: {"item": f"link {name!r}"}),
@@ -83,7 +83,7 @@ def _programs(case: TrussSections) -> None:
 
 def _expansions(case: TrussSections) -> None:
     """Check that every link has a coefficient, or names one that depends on temperature."""
-    expansions, places = by_name(case.expansion), Places(case.expansion)
+    expansions, places = by_name(case.expansion), ItemIndex(case.expansion)
 
     def wrong(links: ItemColumns[Link]) -> np.ndarray:
         named = places.of(links, "expansion")

@@ -9,7 +9,7 @@ import numpy as np
 
 from statejump.kinds.truss.arrays import names
 from statejump.schema.fields import definition, numbers, texts
-from statejump.schema.item_tables import Places
+from statejump.schema.item_tables import ItemIndex
 from statejump.schema.items import Item
 
 AXES = ("x", "y", "z")
@@ -49,7 +49,7 @@ class Constraints:
         return np.concatenate(found) if found else np.zeros(0, dtype=np.int32)
 
 
-def resolve_constraints(items: Sequence[Constraint], nodes: Places) -> Constraints:
+def resolve_constraints(items: Sequence[Constraint], nodes: ItemIndex) -> Constraints:
     """Return the constraints as arrays."""
     axes = np.eye(3)
     return Constraints(

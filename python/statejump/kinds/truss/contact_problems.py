@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from statejump.core.errors import Range, StatejumpError
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.fclib import Problem, Stored, merit
 from statejump.fclib.problem import Merit
 from statejump.kinds.truss.case import TrussCase
@@ -37,7 +37,9 @@ class ContactProblem:
     merit: Merit
 
 
-def contact_problems(case: TrussCase, number: int, tell: Tell = lambda share: None) -> list[ContactProblem]:
+def contact_problems(
+    case: TrussCase, number: int, on_progress: OnProgress = lambda share: None,
+) -> list[ContactProblem]:
     """Return the problems of a number of steps, evenly spaced over the path; fewer if the path has fewer steps.
 
     :raises NotAllowed: the number is out of its range
@@ -54,7 +56,7 @@ def contact_problems(case: TrussCase, number: int, tell: Tell = lambda share: No
     if joints > MOST_JOINTS:
         raise StatejumpError(code="too_many_joints", case=case.name, count=joints, most=MOST_JOINTS)
     wanted = (np.arange(number) + 0.5) / number * case.duration_s
-    found = whole_path(truss, tell, cycle_ends_only=True, problem_times=wanted, **settings(case))
+    found = whole_path(truss, on_progress, cycle_ends_only=True, problem_times=wanted, **settings(case))
     problems = [_problem(case, problem) for problem in found.problems if problem["joints"]]
     if not problems:
         raise StatejumpError(code="no_contact", case=case.name)

@@ -12,7 +12,7 @@ from scipy import signal
 
 from statejump.core import figures, libraries
 from statejump.core.errors import NotAllowed
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.core.run import Run
 from statejump.core.tables import Shown, write_columns, write_rows
 from statejump.kinds.truss import motion, result
@@ -100,7 +100,7 @@ class Creak:
         warm.set_ylabel("Temperature change, dashed [K]")
         warm.grid(False)
 
-    def told(self) -> list[Shown | str]:
+    def summary_lines(self) -> list[Shown | str]:
         """Return what a command prints."""
         rows = [[f"{band['low_Hz']:.4g}", f"{band['high_Hz']:.4g}", f"{band['rms_m_per_s2']:.4g}",
                  f"{band['peak_m_per_s2']:.4g}"] for band in self.bands]
@@ -125,11 +125,11 @@ SLIP = ("joint", "start_s", "duration_s", "temperature_change_K", "heat_J")
 BAND = ("low_Hz", "high_Hz", "rms_m_per_s2", "peak_m_per_s2")
 
 
-def creak(case: TrussCase, node: str, tell: Tell = lambda share: None) -> Creak:
+def creak(case: TrussCase, node: str, on_progress: OnProgress = lambda share: None) -> Creak:
     """Return the acceleration of a node while a truss moves through its program.
 
     :param node: name of the node
-    :param tell: called with the finished fraction, 0 to 1
+    :param on_progress: called with the finished fraction, 0 to 1
     :raises NotAllowed: the node does not exist, or steps are not equal
     :raises FailedRun: as for the motion
     """
@@ -140,7 +140,7 @@ def creak(case: TrussCase, node: str, tell: Tell = lambda share: None) -> Creak:
     if case.motion.displacement_tolerance_m is not None:
         raise NotAllowed("motion.displacement_tolerance_m", case.motion.displacement_tolerance_m,
                          code="spectrum_of_unequal_steps", case=case.name)
-    found = motion.simulate(case, tell, names.index(node))
+    found = motion.simulate(case, on_progress, names.index(node))
     run = result.motion_run(case, found)
     step = found.time_step_s
     acceleration = np.diff(found.watched_velocity_m_per_s, axis=0) / step

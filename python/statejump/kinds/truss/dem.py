@@ -18,7 +18,7 @@ from statejump import _engine
 from statejump.core import physics, thermal, yade_process
 from statejump.core.engine_failures import EngineFailed
 from statejump.core.errors import StatejumpError
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.core.run import Run
 from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION
 from statejump.kinds.truss.case import TrussCase
@@ -264,30 +264,30 @@ def resolved(case: TrussCase, path: Course) -> dict[str, Any]:
     }
 
 
-def dem_input(case: TrussCase, tell: Tell = lambda share: None) -> dict[str, Any]:
+def dem_input(case: TrussCase, on_progress: OnProgress = lambda share: None) -> dict[str, Any]:
     """Compute the path or the motion, and return the input of the YADE script, see :func:`resolved`.
 
-    :param tell: called with the finished fraction of the path
+    :param on_progress: called with the finished fraction of the path
     """
     check(case)
-    return resolved(case, course(case, tell))
+    return resolved(case, course(case, on_progress))
 
 
-def course(case: TrussCase, tell: Tell) -> Course:
+def course(case: TrussCase, on_progress: OnProgress) -> Course:
     """Return the quasi-static path. For a case that snaps through, return its motion, because the path ends at its
     limit point."""
     try:
-        return solve(case, tell)
+        return solve(case, on_progress)
     except EngineFailed as failure:
         if failure.reason != "no_continuation":
             raise
-    return simulate(with_values(case, {"motion.scheme": "set_valued"}), tell)
+    return simulate(with_values(case, {"motion.scheme": "set_valued"}), on_progress)
 
 
-def run(case: TrussCase, scene: str, make_run: Callable[..., Run], tell: Tell) -> Run:
+def run(case: TrussCase, scene: str, make_run: Callable[..., Run], on_progress: OnProgress) -> Run:
     """Compute the path and run the case in YADE from its start; see :func:`statejump.core.yade_process.run`.
 
     :param scene: module that builds the scene in YADE
     """
-    values = {"scene": scene, **dem_input(case, lambda share: tell(PATH_SHARE * share))}
-    return yade_process.run(case, values, make_run, lambda share: tell(PATH_SHARE + (1 - PATH_SHARE) * share))
+    values = {"scene": scene, **dem_input(case, lambda share: on_progress(PATH_SHARE * share))}
+    return yade_process.run(case, values, make_run, lambda share: on_progress(PATH_SHARE + (1 - PATH_SHARE) * share))

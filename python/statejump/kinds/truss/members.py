@@ -23,8 +23,8 @@ def warnings(links: Links, time_s: np.ndarray, temperature_change_K: np.ndarray,
         return ()
     places = np.arange(len(links.names))
 
-    def sentence(at: np.ndarray, load: np.ndarray, told: Sequence[str]) -> list[str]:
-        """Return the sentence about links whose load is above 1 at these samples. ``told`` has the load of the worst
+    def sentence(at: np.ndarray, load: np.ndarray, parts: Sequence[str]) -> list[str]:
+        """Return the sentence about links whose load is above 1 at these samples. ``parts`` has the load of the worst
         link, the exceeded limit, and the behaviour of the models."""
         beyond = np.flatnonzero(load > 1)
         if not len(beyond):
@@ -34,7 +34,7 @@ def warnings(links: Links, time_s: np.ndarray, temperature_change_K: np.ndarray,
         others = "" if not more else f", and so {'does 1 other link' if more == 1 else f'do {more} other links'}"
         when = (f"at a temperature change of {plain(float(temperature_change_K[at[worst]]), 'K', 4)} "
                 f"(t = {plain(float(time_s[at[worst]]), 's', 4)})")
-        return [f"link {links.names[worst]!r} {told[0]} {when} {told[1]}{others}: {told[2]}"]
+        return [f"link {links.names[worst]!r} {parts[0]} {when} {parts[1]}{others}: {parts[2]}"]
 
     pressed = np.argmax(axial_force_N, axis=0)
     compression, euler = axial_force_N[pressed, places], links.euler_load_N

@@ -13,7 +13,7 @@ from statejump.core import physics
 from statejump.core.engine_failures import EngineFailed
 from statejump.core.errors import Interrupted, NotAllowed, StatejumpError
 from statejump.core.start import FRICTIONLESS
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.masses import lumped_mass_kg
@@ -123,16 +123,16 @@ def inertia(case: TrussCase) -> dict[str, Any]:
     }
 
 
-def simulate(case: TrussCase, tell: Tell = lambda share: None, watched_node: int = -1) -> TrussMotion:
+def simulate(case: TrussCase, on_progress: OnProgress = lambda share: None, watched_node: int = -1) -> TrussMotion:
     """Return the motion of a case through its program.
 
-    :param tell: called with the finished fraction, 0 to 1
+    :param on_progress: called with the finished fraction, 0 to 1
     :param watched_node: index of a node whose velocity is recorded at every step
     :raises FailedRun: no start, or a step without solution: with joint and temperature
     :raises Interrupted: Ctrl-C; its ``run`` is the motion so far, None if there is only the start
     """
     def going_on(share: float) -> bool:
-        tell(share)
+        on_progress(share)
         return True
 
     truss, samples = case.resolve(), case.samples_per_cycle

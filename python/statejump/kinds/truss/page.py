@@ -23,8 +23,8 @@ from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.result import names as names_of
 from statejump.kinds.truss.scales import scales
-from statejump.kinds.truss.words import is_guided, is_held
-from statejump.report import words
+from statejump.kinds.truss.summary import is_guided, is_held
+from statejump.report import labels
 from statejump.report.drawing import round_down
 from statejump.results.contents import Result
 
@@ -75,7 +75,7 @@ class TrussPart:
         self._run = result.models[self.model]
         self.nodes = result.names["nodes"]
         self._number = {name: place for place, name in enumerate(self.nodes)}
-        self._words = words.Words()
+        self._labels = labels.Labels()
         self.cycles = case.thermal.cycles
         self._ends = self._cycle_ends(self._run)
         if self.answers is None:
@@ -208,8 +208,8 @@ class TrussPart:
     @property
     def verdict(self) -> str:
         """Sentence of the answers about the cycles; "" without answers."""
-        told = "" if self.answers is None else self.answers.verdict_text
-        return f"{told[:1].upper()}{told[1:]}." if told else ""
+        verdict = "" if self.answers is None else self.answers.verdict_text
+        return f"{verdict[:1].upper()}{verdict[1:]}." if verdict else ""
 
     def cards(self) -> list[Row]:
         """Return the jump of the answers' output for the top of the page."""
@@ -240,7 +240,7 @@ class TrussPart:
             return ["No node is away from where it began by more than rounding."]
         moved = {model: self._since_start(run, "history", "displacement_m")[-1, self._first]
                  for model, run in self.result.models.items()}
-        jumps = [f"{text(float(np.linalg.norm(way)), 'm', 4)} in the {words.inside(words.MODELS[model])}"
+        jumps = [f"{text(float(np.linalg.norm(way)), 'm', 4)} in the {labels.inside(labels.MODELS[model])}"
                  for model, way in moved.items()]
         which = "jumps" if self.case.has_jump else "is displaced"
         found = [f"The node that {which} most, {name}, is after {_cycles(self.cycles)} away from where it began by "
@@ -290,7 +290,7 @@ class TrussPart:
         ranked = sorted(rows, key=lambda row: -abs(row["elasticity"] or 0.0))
         most = max((abs(row["elasticity"] or 0.0) for row in ranked), default=0.0)
         shown = [
-            {**row, "name": self._words.parameter(row["parameter"]), "key": row["parameter"],
+            {**row, "name": self._labels.parameter(row["parameter"]), "key": row["parameter"],
              "bar": 100 * (row["elasticity"] or 0.0) / most if most else 0.0,
              "text": "–" if row["elasticity"] is None else f"{row['elasticity']:+.3g}".replace("-", "−"),
              "given": "differs" if row["value"] is None else text(row["value"], unit_of(row["parameter"]), 4)}

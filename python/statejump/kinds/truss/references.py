@@ -11,7 +11,7 @@ import numpy as np
 
 from statejump.core.errors import MissingKey, NotAllowed
 from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION, said
-from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns, Places
+from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns, ItemIndex
 from statejump.schema.texts import BLOCK
 
 if TYPE_CHECKING:
@@ -64,8 +64,8 @@ def known_links(names: list[str], links: Mapping[str, Any], where: Mapping[str, 
 class Around:
     """Arrays that the checks of joints in columns need."""
 
-    nodes: Places
-    links: Places
+    nodes: ItemIndex
+    links: ItemIndex
     held: np.ndarray  # (nodes,) bool: it has a support
     link_nodes: np.ndarray  # (links, k) indices of the nodes of each link
 
@@ -73,7 +73,7 @@ class Around:
 def wrong_ends(places: np.ndarray, least: int) -> np.ndarray:
     """Return the items (n,) that do not name two different ones, or one if one is enough.
 
-    :param places: indices of the named items (n, k), as :class:`~statejump.schema.item_tables.Places` returns them
+    :param places: indices of the named items (n, k), as :class:`~statejump.schema.item_tables.ItemIndex` returns them
     """
     count = (places != NONE).sum(axis=1)
     ends = np.sort(places, axis=1)[:, -2:]

@@ -19,13 +19,13 @@ from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.mechanism import resolve_bodies, resolve_drives, weights_N
 from statejump.kinds.truss.resolved import Links, Nodes, ReflectorSurface, ResolvedTruss
 from statejump.kinds.truss.sections import TrussSections
-from statejump.schema.item_tables import Places, once
+from statejump.schema.item_tables import ItemIndex, once
 
 
 def resolve(case: TrussSections) -> ResolvedTruss:
     """Return the arrays of a case. ``checks`` has checked the references when the case was read."""
     dimension = case.truss.dimension
-    node_places, link_places = Places(case.node), Places(case.link)
+    node_places, link_places = ItemIndex(case.node), ItemIndex(case.link)
     positions = vectors(case.node, "position_m", dimension)
 
     members = case.thermal.members
@@ -33,7 +33,7 @@ def resolve(case: TrussSections) -> ResolvedTruss:
         name: index for index, name in enumerate(members.names, start=1 + len(case.program))
     }
 
-    known = References(dimension, positions, node_places, link_places, Places(case.program), member_number)
+    known = References(dimension, positions, node_places, link_places, ItemIndex(case.program), member_number)
 
     nodes = _nodes(case, positions)
     program_names = ("thermal", *names(case.program), *(() if members is None else members.names))

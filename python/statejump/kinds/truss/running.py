@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from statejump.core.errors import Interrupted
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.core.run import Run
 from statejump.core.yade_process import find_yade
 from statejump.kinds import of
@@ -14,15 +14,15 @@ from statejump.kinds.truss import motion, result, solve
 from statejump.kinds.truss.case import TrussCase
 
 
-def reduced(case: TrussCase, tell: Tell) -> Run:
+def reduced(case: TrussCase, on_progress: OnProgress) -> Run:
     """Run the quasi-static solver."""
-    return result.reduced_run(case, solve.solve(case, tell), result.sample_times(case))
+    return result.reduced_run(case, solve.solve(case, on_progress), result.sample_times(case))
 
 
-def dynamic(case: TrussCase, tell: Tell) -> Run:
+def dynamic(case: TrussCase, on_progress: OnProgress) -> Run:
     """Run the truss in motion."""
     try:
-        return result.motion_run(case, motion.simulate(case, tell))
+        return result.motion_run(case, motion.simulate(case, on_progress))
     except Interrupted as stopped:
         if stopped.run is not None:
             stopped.run = replace(result.motion_run(case, stopped.run), complete=False)
@@ -35,6 +35,6 @@ def check_dem(case: TrussCase) -> None:
     find_yade()
 
 
-def dem(case: TrussCase, tell: Tell) -> Run:
+def dem(case: TrussCase, on_progress: OnProgress) -> Run:
     """Run the truss in YADE."""
-    return scene.run(case, of(case).scene_module(), result.dem_run, tell)
+    return scene.run(case, of(case).scene_module(), result.dem_run, on_progress)

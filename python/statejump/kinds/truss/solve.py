@@ -12,7 +12,7 @@ from statejump import _engine
 from statejump.core import thermal
 from statejump.core.engine_failures import EngineFailed
 from statejump.core.errors import Interrupted
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.core.start import FRICTIONLESS
 from statejump.core.thermal import MemberProgram, Thermal
 from statejump.kinds.truss.case import TrussCase
@@ -192,14 +192,14 @@ def path(
     return TrussPath(truss=truss, events=events, **found)
 
 
-def whole_path(truss: ResolvedTruss, tell: Tell = lambda share: None, **options: Any) -> TrussPath:
+def whole_path(truss: ResolvedTruss, on_progress: OnProgress = lambda share: None, **options: Any) -> TrussPath:
     """Return the path up to its end; see :func:`path`.
 
-    :param tell: receives the finished fraction, 0 to 1
+    :param on_progress: receives the finished fraction, 0 to 1
     :raises Interrupted: Ctrl-C
     """
     def going_on(share: float) -> bool:
-        tell(share)
+        on_progress(share)
         return True
 
     found = path(truss, progress=going_on, **options)
@@ -216,29 +216,30 @@ def _failed(truss: ResolvedTruss, failure: _engine.EngineFailure) -> EngineFaile
     return EngineFailed(failure, remedy=remedy, case=truss.name, place=truss.name)
 
 
-def solve(case: TrussCase, tell: Tell = lambda fraction: None,
+def solve(case: TrussCase, on_progress: OnProgress = lambda fraction: None,
           trace: Callable[[tuple[Any, ...]], object] | None = None) -> TrussPath:
     """Return the path of a case, with the settings of its [reduced]. The path of an immutable case is computed once and
     cached, because the DEM starts from it. A trace needs a new solution.
 
-    :param tell: called with the finished fraction, 0 to 1
+    :param on_progress: called with the finished fraction, 0 to 1
     :param trace: as for :func:`path`
     :raises FailedRun: mechanism, unloaded joint or no equilibrium; with names and temperature
     :raises Interrupted: Ctrl-C
     """
     kept = vars(case)
     if trace is not None or "_path" not in kept:
-        kept["_path"] = _solved(case, tell, trace)
+        kept["_path"] = _solved(case, on_progress, trace)
     found: TrussPath = kept["_path"]
     return found
 
 
-def _solved(case: TrussCase, tell: Tell, trace: Callable[[tuple[Any, ...]], object] | None) -> TrussPath:
+def _solved(case: TrussCase, on_progress: OnProgress, trace: Callable[[tuple[Any, ...]], object] | None) -> TrussPath:
     truss = case.resolve()
     items = 3 * len(truss.nodes.names) + len(truss.links.names) + 8 * len(truss.revolutes.names)
     branches = max(2, *(len(program.table_time_s or ()) for program in (case.thermal, *case.program)))
     states = branches * case.thermal.cycles * case.reduced_settings.increments_per_branch
-    return whole_path(truss, tell, cycle_ends_only=8 * items * states > LARGEST_PATH, trace=trace, **settings(case))
+    ends_only = 8 * items * states > LARGEST_PATH
+    return whole_path(truss, on_progress, cycle_ends_only=ends_only, trace=trace, **settings(case))
 
 
 def settings(case: TrussCase) -> dict[str, Any]:

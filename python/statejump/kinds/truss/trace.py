@@ -9,7 +9,7 @@ from typing import Any
 
 from statejump.core.errors import StatejumpError
 from statejump.core.output import check_suffix, write_atomically
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.core.run import Run
 from statejump.core.tables import cells
 from statejump.kinds.truss import result
@@ -39,21 +39,21 @@ COLUMNS = (
 )
 
 
-def traced(case: TrussCase, tell: Tell, trace: Path | Callable[[tuple[Any, ...]], object]) -> Run:
+def traced(case: TrussCase, on_progress: OnProgress, trace: Path | Callable[[tuple[Any, ...]], object]) -> Run:
     """Run the quasi-static solver and trace it. The file also appears if the run fails or is interrupted.
 
     :param trace: CSV file, or a function that takes each row
     :raises NotWritten: the file cannot be written
     """
     if not isinstance(trace, Path):
-        return _run(case, tell, trace)
+        return _run(case, on_progress, trace)
     check_suffix("--trace", trace, ".csv")
     failure: StatejumpError | None = None
     with write_atomically(trace) as stream:
         writer = csv.writer(stream)
         writer.writerow(COLUMNS)
         try:
-            run = _run(case, tell, lambda row: writer.writerow(cells(row)))
+            run = _run(case, on_progress, lambda row: writer.writerow(cells(row)))
         except StatejumpError as error:
             failure = error
     if failure is not None:
@@ -61,5 +61,5 @@ def traced(case: TrussCase, tell: Tell, trace: Path | Callable[[tuple[Any, ...]]
     return run
 
 
-def _run(case: TrussCase, tell: Tell, trace: Callable[[tuple[Any, ...]], object]) -> Run:
-    return result.reduced_run(case, solve(case, tell, trace), result.sample_times(case))
+def _run(case: TrussCase, on_progress: OnProgress, trace: Callable[[tuple[Any, ...]], object]) -> Run:
+    return result.reduced_run(case, solve(case, on_progress, trace), result.sample_times(case))

@@ -7,7 +7,7 @@ from typing import ClassVar
 from statejump.core.later import Later
 from statejump.kinds.protocol import Kind
 from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.kinds.umbrella.words import WORDS
+from statejump.kinds.umbrella.summary import LABELS
 
 
 class Umbrella(Kind):
@@ -15,7 +15,7 @@ class Umbrella(Kind):
 
     name: ClassVar[str] = "umbrella"
     Case = UmbrellaCase
-    WORDS = WORDS
+    LABELS = LABELS
     # Both models have all of them.
     COLUMNS = (
         "time_s",
@@ -70,10 +70,9 @@ class Umbrella(Kind):
     scene = Later("statejump.kinds.umbrella.result:scene")
     outcomes = Later("statejump.kinds.umbrella.outcomes:outcomes")
     laws = Later("statejump.kinds.umbrella.laws:joint")
-    control = Later("statejump.kinds.umbrella.control:answer")
     sheet = Later("statejump.kinds.umbrella.figure:sheet")
-    told = Later("statejump.kinds.umbrella.words:told")
-    describe = Later("statejump.kinds.umbrella.words:describe")
+    summary_lines = Later("statejump.kinds.umbrella.summary:summary_lines")
+    describe = Later("statejump.kinds.umbrella.summary:describe")
     charts = Later("statejump.kinds.umbrella.charts:charts")
 
 

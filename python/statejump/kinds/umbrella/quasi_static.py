@@ -13,7 +13,6 @@ from statejump.core.errors import NotAllowed
 from statejump.core.tables import Shown, write_columns, write_rows
 from statejump.core.units import plain, unit_of
 from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.kinds.umbrella.control_loaded import has_elastic_loop
 from statejump.kinds.umbrella.reduced import linkage
 
 if TYPE_CHECKING:
@@ -77,7 +76,7 @@ class QuasiStatic:
         lost = [*self.notes, *lost]
         return lost if ELASTIC in self.paths else [*lost, "the laws of the case have no path with elastic links"]
 
-    def told(self) -> list[Shown | str]:
+    def summary_lines(self) -> list[Shown | str]:
         """Return what the command prints."""
         jumps = [(name, plain(value, unit_of(name))) for name, value in self.summary.items()]
         events = [(links, str(event["motion"]), f"{event['temperature_change_K']:.6g}", f"{event['theta2_rad']:.9g}",
@@ -96,6 +95,12 @@ class QuasiStatic:
             write_columns(path.columns(), target)
             written += [target, write_rows(folder / f"quasi_static_{links}_events.csv", path.events)]
         return written
+
+
+def has_elastic_loop(case: UmbrellaCase) -> bool:
+    """Whether the path with elastic links covers the laws of a case."""
+    velocity = laws.law("tangential_velocity", case.joint.tangential_velocity)
+    return laws.law("normal", case.joint.normal_law).point_contact and not velocity.needs_axis
 
 
 def quasi_static(case: UmbrellaCase) -> QuasiStatic:

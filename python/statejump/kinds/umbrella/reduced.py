@@ -1,21 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reduced model of an ``umbrella`` case: single runs, ensembles, the quasi-static path."""
+"""Reduced model of an ``umbrella`` case: single runs, the quasi-static path."""
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 
 import numpy as np
 
 from statejump import _engine
 from statejump.core.engine_failures import engine
-from statejump.core.progress import Tell
-from statejump.core.run import Columns, Run
+from statejump.core.progress import OnProgress
+from statejump.core.run import Run
 from statejump.kinds.umbrella import result
 from statejump.kinds.umbrella.case import UmbrellaCase, UmbrellaLink
-from statejump.schema.paths import with_values
 
 
 def _link(link: UmbrellaLink) -> _engine.ThermalLink:
@@ -71,10 +66,10 @@ def integrate(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> _engine
         return _engine.simulate(model, program, start, steps * cycles, steps // samples)
 
 
-def run(case: UmbrellaCase, tell: Tell = lambda share: None, offset_m: np.ndarray | None = None) -> Run:
+def run(case: UmbrellaCase, on_progress: OnProgress = lambda share: None, offset_m: np.ndarray | None = None) -> Run:
     """Run the reduced model; see :func:`integrate`."""
     made = result.reduced_run(case, integrate(case, offset_m))
-    tell(1.0)
+    on_progress(1.0)
     return made
 
 
@@ -87,79 +82,3 @@ def quasi_static(case: UmbrellaCase, samples: int = 400) -> _engine.JointLoop | 
         )
     except _engine.EngineFailure:
         return None
-
-
-def start_offsets(case: UmbrellaCase, count: int) -> Iterator[np.ndarray]:
-    """Yield positions of the journal near the start (2) [m], evenly spread over a disc. They depend on the seed alone,
-    and each is independent of their number."""
-    for index in range(count):
-        generator = np.random.default_rng([case.ensemble.seed, index])
-        radius = case.ensemble.start_spread_m * np.sqrt(generator.random())
-        angle = 2 * np.pi * generator.random()
-        yield radius * np.array([np.cos(angle), np.sin(angle)])
-
-
-@dataclass(frozen=True)
-class EnsembleOfRuns:
-    """Runs from nearby starts, on common times."""
-
-    time_s: np.ndarray  # (samples)
-    temperature_change_K: np.ndarray  # (samples)
-    theta2_rad: np.ndarray  # (runs, samples)
-    end_eccentricity_m: np.ndarray  # (runs, 2)
-
-    @property
-    def deflection_rad(self) -> np.ndarray:
-        """θ2 − θ2(0) of every run (runs, samples)."""
-        return self.theta2_rad - self.theta2_rad[:, :1]
-
-    @property
-    def range_rad(self) -> np.ndarray:
-        """Largest less smallest θ2 of every run (runs)."""
-        return np.ptp(self.theta2_rad, axis=1)
-
-    @property
-    def jump_rad(self) -> np.ndarray:
-        """θ2 at the end minus θ2 at the start of every run (runs)."""
-        return self.deflection_rad[:, -1]
-
-
-def for_ensemble(case: UmbrellaCase) -> UmbrellaCase:
-    """Return the case with the steps of its ensemble in both models."""
-    return with_values(
-        case,
-        {
-            "reduced.steps_per_cycle": case.ensemble.reduced_steps_per_cycle,
-            "dem.steps_per_cycle": case.ensemble.dem_steps_per_cycle,
-        },
-    )
-
-
-def gather(runs: Sequence[Columns | Run]) -> EnsembleOfRuns:
-    """Stack the runs of an ensemble."""
-    first = runs[0]
-    return EnsembleOfRuns(
-        first["time_s"],
-        first["temperature_change_K"],
-        np.stack([run["theta2_rad"] for run in runs]),
-        np.array([[run["eccentricity_x_m"][-1], run["eccentricity_y_m"][-1]] for run in runs]),
-    )
-
-
-def ensemble(
-    case: UmbrellaCase, runs: int | None = None, progress: Callable[[], None] = lambda: None
-) -> EnsembleOfRuns:
-    """Run the reduced model from ``runs`` starts (default: the number in the case), on all cores.
-
-    The result does not depend on the number of cores.
-    """
-    offsets = list(start_offsets(case, runs or case.ensemble.reduced_runs))
-    case = for_ensemble(case)
-
-    def one(offset: np.ndarray) -> Columns:
-        columns: Columns = integrate(case, offset).columns()
-        progress()
-        return columns
-
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return gather(list(pool.map(one, offsets)))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.kinds.truss.answers.outputs import Output
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.friction_loads import Loads
@@ -62,7 +62,7 @@ def without_friction(truss: ResolvedTruss) -> ResolvedTruss:
 
 
 def contributions(
-    found: TrussPath, output: Output, tell: Tell = lambda share: None
+    found: TrussPath, output: Output, on_progress: OnProgress = lambda share: None
 ) -> Contributions:
     """Return the contribution of each joint's friction to the jump of an output.
 
@@ -91,7 +91,7 @@ def contributions(
         if change.any():
             alone = value(start.sum(axis=0) + change) - first
             shares[joint] = 0.5 * (alone + last - value(end.sum(axis=0) - change))
-        tell((joint + 1) / len(start))
+        on_progress((joint + 1) / len(start))
     joints = [(joint, truss.joints[joint.section]) for joint in JOINTS]
     names = tuple(name for _, own in joints for name in own.names)
     kinds = tuple(joint.section for joint, own in joints for _ in own.names)

@@ -10,16 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.scales import scales
 from statejump.kinds.truss.solve import TrussPath, whole_path
 
 
-def quick_path(truss: ResolvedTruss, increments_per_branch: int = 50, tell: Tell = lambda share: None,
+def quick_path(truss: ResolvedTruss, increments_per_branch: int = 50, on_progress: OnProgress = lambda share: None,
                **more: Any) -> TrussPath:
     """Return the path on which only those events are located that affect the state; the ends of cycles are the same."""
-    return whole_path(truss, tell, increments_per_branch=increments_per_branch, locate_events=False, **more)
+    return whole_path(truss, on_progress, increments_per_branch=increments_per_branch, locate_events=False, **more)
 
 
 def node_jumps(found: TrussPath) -> np.ndarray:

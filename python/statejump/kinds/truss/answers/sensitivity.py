@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from statejump.core.errors import StatejumpError
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.kinds.truss.answers.jumps import quick_path
 from statejump.kinds.truss.answers.outputs import Output
 from statejump.kinds.truss.elements import ELEMENTS
@@ -73,7 +73,7 @@ def histories_of(found: TrussPath) -> dict[tuple[str, str], list[str]]:
 
 def sensitivities(
     found: TrussPath, output: Output, *, each: bool = False, step: float = STEP,
-    tell: Tell = lambda share: None,
+    on_progress: OnProgress = lambda share: None,
 ) -> list[Sensitivity]:
     """Return the sensitivities of an output's jump. Parameters without value (0 or no stop) are omitted.
 
@@ -103,7 +103,7 @@ def sensitivities(
             rows.append(Sensitivity(label, len(own), same, *found_of))
         except StatejumpError as problem:
             rows.append(Sensitivity(label, len(own), same, float("nan"), float("nan"), f"failed: {problem}"))
-        tell((place + 1) / len(asked))
+        on_progress((place + 1) / len(asked))
     return rows
 
 

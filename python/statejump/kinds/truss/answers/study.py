@@ -14,7 +14,7 @@ from statejump.core import libraries
 from statejump.core.engine_failures import EngineFailed
 from statejump.core.errors import ABSENT, NotAllowed, Range, StatejumpError
 from statejump.core.later import Later
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.core.run import Run
 from statejump.core.units import plain
 from statejump.kinds.truss.answers import reflector, rows
@@ -42,10 +42,10 @@ CYCLES = Rule(WHOLE, allowed=Range(1, 100_000), optional=True)
 STEPS = Rule(NUMBER, allowed=Range(1e-6, 0.2))
 
 # Called with the name of the next step; returns a context with the progress function of this step.
-Phase = Callable[[str], AbstractContextManager[Tell]]
+Phase = Callable[[str], AbstractContextManager[OnProgress]]
 
 
-def silent(label: str) -> AbstractContextManager[Tell]:
+def silent(label: str) -> AbstractContextManager[OnProgress]:
     """Tell nobody."""
     return nullcontext(lambda share: None)
 
@@ -144,8 +144,8 @@ def study(
     STEPS.check("step", step)
     case = _of_cycles(case, cycles)
     truss, increments = case.resolve(), case.reduced_settings.increments_per_branch
-    with phase("path") as tell:
-        found = quick_path(truss, increments, tell)
+    with phase("path") as on_progress:
+        found = quick_path(truss, increments, on_progress)
     asked = chosen_output(found, output)
     checked, finer = judged(found, increments, lambda more: quick_path(truss, more, cycle_ends_only=True), asked)
     jump, rounding = asked.jump(found), asked.rounding(found)
@@ -164,11 +164,11 @@ def study(
     if not _jumps(found, asked, jump):
         notes.append("the output does not jump: no joints are ranked, no sensitivities are computed")
     else:
-        with phase("contributions of joints") as tell:
-            shares = _shares(found, asked, tell, tables, notes)
+        with phase("contributions of joints") as on_progress:
+            shares = _shares(found, asked, on_progress, tables, notes)
         if sensitivity:
-            with phase("sensitivities") as tell:
-                asked_of = sensitivities(found, asked, each=each, step=step, tell=tell)
+            with phase("sensitivities") as on_progress:
+                asked_of = sensitivities(found, asked, each=each, step=step, on_progress=on_progress)
             tables["sensitivities"] = rows.sensitivity_rows(asked_of, jump)
             if any(row.verdict == "not differentiable" for row in asked_of):
                 notes.append("the jump has a kink here in some parameters, its slopes on both sides differ: see the "
@@ -214,13 +214,13 @@ def _jumps(found: TrussPath, output: Output, jump: float) -> bool:
     return abs(jump) > NO_JUMP * (largest / size if output.unit == "rad" else largest)
 
 
-def _shares(found: TrussPath, output: Output, tell: Tell, tables: dict[str, list[rows.Row]],
+def _shares(found: TrussPath, output: Output, on_progress: OnProgress, tables: dict[str, list[rows.Row]],
             notes: list[str]) -> Contributions | None:
     if not found.truss.number_of_joints():
         notes.append("the truss has no joints: none are ranked")
         return None
     try:
-        shares = contributions(found, output, tell)
+        shares = contributions(found, output, on_progress)
     except EngineFailed as failure:
         notes.append(f"no contributions: the truss without friction: {failure.sentence}")
         return None

@@ -9,7 +9,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import VTK_LINE, VTK_VERTEX, vtkUnstructuredGrid
 
-from statejump.core.progress import Tell
+from statejump.core.progress import OnProgress
 from statejump.results.vtk_data import add_array, cells, file_time, frames_of, points, write, write_series
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.elements.protocol import BetweenNodes
@@ -33,7 +33,7 @@ def link_temperatures(truss: ResolvedTruss, times_s: np.ndarray) -> np.ndarray:
 
 
 def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,
-           tell: Tell = lambda share: None) -> Path:
+           on_progress: OnProgress = lambda share: None) -> Path:
     """Write ``<name>.N.vtu`` and ``<name>.vtu.series`` and return the latter.
 
     Points are the nodes in the reference configuration; ``displacement_m`` moves them (Warp By Vector). Cells are
@@ -91,7 +91,7 @@ def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,
         time_s = file_time(at["time_s"])
         write(data, path, time_s)
         entries.append((path.name, time_s))
-        tell((number + 1) / len(frames))
+        on_progress((number + 1) / len(frames))
     index = folder / f"{name}.vtu.series"
     write_series(index, entries)
     return index

@@ -31,8 +31,8 @@ def write(found: TrussAnswers, folder: Path, frames: int, phase: Phase) -> list[
     if found.shares is not None:
         written += save(found.plot_ranking(), folder, "ranking")
     if frames:
-        with phase("files for ParaView") as tell:
-            written.append(_SERIES(found.path, folder, "path", frames, tell))
+        with phase("files for ParaView") as on_progress:
+            written.append(_SERIES(found.path, folder, "path", frames, on_progress))
     return written
 
 

@@ -8,7 +8,7 @@ from math import ceil, log, log10
 
 import numpy as np
 
-from statejump.control.study import Places, grid, highest
+from statejump.control.study import DesignChoices, grid, highest
 from statejump.core.errors import NotAllowed, UnknownKey
 from statejump.kinds.truss.answers.sensitivity import changed, parameters
 from statejump.kinds.truss.arrays import distances
@@ -57,19 +57,19 @@ class Candidate:
         return value if self.is_spring else abs(log(value))
 
 
-def candidates(case: TrussCase, places: Places) -> list[Candidate]:
+def candidates(case: TrussCase, choices: DesignChoices) -> list[Candidate]:
     """Return the candidates: the requested ones, or all parameters that may affect the jump.
 
     :raises NotAllowed: a position or a parameter is invalid
     """
-    found = [_spring(case, one, two) for one, two in places.add_spring]
-    wanted = [_scaled(case, path) for path in places.scale]
+    found = [_spring(case, one, two) for one, two in choices.add_spring]
+    wanted = [_scaled(case, path) for path in choices.scale]
     if not found and not wanted:
         wanted = [_scaled(case, f"{section}.{EVERY}.{key}") for section, key, values in parameters(case.resolve())
                   if _has_value(values).any()]
-    told = [one.parameter for one in found + wanted]
+    asked = [one.parameter for one in found + wanted]
     for one in found + wanted:
-        if told.count(one.parameter) > 1:
+        if asked.count(one.parameter) > 1:
             change, _, value = one.parameter.partition(" ")
             raise NotAllowed({"scale": "--free"}.get(change, "--add-spring"), value, code="duplicate")
     return found + wanted
@@ -90,14 +90,14 @@ def with_spring(truss: ResolvedTruss, ends: Sequence[int], stiffness_N_per_m: fl
 
 
 def _spring(case: TrussCase, one: str, two: str) -> Candidate:
-    truss, told = case.resolve(), f"{one} {two}"
+    truss, given = case.resolve(), f"{one} {two}"
     for name in (one, two):
-        known_name("--add-spring", told, name, dict.fromkeys(truss.nodes.names), "node", case=case.name)
+        known_name("--add-spring", given, name, dict.fromkeys(truss.nodes.names), "node", case=case.name)
     ends = [truss.nodes.names.index(name) for name in (one, two)]
     if not distances(truss.nodes.position_m, np.array([ends]))[0] > 0:
-        raise NotAllowed("--add-spring", told, code="coincident_spring_nodes", case=case.name)
+        raise NotAllowed("--add-spring", given, code="coincident_spring_nodes", case=case.name)
     if truss.nodes.fixed[ends].all():
-        raise NotAllowed("--add-spring", told, code="spring_between_supports", case=case.name)
+        raise NotAllowed("--add-spring", given, code="spring_between_supports", case=case.name)
     links, springs = truss.links, truss.springs
     bars = links.young_modulus_Pa * links.cross_section_area_m2 / links.stress_free_length_m
     size = float(np.ptp(truss.nodes.position_m, axis=0).max())
@@ -106,7 +106,7 @@ def _spring(case: TrussCase, one: str, two: str) -> Candidate:
     stiffest = min(highest(case, STIFFNESS), STIFFER * (bars if len(bars) else every).max(initial=1.0))
     softest = every.min(initial=stiffest) / STIFFER
     return Candidate(
-        f"add_spring {told}", f"Spring from {one} to {two}", "N/m", 0.0, _grid(0.0, softest, stiffest),
+        f"add_spring {given}", f"Spring from {one} to {two}", "N/m", 0.0, _grid(0.0, softest, stiffest),
         lambda stiffness: with_spring(truss, ends, stiffness), "spring", "stiffness_N_per_m",
         lambda changed_truss: np.arange(len(changed_truss.springs.names)) == len(springs.names))
 

@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 
 from statejump.control.study import Row, Sweep, bisect, ranges_that_pass
 from statejump.core.errors import Interrupted, StatejumpError
-from statejump.core.progress import Tell, counted
+from statejump.core.progress import OnProgress, counted
 from statejump.kinds.truss.answers.jumps import node_jumps, quick_path
 from statejump.kinds.truss.answers.outputs import node_output
 from statejump.kinds.truss.answers.sensitivity import differences, histories_of
@@ -77,9 +77,9 @@ class Search:
         except StatejumpError as problem:
             return Row(value, {}, str(problem))
 
-    def scan(self, tell: Tell) -> None:
+    def scan(self, on_progress: OnProgress) -> None:
         """Solve for all values of the candidate, and find where the jump reverses its slope."""
-        done = counted(tell, len(self.candidate.values))
+        done = counted(on_progress, len(self.candidate.values))
         for value in self.candidate.values:
             self.sweep.rows.append(self.row(value))
             done()

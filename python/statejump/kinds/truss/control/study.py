@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from statejump.control.study import Line, Places, Study, Sweep, check_wanted, number, refuse_runs, with_notes
+from statejump.control.study import DesignChoices, Line, Study, Sweep, check_wanted, number, refuse_runs, with_notes
 from statejump.core.errors import NotAllowed
-from statejump.core.progress import Tell, one_of
+from statejump.core.progress import OnProgress, one_of
 from statejump.core.units import plain
 from statejump.kinds.truss.answers.jumps import most_moved, quick_path, rounding_m
 from statejump.kinds.truss.answers.verdict import RESOLVED
@@ -26,14 +26,14 @@ MICRO = 1e6
 
 def control(
     case: TrussCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
-    tell: Tell = lambda share: None, places: Places = Places(),
+    on_progress: OnProgress = lambda share: None, choices: DesignChoices = DesignChoices(),
 ) -> Study:
     """Sweep every candidate, and search for the values that keep the jump of a node below a bound.
 
     :param jump_below: largest allowed jump [m]; None: half of that of the case
     :param runs: must be None: there is one path
     :param with_dem: not for trusses, see ``statejump compare``
-    :param places: node, springs that may be added, parameters that may be scaled; empty: all that may affect the jump
+    :param choices: node, springs that may be added, parameters that may be scaled; empty: all that may affect the jump
     :raises StatejumpError: invalid input, or the case has no path
     """
     check_wanted(jump_below, "m")
@@ -42,10 +42,10 @@ def control(
         raise NotAllowed("--dem", code="dem_of_control", case=case.name)
     truss, increments = case.resolve(), case.reduced_settings.increments_per_branch
     names = truss.nodes.names
-    if places.node is not None:
-        known_name("--node", places.node, places.node, dict.fromkeys(names), "node", case=case.name)
-    asked = candidates(case, places)
-    node = most_moved(quick_path(truss, increments)) if places.node is None else names.index(places.node)
+    if choices.node is not None:
+        known_name("--node", choices.node, choices.node, dict.fromkeys(names), "node", case=case.name)
+    asked = candidates(case, choices)
+    node = most_moved(quick_path(truss, increments)) if choices.node is None else names.index(choices.node)
     now = jump_of(truss, node, increments)
     jumps = now.size_m > rounding_m(now.path)
     wanted = now.size_m / 2 if jump_below is None and jumps else jump_below
@@ -56,7 +56,7 @@ def control(
     searches = [Search(one, Sweep(one.parameter, one.label, one.unit, 1.0, one.own, []), node, increments)
                 for one in asked]
     for done, search in enumerate(searches):
-        part = one_of(tell, done, len(searches))
+        part = one_of(on_progress, done, len(searches))
         search.scan(lambda share, part=part: part(0.7 * share))  # type: ignore[misc]
         result.sweeps.append(search.sweep)
         if wanted is not None:
@@ -73,9 +73,9 @@ def control(
             search.found or {"parameter": search.sweep.parameter, "value": None, "monotone": not search.turns}
             for search in searches]
         _best(result, "best_spring", [search for search in searches if search.candidate.is_spring])
-        if places.scale:
+        if choices.scale:
             _best(result, "best_scale", [search for search in searches if not search.candidate.is_spring])
-        elif not places.add_spring:
+        elif not choices.add_spring:
             result.sentences.append("No key is named best, for not all of them are free to a designer: --free KEY (in "
                                     "Python scale=[KEY]) names those that are.")
     return result
@@ -101,22 +101,22 @@ def _sentence(search: Search, wanted: float) -> str:
     if search.value is None:
         reached = [row for row in search.sweep.rows if row.results.get("jump_m") is not None]
         least = min(reached, key=lambda row: float(row.results["jump_m"] or 0.0), default=None)
-        told = "" if least is None else (f"; the smallest jump of them is {plain(least.results['jump_m'], 'm')}, with "
+        text = "" if least is None else (f"; the smallest jump of them is {plain(least.results['jump_m'], 'm')}, with "
                                          f"{_shown(search, least.value)}")
-        return f"{subject}: no scanned value from {low} to {high} keeps the jump at or below {asked}{told}."
+        return f"{subject}: no scanned value from {low} to {high} keeps the jump at or below {asked}{text}."
     found = search.found
     if search.value == search.candidate.own:
         return f"{subject}: nothing is needed, the jump is {plain(found['jump_with_it_m'], 'm')} without."
-    told = f"{subject}: {_shown(search, search.value)} is the smallest change that keeps the jump at or below {asked}"
-    told += f" ({found['found_by']}); solved with it, the jump is {plain(found['jump_with_it_m'], 'm')}"
+    text = f"{subject}: {_shown(search, search.value)} is the smallest change that keeps the jump at or below {asked}"
+    text += f" ({found['found_by']}); solved with it, the jump is {plain(found['jump_with_it_m'], 'm')}"
     elasticity, verdict = found["elasticity"], found["verdict"]
     if verdict == "smooth":
-        told += (f". There the path is smooth: 1 % more changes the jump by {number(elasticity, 3)} %, "
+        text += (f". There the path is smooth: 1 % more changes the jump by {number(elasticity, 3)} %, "
                  "by differences of 1 and of 0.5 %")
     else:
-        told += f". There the derivative is {verdict}: only solving again tells" if not verdict.startswith("failed") \
+        text += f". There the derivative is {verdict}: only solving again tells" if not verdict.startswith("failed") \
             else f". There the derivative {verdict}"
-    return told + "."
+    return text + "."
 
 
 def _remarks(search: Search, now: Jump, wanted: float) -> list[str]:

@@ -18,7 +18,7 @@ from statejump.kinds.truss.joints.along_axis import AlongAxis, Axes
 from statejump.kinds.truss.joints.protocol import (
     IMPACT, ContactPart, Contacts, Drawn, ItemColumn, Sampled, Strokes, Symbol,
 )
-from statejump.kinds.truss.joints.words import ALUMINIUM, USER, count, scaled, spread
+from statejump.kinds.truss.joints.phrases import ALUMINIUM, USER, count, scaled, spread
 from statejump.results import scene as drawing
 from statejump.schema.fields import CHOICE, definition, numbers, parameter, texts
 from statejump.schema.items import Item

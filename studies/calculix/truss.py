@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A truss with every joint locked in CalculiX: bars of type T3D2, small displacements. Where its only joints are
-sliders they slip in a second deck, see :mod:`statejump.kinds.truss.fe_sliding`.
+sliders they slip in a second deck, see :mod:`studies.calculix.truss_sliding`.
 
 CalculiX linearizes and the solver does not, so what is compared is the rate of the solver's path at ΔT = 0, of
 temperatures and loads together, times their full size: r(h) = (u(h) - u(-h))/(2 h), extrapolated as
@@ -18,9 +18,6 @@ from numpy.typing import NDArray
 from statejump.core.comparison import Quantity
 from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.core.start import FRICTIONLESS
-from statejump.fe import ccx
-from statejump.fe.ccx import number
-from statejump.kinds.truss import fe_sliding
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.arrays import GROUND, none_of
 from statejump.kinds.truss.elements import ELEMENTS
@@ -31,6 +28,8 @@ from statejump.kinds.truss.joints.slider import SLIDER, with_sliders
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.sections import TrussThermal
 from statejump.kinds.truss.solve import whole_path
+from studies.calculix import ccx, truss_sliding
+from studies.calculix.ccx import number
 
 Numbers = NDArray[np.float64]
 
@@ -48,7 +47,7 @@ def answer(case: TrussCase) -> ccx.Answer:
     """
     truss = case.resolve()
     _refuse(truss)
-    locked = _pinned(truss)
+    locked = pinned(truss)
     changes = _hottest(case, truss)
     lines = deck(locked, changes)
     rough = _displacements(ccx.displacements(lines, "JOINTS")[-1], len(locked.nodes.names))
@@ -68,9 +67,10 @@ def answer(case: TrussCase) -> ccx.Answer:
         try:
             lines, sliding = _sliding(case, truss)
             rows += sliding
-            notes.append("rows that end in sliding: the sliders slip along the program, displacements are small (the "
-                         f"solver's at {fe_sliding.STEP:g} of temperatures, loads, friction and play, over that); what "
-                         f"is rigid gives way by 1/{fe_sliding.STICK:g} of the stiffest bar")
+            notes.append(
+                "rows that end in sliding: the sliders slip along the program, displacements are small (the "
+                f"solver's at {truss_sliding.STEP:g} of temperatures, loads, friction and play, over that); what "
+                f"is rigid gives way by 1/{truss_sliding.STICK:g} of the stiffest bar")
         except StatejumpError as refused:
             notes.append(f"sliders that slip are not followed: {refused}")
     return ccx.Answer("\n".join(lines) + "\n", tuple(rows), tuple(notes))
@@ -87,7 +87,7 @@ def _sliding(case: TrussCase, truss: ResolvedTruss) -> tuple[list[str], tuple[Qu
         raise NotAllowed("slider", code="fe_soft_sliders", item=f"slider {truss.sliders.names[index]!r}")
     if truss.start_friction == FRICTIONLESS:
         raise NotAllowed("start.friction", truss.start_friction, code="fe_start_friction")
-    return fe_sliding.rows(case, truss)
+    return truss_sliding.rows(case, truss)
 
 
 def _refuse(truss: ResolvedTruss) -> None:
@@ -115,7 +115,7 @@ def _hottest(case: TrussCase, truss: ResolvedTruss) -> Numbers:
     return np.asarray(largest * truss.links.temperature_fraction)
 
 
-def _pinned(truss: ResolvedTruss) -> ResolvedTruss:
+def pinned(truss: ResolvedTruss) -> ResolvedTruss:
     """Return the truss with a pin in place of every joint with clearance (the inner part's node is the outer one's),
     and a slider in place of whatever moves along an axis."""
     place, none = np.arange(len(truss.nodes.names)), {}

@@ -15,10 +15,10 @@ import numpy as np
 from statejump.core.comparison import Quantity
 from statejump.core.errors import FailedRun, NotAllowed
 from statejump.core.thermal import rows
-from statejump.fe import ccx
-from statejump.fe.ccx import number
 from statejump.kinds.spring_slider import reduced
 from statejump.kinds.spring_slider.case import SpringSliderCase
+from studies.calculix import ccx
+from studies.calculix.ccx import number
 
 STICK, PUSH = 1e4, 1e3
 INCREMENTS = 50  # of a branch of the program

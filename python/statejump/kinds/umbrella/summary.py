@@ -10,7 +10,7 @@ from statejump.core.units import text
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.kinds.umbrella.result import ANGLES, AT_END
 
-WORDS = {
+LABELS = {
     "joint_b": "Joint B", "link_ab": "Link AB", "link_bc": "Link BC", "theta2_rad": "Angle θ2 of AB",
     "theta4_rad": "Angle θ4 of BC", "theta2_jump_rad": "Jump of θ2", "theta4_jump_rad": "Jump of θ4",
     "theta2_jump": "Jump of θ2", "theta4_jump": "Jump of θ4",
@@ -36,7 +36,7 @@ def describe(case: UmbrellaCase) -> list[str]:
     return sentences
 
 
-def told(case: UmbrellaCase, runs: Mapping[str, Run]) -> list[Shown | str]:
+def summary_lines(case: UmbrellaCase, runs: Mapping[str, Run]) -> list[Shown | str]:
     """Return the lines that a command prints of a single model: first contact, jump, and remarks of the reduced
     model."""
     if len(runs) > 1:

@@ -12,11 +12,13 @@ import numpy as np
 from statejump import _engine, laws
 from statejump.control.study import Line, Row, Study, Sweep, bisect, grid, highest, number, ranges_that_pass
 from statejump.core.errors import StatejumpError
-from statejump.core.progress import Tell
-from statejump.kinds.umbrella import dem, reduced as model
+from statejump.core.progress import OnProgress
+from statejump.kinds.umbrella import reduced as model
 from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.kinds.umbrella.control_parameters import AREA, BIAS, CLEARANCE, FRICTION, SPRING, changes
+from statejump.kinds.umbrella.quasi_static import has_elastic_loop
 from statejump.schema.paths import with_values
+from studies.paper import ensembles
+from studies.rib_control.parameters import AREA, BIAS, CLEARANCE, FRICTION, SPRING, changes
 
 
 @dataclass(frozen=True)
@@ -40,12 +42,6 @@ class LoadedJump:
     def slips(self) -> bool:
         """Whether the joint slips anywhere, by that model."""
         return self.slips_elastic if self.has_elastic else self.slips_rigid
-
-
-def has_elastic_loop(case: UmbrellaCase) -> bool:
-    """Whether the path with elastic links covers the laws of a case."""
-    velocity = laws.law("tangential_velocity", case.joint.tangential_velocity)
-    return laws.law("normal", case.joint.normal_law).point_contact and not velocity.needs_axis
 
 
 def _slips(loop: Any) -> bool:
@@ -178,7 +174,7 @@ def _loaded_sweeps(case: UmbrellaCase) -> list[Sweep]:
     ]
 
 
-def study(case: UmbrellaCase, wanted: float | None, with_dem: bool, tell: Tell) -> Study:
+def study(case: UmbrellaCase, wanted: float | None, with_dem: bool, on_progress: OnProgress) -> Study:
     """Study a joint that a biased spring loads from the start."""
     now = loaded_jump(case)
     if now.size_rad is None:
@@ -214,7 +210,7 @@ def study(case: UmbrellaCase, wanted: float | None, with_dem: bool, tell: Tell) 
             _loaded_ranges(case, sweep, wanted)
         _loaded_spring(case, result, wanted)
     if with_dem:
-        _loaded_dem(case, result, tell)
+        _loaded_dem(case, result, on_progress)
     return result
 
 
@@ -290,7 +286,7 @@ def _loaded_spring(case: UmbrellaCase, result: Study, wanted: float) -> None:
     result.sentences.append(sentence + ".")
 
 
-def _loaded_dem(case: UmbrellaCase, result: Study, tell: Tell) -> None:
+def _loaded_dem(case: UmbrellaCase, result: Study, on_progress: OnProgress) -> None:
     points: list[tuple[str, float]] = [(SPRING, result.sweep(SPRING).own)]
     for sweep in (result.sweep(SPRING), result.sweep(FRICTION)):
         if sweep.recommended is not None:
@@ -300,9 +296,9 @@ def _loaded_dem(case: UmbrellaCase, result: Study, tell: Tell) -> None:
 
     def step() -> None:
         done[0] += 1
-        tell(done[0] / len(points))
+        on_progress(done[0] / len(points))
 
-    for (key, value), design, run in zip(points, designs, dem.execute_all(designs, step)):
+    for (key, value), design, run in zip(points, designs, ensembles.execute_all(designs, step)):
         jump = abs(run.summary["theta2_jump_rad"])
         exact = loaded_jump(design).size_rad
         result.dem.append({key: value, "reduced_jump_rad": exact, "dem_jump_rad": jump})

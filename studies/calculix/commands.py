@@ -10,8 +10,7 @@ from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, p
 from statejump.core.errors import TolerancesMissed
 from statejump.core.results_folder import Results
 from statejump.core.tables import write_rows, write_text
-from statejump.kinds import require
-from statejump.kinds.protocol import FiniteElements
+from studies import calculix
 
 
 @click.command("fe")
@@ -29,9 +28,10 @@ def fe_command(case_file: Path, results: Results, quiet: bool) -> None:
       statejump fe cases/table1.toml
     """
     console = make_console(quiet)
-    case = loaded(case_file, FiniteElements)
+    case = loaded(case_file)
+    calculix.check(case)
     with results.folder(case.name, case) as folder:
-        found = require(case, FiniteElements).fe(case)
+        found = calculix.answer(case)
         write_text(folder.staged / "fe.inp", found.deck.splitlines())
         write_rows(folder.staged / "fe.csv", [row.to_dict() for row in found.rows])
         written = folder.publish([folder.staged / "fe.inp", folder.staged / "fe.csv"])

@@ -51,7 +51,7 @@ def rows(bore: Bore) -> list[tuple[str, str, str]]:
     return table
 
 
-def told(bore: Bore) -> list[Shown | str]:
+def summary_lines(bore: Bore) -> list[Shown | str]:
     """Return what the command prints."""
     return [Shown(f"bore {bore.name}", HEADINGS, rows(bore), left=("quantity", "unit"))]
 

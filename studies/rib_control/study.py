@@ -2,39 +2,39 @@
 """Control of the state jump of an ``umbrella`` case.
 
 A joint that a biased torsion spring loads from the start has one quasi-static path, so one jump:
-:mod:`.control_loaded`. Without it the motion after contact is chaotic and only statistics of an ensemble mean
-anything: :mod:`.control_ensemble`.
+:mod:`.loaded`. Without it the motion after contact is chaotic and only statistics of an ensemble mean
+anything: :mod:`.ensemble`.
 """
 from __future__ import annotations
 
 from typing import Any
 
-from statejump.control.study import RUNS, Places, Study, check_wanted, refuse_places, refuse_runs, with_notes
+from statejump.control.study import RUNS, DesignChoices, Study, check_wanted, refuse_choices, refuse_runs, with_notes
 from statejump.core.errors import NotAllowed
-from statejump.core.progress import Tell
-from statejump.kinds.umbrella import control_ensemble, control_loaded
+from statejump.core.progress import OnProgress
 from statejump.kinds.umbrella.case import UmbrellaCase
+from studies.rib_control import ensemble, loaded
 
 
 def control(
     case: UmbrellaCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
-    tell: Tell = lambda share: None, places: Places = Places(),
+    on_progress: OnProgress = lambda share: None, choices: DesignChoices = DesignChoices(),
 ) -> Study:
     """Study a rib.
 
     :param jump_below: wanted largest jump of θ2 [rad]; None: half of what the case has
     :param runs: size of the ensemble; None: the default, and the only choice where none is run
-    :param places: there is nothing to choose from: none
+    :param choices: there is nothing to choose from: none
     :raises StatejumpError: bad input, or a run failed
     """
     check_wanted(jump_below, "rad")
-    refuse_places(places, case)
+    refuse_choices(choices, case)
     if case.start.mode == "loaded":
         refuse_runs(runs, case)
-        return control_loaded.study(case, jump_below, with_dem, tell)
+        return loaded.study(case, jump_below, with_dem, on_progress)
     if runs is not None and runs < 2:
         raise NotAllowed("--runs", runs, code="below_minimum", least=2)
-    return control_ensemble.study(case, jump_below, runs or RUNS, with_dem, tell)
+    return ensemble.study(case, jump_below, runs or RUNS, with_dem, on_progress)
 
 
 def answer(case: UmbrellaCase, **settings: Any) -> Study:

@@ -57,7 +57,7 @@ def notes(statics: Statics) -> list[str]:
     return found
 
 
-def told(statics: Statics) -> list[Shown | str]:
+def summary_lines(statics: Statics) -> list[Shown | str]:
     """Return what the command prints."""
     title = f"{statics.case.title}: where it can rest, friction coefficient {statics.friction_coefficient:g}"
     return [Shown(title, HEADINGS, rows(statics), left=("force",)), *notes(statics)]

@@ -11,11 +11,11 @@ import numpy as np
 
 from statejump.control.study import Line, Row, Study, Sweep, bisect, grid, number, ranges_that_pass
 from statejump.core.errors import StatejumpError
-from statejump.core.progress import Tell
-from statejump.kinds.umbrella import dem, reduced as model
+from statejump.core.progress import OnProgress
 from statejump.kinds.umbrella.case import UmbrellaCase
-from statejump.kinds.umbrella.control_parameters import AREA, CLEARANCE, DAMPING, FRICTION, SPRING, changes
 from statejump.schema.paths import with_values
+from studies.paper import ensembles
+from studies.rib_control.parameters import AREA, CLEARANCE, DAMPING, FRICTION, SPRING, changes
 
 QUANTILE = 0.95
 CONFIDENCE = 0.95
@@ -68,7 +68,7 @@ def ensemble_measure(
 
     The starts depend on the case's seed alone: the same numbers every time.
     """
-    together = model.ensemble(case, runs, progress)
+    together = ensembles.ensemble(case, runs, progress)
     jump, deflection = np.abs(together.jump_rad), np.max(np.abs(together.deflection_rad), axis=1)
     return {
         "jump_mean_rad": float(np.mean(jump)),
@@ -105,10 +105,10 @@ def static_deflection_rad(case: UmbrellaCase) -> float:
 class _Ensembles:
     """Ensemble measures of changed cases, each computed once, with progress."""
 
-    def __init__(self, case: UmbrellaCase, runs: int, tell: Tell) -> None:
+    def __init__(self, case: UmbrellaCase, runs: int, on_progress: OnProgress) -> None:
         self.case, self.runs = case, runs
         self.known: dict[tuple[Any, ...], dict[str, float]] = {}
-        self.expected, self.done, self.tell = 1, 0, tell
+        self.expected, self.done, self.on_progress = 1, 0, on_progress
 
     def check(self, values: dict[str, Any]) -> dict[str, float]:
         """Measure on a larger ensemble from other starts. :raises StatejumpError: a run failed"""
@@ -129,7 +129,7 @@ class _Ensembles:
 
     def _step(self) -> None:
         self.done += 1
-        self.tell(min(1.0, self.done / (self.expected * self.runs)))
+        self.on_progress(min(1.0, self.done / (self.expected * self.runs)))
 
 
 def _ensemble_plan(case: UmbrellaCase) -> list[tuple[Any, ...]]:
@@ -160,11 +160,11 @@ def _jump_quantile_rad(row: Row) -> float:
 
 
 def study(
-    case: UmbrellaCase, wanted: float | None, runs: int, with_dem: bool, tell: Tell
+    case: UmbrellaCase, wanted: float | None, runs: int, with_dem: bool, on_progress: OnProgress
 ) -> Study:
     """Study a joint that is free in its play."""
     plan = _ensemble_plan(case)
-    measured = _Ensembles(case, runs, (lambda part: tell(0.7 * part)) if with_dem else tell)
+    measured = _Ensembles(case, runs, (lambda part: on_progress(0.7 * part)) if with_dem else on_progress)
     # Guessed: how many springs are checked shows only as they pass.
     measured.expected = sum(len(entry[5]) - 1 for entry in plan) + 1 + (10 + BISECTIONS) * CHECK
     now = measured({})
@@ -204,7 +204,7 @@ def study(
     )
     if with_dem:
         dem_runs = min(runs, case.ensemble.dem_runs)
-        _ensemble_dem(case, result, dem_runs, lambda part: tell(0.7 + 0.3 * part))
+        _ensemble_dem(case, result, dem_runs, lambda part: on_progress(0.7 + 0.3 * part))
     return result
 
 
@@ -305,18 +305,18 @@ def _ensemble_springs(measured: _Ensembles, result: Study, wanted: float) -> Non
             sweep.recommended = found.stiffness
 
 
-def _ensemble_dem(case: UmbrellaCase, result: Study, runs: int, tell: Tell) -> None:
+def _ensemble_dem(case: UmbrellaCase, result: Study, runs: int, on_progress: OnProgress) -> None:
     spring = result.sweep(SPRING)
     points = sorted({spring.own, spring.own if spring.recommended is None else spring.recommended})
     done = [0]
 
     def step() -> None:
         done[0] += 1
-        tell(done[0] / (runs * len(points)))
+        on_progress(done[0] / (runs * len(points)))
 
     wanted = result.wanted or 0.0
     for stiffness in points:
-        together = dem.ensemble(with_values(case, {SPRING: stiffness}), runs, step)
+        together = ensembles.dem_ensemble(with_values(case, {SPRING: stiffness}), runs, step)
         deflection = np.max(np.abs(together.deflection_rad), axis=1)
         jump = quantile(together.jump_rad)
         reduced = spring.row(stiffness).results

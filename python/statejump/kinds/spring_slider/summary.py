@@ -13,7 +13,7 @@ from statejump.core.units import text
 from statejump.kinds.spring_slider.case import SpringSliderCase
 from statejump.kinds.spring_slider.result import AT_END
 
-WORDS = {
+LABELS = {
     "floor": "Floor", "stop_plus": "Stop +", "stop_minus": "Stop −", "bar": "Bar", "at_stop_plus": "stop +",
     "at_stop_minus": "stop −", "in_play": "play", "displacement_m": "Displacement of the slider",
     "axial_force_N": "Axial force, compression positive", AT_END: "Displacement at the end of the program",
@@ -63,7 +63,7 @@ def _start(case: SpringSliderCase) -> str:
     return "the block slides at the start until friction holds it"
 
 
-def told(case: SpringSliderCase, runs: Mapping[str, Run]) -> list[Shown | str]:
+def summary_lines(case: SpringSliderCase, runs: Mapping[str, Run]) -> list[Shown | str]:
     """Return the lines that a command prints of the runs: exact events of the first cycle, and the jump of a single
     model."""
     if len(runs) > 1:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Names for the keys of result files. This module has those of all kinds; each kind has names of its columns, contacts
-and links (``WORDS``)."""
+"""Labels for the keys of result files. This module has those of all kinds; each kind has names of its columns, contacts
+and links (``LABELS``)."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -39,8 +39,8 @@ def inside(words: str) -> str:
     return words if kept else words[:1].lower() + words[1:]
 
 
-class Words:
-    """Names for the keys of one kind.
+class Labels:
+    """Labels for the keys of one kind.
 
     :param own: the kind's own names, by key, with or without its unit
     :param given: whether users name the parts of such cases
@@ -87,19 +87,19 @@ class Words:
         return self._own.get(name, name), self._own.get(STAGE + name, "")
 
 
-def of_kind(name: str) -> Words:
+def of_kind(name: str) -> Labels:
     """Return the names of a kind; for an unknown kind those of all kinds."""
     try:
         found = kind(name)
-        return Words(found.WORDS, any(tables_of(attribute) for attribute in fields_of(found.Case).values()))
+        return Labels(found.LABELS, any(tables_of(attribute) for attribute in fields_of(found.Case).values()))
     except StatejumpError:
-        return Words()
+        return Labels()
 
 
 def described(case: Case) -> list[str]:
     """Return a case in sentences: the description by its kind, then its temperature program."""
-    told: list[str] = require(case, CaseText).describe(case) if has(case, CaseText) else []
-    return [*told, _temperature(case)]
+    sentences: list[str] = require(case, CaseText).describe(case) if has(case, CaseText) else []
+    return [*sentences, _temperature(case)]
 
 
 def _temperature(case: Case) -> str:

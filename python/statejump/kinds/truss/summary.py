@@ -15,7 +15,7 @@ from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.elements.protocol import listed_elements
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
-from statejump.kinds.truss.joints.words import count, spread
+from statejump.kinds.truss.joints.phrases import count, spread
 from statejump.kinds.truss.motion import TrussMotion
 from statejump.kinds.truss.result import AT_END
 from statejump.kinds.truss.sections import Node
@@ -85,7 +85,7 @@ def _what(case: TrussCase) -> str:
     return f"displacement at the program's end, {case.ending.temperature_change_K:.6g} K, no state jump"
 
 
-def told(case: TrussCase, runs: Mapping[str, Run]) -> list[Shown | str]:
+def summary_lines(case: TrussCase, runs: Mapping[str, Run]) -> list[Shown | str]:
     """Return the printed summary of runs: the nodes with the largest jumps, events, energy residue."""
     first, *others = runs.values()
     axes = "xyz"[: case.truss.dimension]

@@ -18,13 +18,13 @@ from numpy.typing import NDArray
 from statejump.core.comparison import Quantity
 from statejump.core.errors import FailedRun, NotAllowed
 from statejump.core.thermal import range_K, rows as program_rows
-from statejump.fe import ccx
-from statejump.fe.ccx import number
 from statejump.kinds.truss.arrays import GROUND
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.joints.slider import pads
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import engine_programs, whole_path
+from studies.calculix import ccx
+from studies.calculix.ccx import number
 
 Numbers = NDArray[np.float64]
 

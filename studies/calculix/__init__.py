@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cases in CalculiX beside the reduced model: validation against a program that shares no code with this project."""
+from __future__ import annotations
+
+from statejump.core.case import Case
+from statejump.core.errors import NotAllowed
+from statejump.kinds.spring_slider.case import SpringSliderCase
+from statejump.kinds.truss.case import TrussCase
+from studies.calculix import spring_slider, truss
+from studies.calculix.ccx import Answer
+
+
+def check(case: Case) -> None:
+    """Refuse cases of kinds that have no deck. :raises NotAllowed: it is one"""
+    if not isinstance(case, (SpringSliderCase, TrussCase)):
+        raise NotAllowed("case.kind", case.kind, code="command_not_for_kind", command="fe", file=case.origin.file,
+                         kinds=f"{SpringSliderCase.KIND!r} and {TrussCase.KIND!r}")
+
+
+def answer(case: Case) -> Answer:
+    """Run a case in CalculiX and return it beside the reduced model.
+
+    :raises NotAllowed: there is no deck for the case, or not for a value
+    :raises StatejumpError: there is no CalculiX, or it failed
+    """
+    check(case)
+    return truss.answer(case) if isinstance(case, TrussCase) else spring_slider.answer(case)

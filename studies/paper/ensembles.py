@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Ensembles of the rib: the same case from starts within a small disc, in both models, on all cores."""
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+
+from statejump.core.run import Columns, Run
+from statejump.kinds.umbrella import dem, reduced, result
+from statejump.kinds.umbrella.case import UmbrellaCase
+from statejump.schema.paths import with_values
+
+
+def start_offsets(case: UmbrellaCase, count: int) -> Iterator[np.ndarray]:
+    """Yield places of the journal near the start (2) [m], evenly spread over a disc; the same for
+    the same seed, each independent of how many are asked for."""
+    for index in range(count):
+        generator = np.random.default_rng([case.ensemble.seed, index])
+        radius = case.ensemble.start_spread_m * np.sqrt(generator.random())
+        angle = 2 * np.pi * generator.random()
+        yield radius * np.array([np.cos(angle), np.sin(angle)])
+
+
+@dataclass(frozen=True)
+class EnsembleOfRuns:
+    """Runs from nearby starts, on common times."""
+
+    time_s: np.ndarray  # (samples)
+    temperature_change_K: np.ndarray  # (samples)
+    theta2_rad: np.ndarray  # (runs, samples)
+    end_eccentricity_m: np.ndarray  # (runs, 2)
+
+    @property
+    def deflection_rad(self) -> np.ndarray:
+        """θ2 − θ2(0) of every run (runs, samples)."""
+        return self.theta2_rad - self.theta2_rad[:, :1]
+
+    @property
+    def range_rad(self) -> np.ndarray:
+        """Largest less smallest θ2 of every run (runs)."""
+        return np.ptp(self.theta2_rad, axis=1)
+
+    @property
+    def jump_rad(self) -> np.ndarray:
+        """θ2 at the end less at the start of every run (runs)."""
+        return self.deflection_rad[:, -1]
+
+
+def for_ensemble(case: UmbrellaCase) -> UmbrellaCase:
+    """Return the case with the steps of its ensemble in both models."""
+    return with_values(
+        case,
+        {
+            "reduced.steps_per_cycle": case.ensemble.reduced_steps_per_cycle,
+            "dem.steps_per_cycle": case.ensemble.dem_steps_per_cycle,
+        },
+    )
+
+
+def gather(runs: Sequence[Columns | Run]) -> EnsembleOfRuns:
+    """Stack the runs of an ensemble."""
+    first = runs[0]
+    return EnsembleOfRuns(
+        first["time_s"],
+        first["temperature_change_K"],
+        np.stack([run["theta2_rad"] for run in runs]),
+        np.array([[run["eccentricity_x_m"][-1], run["eccentricity_y_m"][-1]] for run in runs]),
+    )
+
+
+def ensemble(
+    case: UmbrellaCase, runs: int | None = None, progress: Callable[[], None] = lambda: None
+) -> EnsembleOfRuns:
+    """Run the reduced model from ``runs`` starts (default: as the case says), on all cores.
+
+    The result does not depend on the number of cores.
+    """
+    offsets = list(start_offsets(case, runs or case.ensemble.reduced_runs))
+    case = for_ensemble(case)
+
+    def one(offset: np.ndarray) -> Columns:
+        columns: Columns = reduced.integrate(case, offset).columns()
+        progress()
+        return columns
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return gather(list(pool.map(one, offsets)))
+
+
+def execute_all(cases: Sequence[UmbrellaCase], progress: Callable[[], None] = lambda: None) -> list[Run]:
+    """Run several cases, as many at a time as there are cores; results in the order given."""
+
+    def one(case: UmbrellaCase) -> Run:
+        done = dem.execute(case)
+        progress()
+        return result.dem_run(case, done.columns, done.about)
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(one, cases))
+
+
+def dem_ensemble(
+    case: UmbrellaCase, runs: int | None = None, progress: Callable[[], None] = lambda: None
+) -> EnsembleOfRuns:
+    """Run the case from ``runs`` starts (default: as the case says), as many as cores at a time."""
+    offsets = list(start_offsets(case, runs or case.ensemble.dem_runs))
+    case = for_ensemble(case)
+
+    def one(offset: np.ndarray) -> Columns:
+        done = dem.execute(case, offset)
+        progress()
+        return done.columns
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return gather(list(pool.map(one, offsets)))
