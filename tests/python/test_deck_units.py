@@ -7,6 +7,7 @@ from typing import Callable
 
 import pytest
 from conftest import Outcome
+from failures import failure
 
 import statejump as sj
 
@@ -77,6 +78,6 @@ def test_implausible_numbers_are_hinted_at(numbers: dict[str, str], sentence: st
 def test_numbers_out_of_range_name_the_option(tmp_path: Path, statejump: Callable[..., Outcome]) -> None:
     (tmp_path / "rod.bdf").write_text(DECK.format(**{**MILLIMETRES, "area": "500."}))
     told = statejump("truss", "import", "rod.bdf", "-o", "rod.toml")
-    assert told.status == 2 and "--units mm-N, mm-kN-t, mm-kg-s or in-lbf names the units of the deck" in told.errors
+    assert (told.status, told.failure) == (2, failure("out_of_range", remedy="--units mm-N, mm-kN-t, mm-kg-s or in-lbf names the units of the deck"))
     told = statejump("truss", "import", "rod.bdf", "-o", "rod.toml", "--units", "mm-N", "--length-unit", "0.001")
-    assert told.status == 2 and "--length-unit = 0.001 is not allowed: --units mm-N says it already" in told.errors
+    assert (told.status, told.failure) == (2, failure("units_given_twice", key="--length-unit", value=0.001, system="mm-N"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Joints from loops: the forward models, the estimates and their intervals, what is refused."""
+"""Joints from loops: the forward models, the estimates, what is refused."""
 from __future__ import annotations
 
 import tomllib
@@ -9,21 +9,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.signal import lfilter
 
 from failures import Failure, failing, failure
+from loops import JOINT, SIGMA, SINE, measured
 import statejump as sj
 from statejump.core.errors import StatejumpError
 from statejump.core.tables import write_columns
-from statejump.identification.fit import Fits, intervals
+from statejump.identification.fit import Fits
 from statejump.identification.hysteresis import remembered
 from statejump.identification.loop import read_loop
 from statejump.identification.models import MODELS, parts_of
-
-SINE = 1e-3 * np.sin(np.linspace(0, 4 * np.pi, 401))
-JOINT = {"stiffness": 1e6, "friction": 150.0, "preload": 20.0, "clearance_minus": 3e-4, "clearance_plus": 5e-4,
-         "preload_stiffness": 2e5, "play": 4e-4, "play_ratio": 0.2, "stop_stiffness": 2e6}
-SIGMA = 5.0
 
 
 def block_by_block(path: np.ndarray, joint: dict[str, float], block: float = 0.0) -> np.ndarray:
@@ -36,13 +31,6 @@ def block_by_block(path: np.ndarray, joint: dict[str, float], block: float = 0.0
         block = min(max(block, centre - width), centre + width)
         forces.append(stiffness * (there - min(max(block, -joint["clearance_minus"]), joint["clearance_plus"])))
     return np.array(forces)
-
-
-def measured(model: str, values: dict[str, float], noise: float = SIGMA, seed: int = 1) -> dict[str, np.ndarray]:
-    loop = read_loop({"displacement_m": SINE, "force_N": SINE}, "cycled")
-    own = {name: values[name] for name in MODELS[model].parameters}
-    force = MODELS[model].answer(own, SINE, loop.memory)
-    return {"displacement_m": SINE, "force_N": force + np.random.default_rng(seed).normal(0, noise, len(SINE))}
 
 
 def test_slide_between_stops_is_that_of_small_steps() -> None:
@@ -177,18 +165,6 @@ def test_every_joint_is_known_again(model: str) -> None:
     assert found.fit.noise == pytest.approx(SIGMA, rel=4 / np.sqrt(2 * len(SINE)))
 
 
-def test_intervals_cover() -> None:
-    """20 repetitions of six parameters at 95 %: 114 of 120 are expected, sd 2.4 (more, as parameters of one loop go
-    together: 4). Intervals of half the width hold 81. 500 repetitions of each joint are in docs/validation/identification.md."""
-    inside = 0
-    for seed in range(20):
-        found = sj.identify(measured("coulomb_clearance_spring", JOINT, seed=seed), start="cycled",
-                            model="coulomb_clearance_spring")
-        inside += sum(found.intervals[name].low <= value <= found.intervals[name].high
-                      for name, value in JOINT.items() if name in found.intervals)
-    assert 114 - 4 * 4 < inside <= 120
-
-
 def test_loop_that_never_slides_says_so() -> None:
     found = sj.identify(measured("coulomb", {"stiffness": 1e6, "friction": 3e3, "preload": 0.0}), start="cycled")
     assert found.model == "linear"
@@ -264,26 +240,6 @@ def test_parameter_at_the_end_of_its_range_takes_others_along() -> None:
     assert any(note.startswith("stiffness is not identifiable from this loop, it depends on iwan_exponent")
                for note in found.notes)
     assert "stiffness" not in found.changes()
-
-
-def correlated(count: int, correlation: float, seed: int) -> np.ndarray:
-    """Return noise of variance 1 whose neighbours are correlated."""
-    drawn = np.random.default_rng(seed).normal(size=count + 500)
-    return np.asarray(lfilter([np.sqrt(1 - correlation**2)], [1, -correlation], drawn)[500:])
-
-
-def test_intervals_cover_with_correlated_noise() -> None:
-    """20 repetitions of four parameters at 95 %: 76 of 80 are expected, sd 2. Were 600 rows of a correlation of 0.9
-    independent, the intervals would be a fourth as wide and hold a half."""
-    path = 1e-3 * np.sin(np.linspace(0, 8 * np.pi, 600))
-    joint = {name: JOINT[name] for name in MODELS["coulomb_play"].parameters}
-    loop = read_loop({"displacement_m": path, "force_N": path}, "cycled")
-    force, inside = MODELS["coulomb_play"].answer(joint, path, loop.memory), 0
-    for seed in range(20):
-        fits = Fits(read_loop({"displacement_m": path, "force_N": force + 3 * correlated(600, 0.9, seed)}, "cycled"))
-        found = intervals(fits, "coulomb_play", 0.95)[1].of
-        inside += sum(found[name].low <= value <= found[name].high for name, value in joint.items())
-    assert 76 - 4 * 2 < inside <= 80
 
 
 def test_misfit_that_every_cycle_repeats_is_no_evidence() -> None:

@@ -17,10 +17,10 @@ import numpy as np
 import pytest
 
 from conftest import BUILT, COMMAND, REPOSITORY, Outcome, sealed
+from failures import failing, failure
 
 from statejump.core import units
 from statejump.core.comparison import models
-from statejump.core.errors import StatejumpError
 from statejump.core.run import CONTACT_STATES, Column, Event, Events, Run
 from statejump.kinds import kind, names
 from statejump.report import page, labels
@@ -259,7 +259,7 @@ def test_other_hdf5(statejump: Callable[..., Outcome], tmp_path: Path) -> None:
     with h5py.File(tmp_path / "other.h5", "w") as file:
         file["x"] = 1
     done = statejump("report", "other.h5")
-    assert done.status == 2 and done.errors.startswith("error: other.h5: not a result file")
+    assert (done.status, done.failure) == (2, failure("result_without_checksum", file="other.h5"))
 
 
 def test_case_that_this_version_does_not_know(statejump: Callable[..., Outcome], results: Path, tmp_path: Path) -> None:
@@ -276,13 +276,13 @@ def test_case_that_this_version_does_not_know(statejump: Callable[..., Outcome],
 def test_page_that_cannot_be_written(statejump: Callable[..., Outcome], results: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     done = statejump("report", results / "table1", "-o", "file/page.html")
-    assert done.status == 2 and done.errors.startswith("error: file/page.html: cannot be written")
+    assert (done.status, done.failure) == (2, failure("write_failed", file="file/page.html"))
     assert "Traceback" not in done.errors
 
 
 def test_script_that_was_not_built(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(page, "HERE", tmp_path)
-    with pytest.raises(StatejumpError, match="`make build` builds it"):
+    with failing("page_script_missing", script=tmp_path / page.SCRIPT):
         page.render([])
 
 

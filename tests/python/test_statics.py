@@ -297,7 +297,6 @@ def test_bad_mesh_files(tmp_path: Path, file: str, content: str | None, sentence
     assert caught.value == sentence
     told = caught.value.fields()
     assert (told["key"], told["value"], told["file"]) == ("joint.mesh_file", file, str(path))
-    assert str(caught.value).startswith(f"{path}: joint.mesh_file = {file!r}")
 
 
 def test_library(tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from conftest import COMMAND, results_in
+from failures import failure
 from statejump import load
 from statejump.cli import streams
 from statejump.core import errors
@@ -135,7 +136,7 @@ ODD = "a\x1b[31mred\x9b1m\x07\x00"
 def test_control_characters_are_refused_in_texts(cases: Path, key: str) -> None:
     with pytest.raises(errors.NotAllowed) as refused:
         load(cases / "table1.toml").changed({f"case.{key}": ODD})
-    assert "must have no control characters" in str(refused.value)
+    assert refused.value == failure("control_characters", key=f"case.{key}", value=ODD)
     assert printable(str(refused.value)) == str(refused.value)
 
 

@@ -47,7 +47,7 @@ def tripod(**joint: Any) -> dict[str, Any]:
 def test_what_is_refused(keys: dict[str, Any], sentence: Failure) -> None:
     with pytest.raises(StatejumpError) as refused:
         parse_case(tripod(**keys))
-    assert refused.value == sentence and "ball_joint 'apex'" in str(refused.value)
+    assert refused.value == sentence
 
 
 def test_friction_needs_a_contact_that_gives_way() -> None:

@@ -111,7 +111,7 @@ def test_what_is_identified_is_a_joint_of_a_case_and_gives_its_loop_back() -> No
 def test_what_is_refused(keys: dict[str, Any], sentence: Failure) -> None:
     with pytest.raises(StatejumpError) as refused:
         parse_case(bolted(**keys))
-    assert refused.value == sentence and "iwan_joint 'bolt'" in str(refused.value)
+    assert refused.value == sentence
 
 
 def test_commands(statejump: Callable[..., Outcome], tmp_path: Path) -> None:

@@ -88,9 +88,8 @@ def test_creak_of_a_latch_has_its_slips_and_their_heat() -> None:
 
 def test_arch_snaps_where_the_path_ends_with_the_speed_of_what_it_sets_free() -> None:
     case = sj.load("two_bar_snap")
-    with failing("no_continuation", joint="apex") as told:
+    with failing("no_continuation", joint="apex"):
         case.reduced()
-    assert "apex" in str(told.value)
     speeds, at = [], []
     for period_s in (1.0, 4.0):
         run = case.changed({"thermal.period_s": period_s, "motion.steps_per_cycle": int(20_000 * period_s)}).reduced(

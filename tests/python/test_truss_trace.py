@@ -11,6 +11,7 @@ import pandas as pd
 import pytest
 
 from conftest import results_in
+from failures import failure
 import statejump as sj
 from statejump.core.errors import FailedRun, NotAllowed, StatejumpError
 from statejump.kinds.truss import generate, solve
@@ -123,7 +124,8 @@ def test_other_models_have_no_trace(statejump, cases: Path, tmp_path: Path, opti
 
 def test_refused_before_anything_is_solved(statejump, cases: Path, tmp_path: Path) -> None:
     outcome = statejump("reduced", cases / "table1.toml", "--trace", "trace.csv")
-    assert outcome.status == 2 and "reduced --trace" in outcome.errors and "truss" in outcome.errors
+    assert (outcome.status, outcome.failure) == (2, failure(
+        "command_not_for_kind", key="case.kind", value="spring_slider", command="reduced --trace", kinds="'truss'"))
     with pytest.raises(NotAllowed):
         sj.truss.chain(1).reduced(trace=tmp_path / "trace.png")
     with pytest.raises(StatejumpError):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -66,18 +67,25 @@ def embedded_code(source: str, element: str) -> Markup:
     return Markup(source)
 
 
+@cache
+def _environment(folders: tuple[Path, ...]) -> Environment:
+    """Return the templates of the page and of these folders. Pages share them: they take long to compile."""
+    environment = Environment(
+        loader=ChoiceLoader([FileSystemLoader(folder) for folder in (HERE, *folders)]),
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
+    )
+    environment.filters["quantity"] = units.text
+    return environment
+
+
 def render(documents: Sequence[Document | CampaignDocument | UnsolvedDocument]) -> str:
     """Return the page."""
     script, style, notices = _asset(SCRIPT), _asset(STYLE), _asset(NOTICES)
     parts = {
-        document.part.template for document in documents if isinstance(document, Document) and document.part is not None
+        document.part.template.parent
+        for document in documents if isinstance(document, Document) and document.part is not None
     }
-    environment = Environment(
-        loader=ChoiceLoader([FileSystemLoader(HERE), *(FileSystemLoader(part.parent) for part in sorted(parts))]),
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
-    )
-    environment.filters["quantity"] = units.text
-    return environment.get_template("page.html").render(
+    return _environment(tuple(sorted(parts))).get_template("page.html").render(
         documents=documents,
         title=documents[0].title if len(documents) == 1 else f"{len(documents)} runs",
         version=__version__,
