@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "slipping_rings.hpp"
+#include "slip_annuli.hpp"
 #include "statejump/kernel/contact_law.hpp"
 #include "statejump/kernel/laws/joint_law.hpp"
 #include "statejump/truss/path.hpp"
@@ -34,9 +34,9 @@ struct KernelContact {
 
   bool is_pad() const { return held > 0.0; }
   /// Of a pad with a play in series: a spring behind Coulomb's bound, whatever law others have.
-  SlippingRings rings;
-  bool has_play() const { return rings.play > 0.0; }
-  SlippingRings::Pressed presses_rings() const { return {held, 0.0, 1.0, pressed, 0.0}; }
+  SlipAnnuli annuli;
+  bool has_play() const { return annuli.play > 0.0; }
+  SlipAnnuli::Pressed loads_annuli() const { return {held, 0.0, 1.0, pressed, 0.0}; }
 
   // Where the last step ended.
   kernel::ContactHistory history;

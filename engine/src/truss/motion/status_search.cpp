@@ -73,7 +73,8 @@ StatusSearch::Guess StatusSearch::pivot_locally(const ContactStatuses& statuses,
   NeighbourhoodPivots pivots(forces_, matrix_, step, contacts, found);
   if (pivots.reach_of(violated) > matrix_.matrix().cols()) return {next, false};
   // A settled contact may be violated again when others are settled.
-  for (std::vector<std::size_t> left = violated; !left.empty(); left = pivots.violated()) {
+  for (std::vector<std::size_t> left = violated; !left.empty();
+       left = pivots.reached_violations()) {
     for (const std::size_t contact : left) {
       if (pivots.settle(contact)) continue;
       if (!pivots.is_spent()) return {next, false};

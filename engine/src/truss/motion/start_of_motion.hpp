@@ -7,7 +7,7 @@
 
 namespace statejump::truss::detail {
 
-/// What every scheme asks of a model and its options. Throws std::invalid_argument.
+/// Checks a model and its options for every scheme. Throws std::invalid_argument.
 void check_motion(const Model& model, const MotionOptions& options);
 
 /// State in which the quasi-static path begins; empty if the caller ended the search for it.
