@@ -68,7 +68,7 @@ class Condensed {
     }
     return found;
   }
-  bool change(const Changes& changes, const std::set<std::size_t>&) {
+  bool change(const Changes& changes, const std::set<std::size_t>&, Pivot) {
     return std::all_of(changes.begin(), changes.end(),
                        [&](const auto& one) { return change(one.first, one.second); });
   }

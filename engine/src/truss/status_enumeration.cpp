@@ -200,7 +200,7 @@ class GroupPivots {
 
   const Choice& key() const { return choice_; }
   const std::vector<Wish>& violated() const { return violated_; }
-  bool change(const std::vector<Wish>& changes, const std::set<Choice>& tried) {
+  bool change(const std::vector<Wish>& changes, const std::set<Choice>& tried, Pivot) {
     for (const auto& [i, wanted] : changes) choice_[i] = branch_of(i, wanted);
     if (tried.count(choice_) > 0) slide_instead(changes.front().first, tried);
     return true;

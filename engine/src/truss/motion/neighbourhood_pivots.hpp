@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "step_matrix.hpp"
+#include "truss/active_set.hpp"
 
 namespace statejump::truss::detail {
 
@@ -39,7 +40,7 @@ class NeighbourhoodPivots {
   using Changes = std::vector<std::pair<std::size_t, ContactStatus>>;
   std::size_t key() const { return fingerprint_; }
   Changes violated() const;
-  bool change(const Changes& changes, const std::set<std::size_t>& tried);
+  bool change(const Changes& changes, const std::set<std::size_t>& tried, Pivot pivot);
   bool solve();
 
  private:
