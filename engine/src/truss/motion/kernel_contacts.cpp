@@ -95,7 +95,6 @@ void KernelContacts::add(int joint, int first_column, const Slider& slider, doub
   made.first = slider.first;
   made.axis = slider.axis;
   made.normal = slider.axis.unitOrthogonal();
-  made.parameters.elastic = {1.0, 1.0};
   made.parameters.friction_coefficient = 1.0;
   made.parameters.tangential_damping_ratio = 0.5 * damping;  // of a mass of 1 kg
   made.parameters.effective_mass = 1.0;

@@ -21,10 +21,10 @@ struct KernelContact {
   int first_far = -1;    ///< Far end of the link that turns it; −1: it does not turn.
   int second_far = -1;   ///< Likewise.
   bool is_ball = false;
-  Vector3d axis = Vector3d::UnitZ();  ///< Of a bearing, or along which a pad slides.
-  kernel::ContactParameters parameters;
-  double first_radius = 0.0;   ///< At ΔT = 0 [m].
-  double second_radius = 0.0;  ///< Likewise.
+  Vector3d axis = Vector3d::UnitZ();       ///< Of a bearing, or along which a pad slides.
+  kernel::ContactParameters parameters{};  ///< Of a pad without moduli: see `held`.
+  double first_radius = 0.0;               ///< At ΔT = 0 [m].
+  double second_radius = 0.0;              ///< Likewise.
   double first_expansion = 0.0;
   double second_expansion = 0.0;
   int program = 0;
