@@ -14,6 +14,7 @@
 #include "prismatic.hpp"
 #include "registration.hpp"
 #include "shapes.hpp"
+#include "stable_step.hpp"
 #include "state_recorder.hpp"
 #include "statejump/kernel/elastic_pair.hpp"
 #include "statejump/kernel/hertz.hpp"

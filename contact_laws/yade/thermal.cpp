@@ -1,26 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thermal.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
 #include <sstream>
+#include <stdexcept>
+#include <string>
 #include <unordered_set>
 #include <utility>
 
 #include "blocked_motion.hpp"
-#include "bore.hpp"
-#include "contact_parts.hpp"
 #include "failure.hpp"
 #include "faults.hpp"
-#include "joint.hpp"
-#include "prismatic.hpp"
 #include "ranges.hpp"
 #include "shapes.hpp"
-#include "statejump/kernel/stable_step.hpp"
 #include "statejump/stepper/checks.hpp"
-#include "torsion.hpp"
 
 namespace statejump::dem {
 namespace {
@@ -229,120 +222,6 @@ void ThermalLinks::act(ThermalLink& link, const Vector3r& moment) {
     }
   }
   stepper::keep(link, step, scene->time);
-}
-
-namespace {
-
-// Acceleration of a body by a unit force with the given arm [1/kg]: along the force, and through
-// the rotation if the body may rotate. Zero for an arm that does not rotate it.
-Real mobility(const yade::State& state, Real arm_squared) {
-  Real smallest_inertia = 0;
-  for (int i = 0; i < 3; ++i) {
-    const bool free = !(state.blockedDOFs & (8u << i));
-    if (free && state.inertia[i] > 0 &&
-        (smallest_inertia == 0 || state.inertia[i] < smallest_inertia)) {
-      smallest_inertia = state.inertia[i];
-    }
-  }
-  return inverse_mass(state) + (smallest_inertia > 0 ? arm_squared / smallest_inertia : 0);
-}
-
-}  // namespace
-
-// Let s be the stretch of a spring of stiffness k between two bodies. Then s^2 <= 2 (s1^2 + s2^2)
-// and s_i^2 <= mobility_i * 2 * (kinetic energy per unit rate squared). So the largest eigenvalue
-// is at most the largest sum of 2 k mobility over the springs of one body.
-double stable_time_step(const yade::Scene& scene) {
-  const std::size_t count = number_of_bodies(scene);
-  std::vector<Real> stiffness(count, 0);  // per mass
-  std::vector<Real> damping(count, 0);    // per mass
-  const auto touch = [&](int id, Real mobility_of_body, Real k, Real c) {
-    stiffness[static_cast<std::size_t>(id)] += mobility_of_body * k;
-    damping[static_cast<std::size_t>(id)] += mobility_of_body * c;
-  };
-  const auto touch_at = [&](const yade::Interaction& contact, const JointGeom& geometry,
-                            const JointPhys& physics) {
-    const Real normal_damping =
-        kernel::viscous_damping(physics.normalDampingRatio, physics.effectiveMass, physics.kn) +
-        physics.dissipationSlope;
-    const Real tangential_damping =
-        kernel::viscous_damping(physics.tangentialDampingRatio, physics.effectiveMass, physics.ks) +
-        physics.frictionSlope;
-    for (const int id : {contact.id1, contact.id2}) {
-      const yade::State& state = *body_of(scene, id, "stable_time_step").state;
-      const Vector3r arm = geometry.contactPoint - state.se3.position;
-      touch(id, mobility(state, arm.cross(geometry.normal).squaredNorm()), physics.kn,
-            normal_damping);
-      touch(id, mobility(state, arm.squaredNorm()), physics.ks, tangential_damping);
-    }
-  };
-  for (std::size_t i = 0; i < number_of_interactions(scene); ++i) {
-    const yade::Interaction& contact = interaction_at(scene, i);
-    if (!contact.isReal()) continue;
-    if (const auto* pair = dynamic_cast<const BoreGeom*>(contact.geom.get())) {
-      const auto* all = dynamic_cast<const BorePhys*>(contact.phys.get());
-      for (std::size_t k = 0; all && k < std::min(pair->contacts.size(), all->contacts.size());
-           ++k) {
-        if (pair->contacts[k]->penetrationDepth > 0) {
-          touch_at(contact, *pair->contacts[k], *all->contacts[k]);
-        }
-      }
-      continue;
-    }
-    const auto* physics = dynamic_cast<const JointPhys*>(contact.phys.get());
-    const auto* geometry = dynamic_cast<const JointGeom*>(contact.geom.get());
-    if (physics && geometry) touch_at(contact, *geometry, *physics);
-  }
-  for (const auto& engine : scene.engines) {
-    if (const auto* group = dynamic_cast<const ThermalLinks*>(engine.get())) {
-      for (const auto& link : group->links) {
-        if (!link) continue;
-        const yade::State& root = *body_of(scene, link->id1, "ThermalLink.id1").state;
-        const yade::State& tip = *body_of(scene, link->id2, "ThermalLink.id2").state;
-        const Real length = link->stressFreeLength;
-        const Real k = link->youngModulus * link->crossSectionArea / length;
-        const Real c = stepper::damping_coefficient(*link, inverse_mass(root) + inverse_mass(tip)) +
-                       link->pinDamping / (length * length);
-        touch(link->id1, inverse_mass(root), k, c);
-        touch(link->id2, inverse_mass(tip), k, c);
-      }
-    } else if (const auto* springs = dynamic_cast<const TorsionSprings*>(engine.get())) {
-      for (const auto& spring : springs->springs) {
-        if (!spring || !spring->link1 || !spring->link2) continue;
-        // The angle is the sum of up to four displacements over their lengths. So its square is at
-        // most the number of moving ends times the sum of the squares; the common factor 2 is
-        // applied later.
-        const std::array<LinkEnds, 2> links = {ends_of(scene, *spring->link1),
-                                               ends_of(scene, *spring->link2)};
-        int moving = 0;
-        for (const LinkEnds& ends : links) {
-          moving += (inverse_mass(ends.root) > 0) + (inverse_mass(ends.tip) > 0);
-        }
-        for (int i = 0; i < 2; ++i) {
-          const ThermalLink& link = i == 0 ? *spring->link1 : *spring->link2;
-          const Real k = 0.5 * moving * stepper::largest_stiffness(*spring) /
-                         (links[i].span.length * links[i].span.length);
-          touch(link.id1, inverse_mass(links[i].root), k, 0);
-          touch(link.id2, inverse_mass(links[i].tip), k, 0);
-        }
-      }
-    } else if (const auto* joints = dynamic_cast<const PrismaticJoints*>(engine.get())) {
-      for (const auto& joint : joints->joints) {
-        if (!joint) continue;
-        const Real one = inverse_mass(*body_of(scene, joint->id1, "PrismaticJoint.id1").state);
-        const Real two = inverse_mass(*body_of(scene, joint->id2, "PrismaticJoint.id2").state);
-        const Real k = stepper::largest_stiffness(*joint);
-        const Real c = one + two > 0 ? stepper::largest_damping(*joint, 1 / (one + two)) : 0;
-        touch(joint->id1, one, k, c);
-        touch(joint->id2, two, k, c);
-      }
-    }
-  }
-  double smallest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < count; ++i) {
-    smallest = std::min(smallest, kernel::critical_time_step(1, 2 * stiffness[i], 2 * damping[i]));
-  }
-  return smallest;
 }
 
 }  // namespace statejump::dem

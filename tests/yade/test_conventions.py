@@ -80,6 +80,7 @@ def test_keyword_constructors(seen):
     assert seen["links"] == [1, 3]
     assert seen["springs"] == [2, 0.5, 3, None]
     assert seen["slot"] == ["SlotFace"] * 4
+    assert seen["spring"] == [4, 2, 300.0, 0.25, 0.0, 0.1]
 
 
 def test_unknown_and_positional_arguments_are_refused(seen):

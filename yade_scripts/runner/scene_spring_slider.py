@@ -123,13 +123,8 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSlider
     if joint["preload_stiffness_N_per_m"] > 0:
         # A spring to ground without expansion, with its fixed end as far away as the root.
         far = link["stress_free_length_m"]
-        preload = sj.ThermalLink(
-            id1=fixed_point((far, 0, 0)),
-            id2=slider,
-            youngModulus=joint["preload_stiffness_N_per_m"],
-            crossSectionArea=far,
-            stressFreeLength=far,
-            program=program,
+        preload = sj.spring(
+            fixed_point((far, 0, 0)), slider, joint["preload_stiffness_N_per_m"], far, program=program,
         )
         links.append(preload)
     O.engines = joint_engines(

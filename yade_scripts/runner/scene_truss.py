@@ -142,11 +142,9 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
                 tipTurnsWithLink=True, program=program,
             ))
     for spring in rows(case["spring"]):
-        length = spring["free_length_m"]
-        scene.springs.append(sj.ThermalLink(
-            id1=ids[spring["nodes"][0]], id2=ids[spring["nodes"][1]], youngModulus=spring["stiffness_N_per_m"],
-            crossSectionArea=length, stressFreeLength=length, dampingRatio=dem["link_damping_ratio"], program=common,
-            tensionOnly=spring["cable"],
+        scene.springs.append(sj.spring(
+            ids[spring["nodes"][0]], ids[spring["nodes"][1]], spring["stiffness_N_per_m"], spring["free_length_m"],
+            dampingRatio=dem["link_damping_ratio"], program=common, tensionOnly=spring["cable"],
         ))
     for spring in rows(case["torsion_spring"]):
         scene.torsion_springs.append(torsion_spring(spring, spring["bias_rad"], nodes, links, ids))

@@ -39,10 +39,12 @@ _wrapper.Omega.load = _explained(_wrapper.Omega.load, _native.archive_version(),
 stable_time_step, hertz_depth, take_failure = _native.stable_time_step, _native.hertz_depth, _native.take_failure
 bore_triangles, socket_triangles, law_names = _native.bore_triangles, _native.socket_triangles, _native.law_names
 __all__ = [
-    "slot", "stable_time_step", "hertz_depth", "take_failure", "bore_triangles", "socket_triangles", "law_names",
+    "slot", "spring", "stable_time_step", "hertz_depth", "take_failure", "bore_triangles", "socket_triangles",
+    "law_names",
     *_native.class_names(),
 ]
 for _name in _native.class_names():
     globals()[_name] = getattr(_wrapper, _name)
 
 from .slot import slot  # noqa: E402
+from .spring import spring  # noqa: E402

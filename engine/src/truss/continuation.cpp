@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "rate_sets.hpp"
+#include "status_enumeration.hpp"
 #include "walker.hpp"
 
 namespace statejump::truss::detail {

@@ -10,11 +10,11 @@
 #include <unordered_set>
 #include <utility>
 
-#include "condensed_pivots.hpp"
 #include "newton_options.hpp"
 #include "numerics/raise.hpp"
 #include "parallel.hpp"
 #include "rate_problem.hpp"
+#include "schur_active_set.hpp"
 #include "trace.hpp"
 
 namespace statejump::truss::detail {
@@ -240,7 +240,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     const VectorXd whole = factor_.solve(-at_.residual);
     const std::vector<int> in_play(wandering.begin(), wandering.end());
     const Linearized here{first_z, time, start, joints, opening, begun, factor_, whole};
-    auto answer = condensed_pivots(*system_, here, in_play);
+    auto answer = schur_active_set(*system_, here, in_play);
     if (!answer || !seen.insert(fingerprint(answer->statuses)).second) return false;
     statuses = std::move(answer->statuses);
     z = first_z + answer->step;

@@ -69,7 +69,7 @@ struct Ahead {
 /// where a set comes back once more and the solve ends without a solution.
 ///
 /// Many pivots of all joints may wander for long before a set comes back, and single ones take a
-/// factorization each. Pivots on one factorization (condensed_pivots()) settle those joints for the
+/// factorization each. Pivots on one factorization (schur_active_set()) settle those joints for the
 /// price of a solution each. So they are turned to where the pivots that helped nothing have cost
 /// as many factorizations as that, which is known to cost at most twice what the better choice
 /// would [4]. They begin at the start of the step: pivots that wander lead far from where its

@@ -11,7 +11,7 @@
 #include <utility>
 #include <variant>
 
-#include "rate_sets.hpp"
+#include "status_enumeration.hpp"
 
 namespace statejump::truss::detail {
 

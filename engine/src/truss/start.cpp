@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "rate_sets.hpp"
+#include "status_enumeration.hpp"
 #include "walker.hpp"
 
 #include <algorithm>

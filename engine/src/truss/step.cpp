@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "condense.hpp"
-#include "rate_sets.hpp"
+#include "status_enumeration.hpp"
 
 namespace statejump::truss::detail {
 

@@ -87,6 +87,7 @@ ranges = {
         **{**table, "tableTemperatureChanges": [0, 1]}
     ),
 }
+spring = sj.spring(4, 2, stiffness=300.0, length=0.25, dampingRatio=0.1)
 finish(
     {
         "classes": classes,
@@ -117,6 +118,8 @@ finish(
         "by_assignment": {str(v): sentence_of(lambda v=v: set_radius(v)) for v in (-1.0, float("nan"))},
         "kept": journal.radius,
         "read_only": sentence_of(lambda: setattr(link, "axialForce", 1.0)),
+        "spring": [spring.id1, spring.id2, spring.youngModulus * spring.crossSectionArea / spring.stressFreeLength,
+                   spring.stressFreeLength, spring.thermalExpansion, spring.dampingRatio],
         "slot": [b.shape.__class__.__name__ for b in sj.slot((0, 0, 0), 1, 1, 1, sj.ThermalFrictMat(), ceiling=True)],
     }
 )

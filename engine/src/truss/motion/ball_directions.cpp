@@ -33,7 +33,7 @@ bool direct_balls(const System& system, const TimeStep& step, int rotations,
     const double given = std::max(2.0 * bound, 0.0);
     const Vector2d friction(-local.impulses[2 * i + 1] / step.h,
                             -local.impulses[2 * i + 3] / step.h);
-    const bool rubbed = beside.given_force > 0.0;  // in this iterate
+    const bool had_friction = beside.given_force > 0.0;  // in this iterate
     const auto set = [&](double force, double compliance) {
       beside.given_force = force;
       beside.tangential_stiffness = compliance > 0.0 ? 1.0 / compliance : Contact::infinite;
@@ -48,7 +48,7 @@ bool direct_balls(const System& system, const TimeStep& step, int rotations,
       continue;
     }
     if (!(bound > 0.0)) {
-      if (rubbed) settled = false;
+      if (had_friction) settled = false;
       set(0.0, 0.0);
       if (!settled) last = &contact;
       continue;
@@ -58,7 +58,7 @@ bool direct_balls(const System& system, const TimeStep& step, int rotations,
     const double was = beside.tangential_compliance(given);
     beside.compliance = std::min(contact.compliance, compliance);
     Vector2d pull(step.h * speed(2 * i + 1), step.h * speed(2 * i + 3));
-    bool right = rubbed;
+    bool right = had_friction;
     double across = 0.0;
     if (compliance > 0.0) {
       const double share = law.compliance / compliance;
@@ -71,12 +71,12 @@ bool direct_balls(const System& system, const TimeStep& step, int rotations,
       right = right && changed <= (sticks ? stiffened : aside) * bound;
     } else {
       const bool sticks = contact.sticks(bound / contact.friction_coefficient, friction.norm());
-      if (sticks && rubbed && was == 0.0) {
+      if (sticks && had_friction && was == 0.0) {
         pull = friction;
       } else if (contact.sticks(bound / contact.friction_coefficient, friction[0])) {
         pull = friction;  // of an iterate that did not hold it across
         right = false;
-        if (was == 0.0 && rubbed) across = pull.norm() > bound ? Contact::infinite : 0.0;
+        if (was == 0.0 && had_friction) across = pull.norm() > bound ? Contact::infinite : 0.0;
       } else {
         across = pull.norm() / bound;
       }

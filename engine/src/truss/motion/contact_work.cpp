@@ -47,16 +47,16 @@ void commit_partial_slip(const TimeStep& step, const StepContacts& contacts, Ind
                          const VectorXd& speeds, const VectorXd& along, EnergyAccount& account) {
   Contact& contact = contacts.contact(owner);
   const Index second = contacts.partner(owner);
-  const SlippingRings::Pressed by = contacts.pressed(step, owner, speeds[2 * owner]);
-  const double stored = contact.rings.energy;
+  const SlipAnnuli::Pressed by = contacts.pressed(step, owner, speeds[2 * owner]);
+  const double stored = contact.annuli.energy;
   const Vector2d spring =
-      contact.rings.take(by, step.h * contacts.along(owner, speeds) + contacts.slid(owner));
+      contact.annuli.take(by, step.h * contacts.along(owner, speeds) + contacts.slid(owner));
   contact.compliance = 1.0 / by.stiffness;
   double work = 0.0;
   double dashpots = 0.0;
   const auto take = [&](Contact& one, Index t, int row) {
     const double friction = by.normal_force > 0.0 ? -contacts.impulses[t] / step.h : 0.0;
-    const bool slides = contact.rings.slip_all;
+    const bool slides = contact.annuli.slip_all;
     const double force = step.mean(one.friction_force, friction, slides);
     const double bent = by.dashpot > 0.0 ? spring[row] : friction;
     const double elastic = step.mean(one.elastic_friction, bent, slides);
@@ -68,7 +68,7 @@ void commit_partial_slip(const TimeStep& step, const StepContacts& contacts, Ind
   take(contact, 2 * owner + 1, 0);
   if (second >= 0) take(contacts.contact(owner + 1), 2 * second + 1, 1);
   account.damping += dashpots;
-  const double heat = work - dashpots - (contact.rings.energy - stored);
+  const double heat = work - dashpots - (contact.annuli.energy - stored);
   account.friction[contact.joint] += heat;
   account.negative += std::min(heat, 0.0);
 }
@@ -82,7 +82,7 @@ void commit_contacts(const TimeStep& step, const StepContacts& contacts, const V
     if (contact.active) continue;
     contact.normal_force = contact.friction_force = contact.compliance = 0.0;
     contact.elastic_normal = contact.elastic_friction = 0.0;
-    contact.rings = {};
+    contact.annuli = {};
   }
   const VectorXd along = contacts.directions.transpose() * through;
   VectorXd speeds;

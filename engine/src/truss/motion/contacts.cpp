@@ -31,7 +31,7 @@ JointStatus sliding(double friction, double bound) {
 /// How a contact with a bound of friction [N] rubs.
 JointStatus rubs(const Contact& contact, double bound) {
   if (!contact.slips_in_part) return sliding(contact.friction_force, bound);
-  return !contact.rings.slip_all         ? JointStatus::stick
+  return !contact.annuli.slip_all        ? JointStatus::stick
          : contact.friction_force >= 0.0 ? JointStatus::slip_plus
                                          : JointStatus::slip_minus;
 }
@@ -78,7 +78,7 @@ double Contact::spring_friction(double normal, double slide, double limit) const
   return std::clamp((std::min(compliance, now) * elastic_friction + slide) / now, -limit, limit);
 }
 
-SlippingRings::Pressed Contact::pressed(double elastic, double normal, double share) const {
+SlipAnnuli::Pressed Contact::pressed(double elastic, double normal, double share) const {
   const double stiffness = 1.0 / tangential_compliance(elastic);
   // k_t grows as the cube root of the force.
   const bool stiffens = is_elastic() && depth(elastic) > least_depth;
@@ -112,21 +112,21 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
   });
   if (damping.size() == 0) return;
   for (Contact& contact : all_) {
-    if (contact.rings.play > 0.0) continue;  // an open play has no dashpot
+    if (contact.annuli.play > 0.0) continue;  // an open play has no dashpot
     contact.damping = damping[contact.joint];
     damped_ = damped_ || contact.damping > 0.0;
   }
 }
 
-Contact& Contacts::add_rubbing(int joint, int column, double bound, double stiffness) {
-  Contact rubbing;
-  rubbing.joint = joint;
-  rubbing.tangential_column = column;
-  rubbing.friction_coefficient = 1.0;
-  rubbing.given_force = bound;
-  rubbing.tangential_stiffness = stiffness;
-  rubbing.active = true;
-  all_.push_back(rubbing);
+Contact& Contacts::add_friction(int joint, int column, double bound, double stiffness) {
+  Contact friction;
+  friction.joint = joint;
+  friction.tangential_column = column;
+  friction.friction_coefficient = 1.0;
+  friction.given_force = bound;
+  friction.tangential_stiffness = stiffness;
+  friction.active = true;
+  all_.push_back(friction);
   return all_.back();
 }
 
@@ -138,21 +138,21 @@ void Contacts::add(int joint, int first_column, const LatchHinge& hinge) {
       (model.nodes[index(link.second)].position - model.nodes[index(link.first)].position).norm();
   springs_ = springs_ || hinge.stiffness > 0.0 || hinge.preload_moment != 0.0;
   if (!(hinge.friction_moment > 0.0)) return;
-  add_rubbing(joint, first_column, hinge.friction_moment / radius,
-              hinge.friction_stiffness / (radius * radius));
+  add_friction(joint, first_column, hinge.friction_moment / radius,
+               hinge.friction_stiffness / (radius * radius));
 }
 
 void Contacts::add(int joint, int first_column, const IwanJoint& iwan) {
   for (const auto& [stiffness, reach] : iwan.jenkins()) {
-    if (stiffness > 0.0) add_rubbing(joint, first_column, stiffness * reach, stiffness);
+    if (stiffness > 0.0) add_friction(joint, first_column, stiffness * reach, stiffness);
   }
 }
 
 void Contacts::add(int joint, int first_column, const Slider& slider) {
-  Contact& rubbing =
-      add_rubbing(joint, first_column, slider.friction_force, slider.tangential_stiffness);
-  rubbing.slips_in_part = slider.partial_slip != 0 || slider.play > 0.0;
-  rubbing.rings.play = slider.play;
+  Contact& friction =
+      add_friction(joint, first_column, slider.friction_force, slider.tangential_stiffness);
+  friction.slips_in_part = slider.partial_slip != 0 || slider.play > 0.0;
+  friction.annuli.play = slider.play;
   springs_ = springs_ || slider.has_soft_stops();
   if (slider.has_soft_stops()) return;
   const auto stop = [&](JointStatus which, double sign, double clearance) {
@@ -252,12 +252,11 @@ void Contacts::begin(const State& state, StartFriction start) {
     if (contact.beside || contact.normal_column >= 0) continue;
     contact.compliance = contact.tangential_compliance(contact.given_force);
     if (contact.slips_in_part) {
-      const SlippingRings::Pressed by =
-          contact.pressed(contact.given_force, contact.given_force, 1.0);
-      // Pressed first, then rubbed: partial slip depends on the order.
-      contact.rings.take(by, Eigen::Vector2d::Zero());
+      const SlipAnnuli::Pressed by = contact.pressed(contact.given_force, contact.given_force, 1.0);
+      // Normal force first, then friction: partial slip depends on the order.
+      contact.annuli.take(by, Eigen::Vector2d::Zero());
       contact.friction_force =
-          contact.rings.take(by, {slide_at_rest(contact, state, start), 0.0})[0];
+          contact.annuli.take(by, {slide_at_rest(contact, state, start), 0.0})[0];
     } else {
       contact.friction_force = friction_at_rest(contact, state, start);
     }
@@ -274,9 +273,9 @@ void Contacts::begin(const State& state, StartFriction start) {
       contact.normal_force = told(contact.ball < 0 ? "normal_force_N" : "ball_normal_force_N");
       contact.elastic_normal = contact.normal_force;
       if (!contact.slips_in_part) continue;
-      const SlippingRings::Pressed by =
+      const SlipAnnuli::Pressed by =
           contact.pressed(contact.normal_force, contact.normal_force, 1.0);
-      contact.rings.take(by, Eigen::Vector2d::Zero());
+      contact.annuli.take(by, Eigen::Vector2d::Zero());
     } else if (state.joint_status[index(contact.joint)] == contact.stop) {
       contact.normal_force =
           std::max(contact.normal_sign * (friction - told("slider_force_N")), 0.0);
@@ -284,13 +283,13 @@ void Contacts::begin(const State& state, StartFriction start) {
   }
 }
 
-void Contacts::tell_rings(StepStart& to) const {
+void Contacts::write_annuli(StepStart& to) const {
   for (const Contact& contact : all_) {
-    if (!contact.slips_in_part || contact.beside || contact.rings.play > 0.0) continue;
+    if (!contact.slips_in_part || contact.beside || contact.annuli.play > 0.0) continue;
     double* const history = system_->history(contact.joint, to);
     const auto tell = [&](const auto& joint) {
       if constexpr (requires { joint.slip_memory_begin(); }) {
-        write_partial_slip(contact.rings.memory, history + joint.slip_memory_begin(),
+        write_partial_slip(contact.annuli.memory, history + joint.slip_memory_begin(),
                            contact.ball < 0 ? 1 : 2);
       }
     };
@@ -349,7 +348,7 @@ void Contacts::write(VectorXd& z, Statuses& statuses) const {
     const Contact& contact = all_[cone.place];
     write(cone, false, z);
     const bool sticks = contact.slips_in_part
-                            ? !contact.rings.slip_all
+                            ? !contact.annuli.slip_all
                             : contact.sticks(contact.normal_force, contact.friction_force);
     statuses[index(contact.joint)] = !(contact.normal_force > 0.0) ? JointStatus::open
                                      : sticks                      ? JointStatus::stick
@@ -360,9 +359,9 @@ void Contacts::write(VectorXd& z, Statuses& statuses) const {
     JointStatus& status = statuses[index(contact.joint)];
     if (contact.normal_column < 0) {
       z[contact.tangential_column] += contact.elastic_friction;
-      if (contact.rings.play > 0.0) {
+      if (contact.annuli.play > 0.0) {
         // The joint's unknown is the friction without the play, see Slider.
-        z[contact.tangential_column] += contact.tangential_stiffness * contact.rings.played();
+        z[contact.tangential_column] += contact.tangential_stiffness * contact.annuli.played();
       }
       // The contacts of a joint follow each other; it slips where any of them does.
       const JointStatus now = rubs(contact, contact.given_force);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ball_friction.hpp"
-#include "slipping_rings.hpp"
+#include "slip_annuli.hpp"
 #include "statejump/complementarity/problem.hpp"
 #include "truss/system.hpp"
 
@@ -35,7 +35,7 @@ struct Contact {
   double least_depth = 0.0;                ///< Below which the elastic laws are taken as there [m].
   int ball = -1;                           ///< Of the truss' balls; −1: it is in a plane.
   bool beside = false;                     ///< Holds across the friction of the contact before it.
-  bool slips_in_part = false;              ///< By its rings, one after the other.
+  bool slips_in_part = false;              ///< Partially: its annuli slip one after the other.
 
   // Remembered from step to step.
   double normal_force = 0.0;      ///< λ_n [N]
@@ -44,7 +44,7 @@ struct Contact {
   double elastic_friction = 0.0;  ///< λ_t without the dashpot [N].
   double compliance = 0.0;        ///< Tangential, at `elastic_friction` [m/N]; 0: rigid or open.
   double clearance = 0.0;         ///< Free gap of its joint at the end of the last step [m].
-  SlippingRings rings;            ///< Of one that slips in part, but of one beside another.
+  SlipAnnuli annuli;              ///< Of one that slips in part, but of one beside another.
 
   // Of the current step.
   double gap = 0.0;  ///< At the middle, radii of the end [m].
@@ -94,16 +94,16 @@ struct Contact {
   Along along(double normal, double h) const;
   /// Friction of its spring after a slide of h u within a limit [N]. @param normal elastic [N]
   double spring_friction(double normal, double slide, double limit) const;
-  /// What presses the rings of one that slips in part.
+  /// The loads on the annuli of a contact that slips partially.
   /// @param elastic normal force without the dashpot [N]; @param normal force [N]
   /// @param share of its elastic part in the slope of the normal force
-  SlippingRings::Pressed pressed(double elastic, double normal, double share) const;
+  SlipAnnuli::Pressed pressed(double elastic, double normal, double share) const;
   /// Whether friction holds it at these impulses.
   bool sticks(double normal, double tangential) const;
   /// Stored across and along its surface [J].
   double normal_energy() const { return 0.4 * elastic_normal * depth(elastic_normal); }
   double tangential_energy() const {
-    return slips_in_part ? rings.energy : 0.5 * compliance * elastic_friction * elastic_friction;
+    return slips_in_part ? annuli.energy : 0.5 * compliance * elastic_friction * elastic_friction;
   }
 
  private:
@@ -143,7 +143,7 @@ class Contacts {
   /// Takes what was measured as the end of a step.
   void remember_clearances();
   /// Writes what contacts that slip in part remember to where their joints do.
-  void tell_rings(StepStart& to) const;
+  void write_annuli(StepStart& to) const;
 
   std::vector<BallFriction>& balls() { return balls_; }
   /// Gives the contacts of a ball the directions that it has now.
@@ -182,7 +182,7 @@ class Contacts {
   /// Slide of a slider since its friction carried nothing, in a quasi-static state [m].
   double slide_at_rest(const Contact& contact, const State& state, StartFriction start) const;
   /// Dry friction of a given bound [N] behind a spring [N/m].
-  Contact& add_rubbing(int joint, int column, double bound, double stiffness);
+  Contact& add_friction(int joint, int column, double bound, double stiffness);
   /// Friction of a ball as its contacts have it, with their dashpots or without [N].
   Vector3d friction(const BallFriction& cone, bool with_dashpots) const;
   /// Writes its force where the ball is at z.

@@ -95,13 +95,12 @@ void KernelContacts::add(int joint, int first_column, const Slider& slider, doub
   made.first = slider.first;
   made.axis = slider.axis;
   made.normal = slider.axis.unitOrthogonal();
-  made.parameters.elastic = {1.0, 1.0};
   made.parameters.friction_coefficient = 1.0;
   made.parameters.tangential_damping_ratio = 0.5 * damping;  // of a mass of 1 kg
   made.parameters.effective_mass = 1.0;
   made.pressed = slider.friction_force;
   made.held = slider.tangential_stiffness;
-  made.rings.play = slider.play;
+  made.annuli.play = slider.play;
   all_.push_back(made);
 }
 
@@ -209,8 +208,8 @@ kernel::ContactResponse KernelContacts::answer_with_play(const KernelContact& co
   rates[0] = contact.axis.dot(at(contact.first, stage.v));
   rates[1] = rates[2] = 0.0;
   const Vector2d none = Vector2d::Zero();
-  const SlippingRings::Law law =
-      contact.rings.law(contact.presses_rings(), {slide, 0.0}, none, stage.since);
+  const SlipAnnuli::Law law =
+      contact.annuli.law(contact.loads_annuli(), {slide, 0.0}, none, stage.since);
   const double friction = law.friction[0];
   kernel::ContactResponse found{};
   found.normal_force = contact.pressed;
@@ -222,10 +221,10 @@ kernel::ContactResponse KernelContacts::answer_with_play(const KernelContact& co
 }
 
 double KernelContacts::take_play(KernelContact& contact, double slide) {
-  const double before = contact.rings.bend;
-  contact.rings.take(contact.presses_rings(), {slide, 0.0});
-  contact.history.slipping = contact.rings.slip_all;
-  return contact.pressed * std::abs(slide - (contact.rings.bend - before));
+  const double before = contact.annuli.bend;
+  contact.annuli.take(contact.loads_annuli(), {slide, 0.0});
+  contact.history.slipping = contact.annuli.slip_all;
+  return contact.pressed * std::abs(slide - (contact.annuli.bend - before));
 }
 
 kernel::ContactResponse KernelContacts::answer(const KernelContact& contact, const Stage& stage,
@@ -368,7 +367,7 @@ void KernelContacts::write(VectorXd& z, Statuses& statuses) const {
       const double against = -contact.axis.dot(found.tangential_force);
       // The joint's unknown is the friction without the play, see Slider.
       z[contact.first_column] =
-          contact.has_play() ? against + contact.held * contact.rings.played() : against;
+          contact.has_play() ? against + contact.held * contact.annuli.played() : against;
       status = !slips          ? JointStatus::stick
                : against > 0.0 ? JointStatus::slip_plus
                                : JointStatus::slip_minus;

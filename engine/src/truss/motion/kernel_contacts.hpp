@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "slipping_rings.hpp"
+#include "slip_annuli.hpp"
 #include "statejump/kernel/contact_law.hpp"
 #include "statejump/kernel/laws/joint_law.hpp"
 #include "statejump/truss/path.hpp"
@@ -21,10 +21,10 @@ struct KernelContact {
   int first_far = -1;    ///< Far end of the link that turns it; −1: it does not turn.
   int second_far = -1;   ///< Likewise.
   bool is_ball = false;
-  Vector3d axis = Vector3d::UnitZ();  ///< Of a bearing, or along which a pad slides.
-  kernel::ContactParameters parameters;
-  double first_radius = 0.0;   ///< At ΔT = 0 [m].
-  double second_radius = 0.0;  ///< Likewise.
+  Vector3d axis = Vector3d::UnitZ();       ///< Of a bearing, or along which a pad slides.
+  kernel::ContactParameters parameters{};  ///< Of a pad without moduli: see `held`.
+  double first_radius = 0.0;               ///< At ΔT = 0 [m].
+  double second_radius = 0.0;              ///< Likewise.
   double first_expansion = 0.0;
   double second_expansion = 0.0;
   int program = 0;
@@ -34,9 +34,9 @@ struct KernelContact {
 
   bool is_pad() const { return held > 0.0; }
   /// Of a pad with a play in series: a spring behind Coulomb's bound, whatever law others have.
-  SlippingRings rings;
-  bool has_play() const { return rings.play > 0.0; }
-  SlippingRings::Pressed presses_rings() const { return {held, 0.0, 1.0, pressed, 0.0}; }
+  SlipAnnuli annuli;
+  bool has_play() const { return annuli.play > 0.0; }
+  SlipAnnuli::Pressed loads_annuli() const { return {held, 0.0, 1.0, pressed, 0.0}; }
 
   // Where the last step ended.
   kernel::ContactHistory history;

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <unordered_set>
 #include <utility>
 
 namespace statejump::truss::detail {
@@ -50,42 +48,42 @@ Index NeighbourhoodPivots::reach_of(const std::vector<std::size_t>& contacts) {
 bool NeighbourhoodPivots::settle(std::size_t contact) {
   if (requested(contact) == statuses_[contact]) return true;
   begin(contact);
-  std::size_t fewest = std::numeric_limits<std::size_t>::max();
-  std::unordered_set<std::size_t> tried;
-  for (;;) {
-    std::vector<std::size_t> wrong;
-    for (const std::size_t one : inside_contacts_) {
-      if (requested(one) != statuses_[one]) wrong.push_back(one);
-    }
-    if (wrong.empty()) return true;
-    if (wrong.size() < fewest) {
-      fewest = wrong.size();
-      tried.clear();
-    } else {
-      wrong.erase(wrong.begin() + 1, wrong.end());
-    }
-    for (const std::size_t one : wrong) change(one, requested(one));
-    if (!tried.insert(fingerprint_).second) return false;
-    do {
-      if (!move()) return false;
-    } while (grow_where_felt());
-  }
+  return find_active_set(*this);
 }
 
-std::vector<std::size_t> NeighbourhoodPivots::violated() const {
+NeighbourhoodPivots::Changes NeighbourhoodPivots::violated() const {
+  Changes found;
+  for (const std::size_t one : inside_contacts_) {
+    const ContactStatus wanted = requested(one);
+    if (wanted != statuses_[one]) found.emplace_back(one, wanted);
+  }
+  return found;
+}
+
+bool NeighbourhoodPivots::change(const Changes& changes, const std::set<std::size_t>&, Pivot) {
+  for (const auto& [contact, to] : changes) {
+    const auto mark = [contact = contact](ContactStatus status) {
+      return (4 * contact + static_cast<std::size_t>(status) + 1) * 0x9e3779b97f4a7c15ull;
+    };
+    fingerprint_ ^= mark(statuses_[contact]) ^ mark(to);
+    statuses_[contact] = to;
+  }
+  return true;
+}
+
+bool NeighbourhoodPivots::solve() {
+  do {
+    if (!move()) return false;
+  } while (grow_where_felt());
+  return true;
+}
+
+std::vector<std::size_t> NeighbourhoodPivots::reached_violations() const {
   std::vector<std::size_t> found;
   for (const std::size_t one : reached_) {
     if (requested(one) != statuses_[one]) found.push_back(one);
   }
   return found;
-}
-
-void NeighbourhoodPivots::change(std::size_t contact, ContactStatus to) {
-  const auto mark = [&](ContactStatus status) {
-    return (4 * contact + static_cast<std::size_t>(status) + 1) * 0x9e3779b97f4a7c15ull;
-  };
-  fingerprint_ ^= mark(statuses_[contact]) ^ mark(to);
-  statuses_[contact] = to;
 }
 
 void NeighbourhoodPivots::begin(std::size_t contact) {
@@ -94,8 +92,8 @@ void NeighbourhoodPivots::begin(std::size_t contact) {
   inside_contacts_.clear();
   std::vector<int> from;
   const auto n = static_cast<int>(bodies_) + 2 * static_cast<int>(contact);
-  each_body_beside(n, [&](int body) { see(body, from); });
-  each_body_beside(n + 1, [&](int body) { see(body, from); });
+  each_body_beside(n, [&](int body) { take_in(body, from); });
+  each_body_beside(n + 1, [&](int body) { take_in(body, from); });
   layers_ = 0;
   grow(std::move(from), first_layers);
 }
@@ -118,7 +116,7 @@ void NeighbourhoodPivots::each_neighbour(int body, Visit&& visit) const {
   }
 }
 
-void NeighbourhoodPivots::see(int unknown, std::vector<int>& fresh) {
+void NeighbourhoodPivots::take_in(int unknown, std::vector<int>& fresh) {
   if (position_[index(unknown)] >= 0) return;
   position_[index(unknown)] = 0;
   inside_.push_back(unknown);
@@ -129,7 +127,7 @@ void NeighbourhoodPivots::grow(std::vector<int> from, int layers) {
   std::vector<int> bodies = from;
   for (int k = 0; k < layers && !from.empty(); ++k) {
     std::vector<int> fresh;
-    for (const int body : from) each_neighbour(body, [&](int one) { see(one, fresh); });
+    for (const int body : from) each_neighbour(body, [&](int one) { take_in(one, fresh); });
     bodies.insert(bodies.end(), fresh.begin(), fresh.end());
     from = std::move(fresh);
   }
@@ -145,8 +143,8 @@ void NeighbourhoodPivots::grow(std::vector<int> from, int layers) {
       inside_contacts_.push_back(one);
       if (!is_reached_[one]) reached_.push_back(one);
       is_reached_[one] = true;
-      see(n, fresh);
-      see(n + 1, fresh);
+      take_in(n, fresh);
+      take_in(n + 1, fresh);
     }
   }
   std::sort(inside_.begin(), inside_.end());

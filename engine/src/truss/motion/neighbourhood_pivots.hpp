@@ -2,9 +2,12 @@
 #pragma once
 
 #include <optional>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "step_matrix.hpp"
+#include "truss/active_set.hpp"
 
 namespace statejump::truss::detail {
 
@@ -29,19 +32,25 @@ class NeighbourhoodPivots {
   /// found, or if is_spent().
   bool settle(std::size_t contact);
   /// Violated contacts of all neighbourhoods so far.
-  std::vector<std::size_t> violated() const;
+  std::vector<std::size_t> reached_violations() const;
   /// Whether it has cost as much as a system of the whole truss.
   bool is_spent() const { return left_ <= 0; }
+
+  // For find_active_set().
+  using Changes = std::vector<std::pair<std::size_t, ContactStatus>>;
+  std::size_t key() const { return fingerprint_; }
+  Changes violated() const;
+  bool change(const Changes& changes, const std::set<std::size_t>& tried, Pivot pivot);
+  bool solve();
 
  private:
   ContactStatus requested(std::size_t contact) const {
     return contacts_.requested(step_, static_cast<Index>(contact), statuses_[contact]);
   }
-  void change(std::size_t contact, ContactStatus to);
   void begin(std::size_t contact);
   /// Takes in so many layers around bodies, with all contacts that touch a body inside.
   void grow(std::vector<int> from, int layers);
-  void see(int unknown, std::vector<int>& fresh);
+  void take_in(int unknown, std::vector<int>& fresh);
   template <class Visit>
   void each_body_beside(int unknown, Visit&& visit) const;
   /// Bodies with which one shares a link, a constraint or a contact, and itself.

@@ -40,15 +40,15 @@ VectorXd StepContacts::partial_slip_speeds(const TimeStep& step) const {
 void StepContacts::place_tangents(const TimeStep& step, const VectorXd& speeds, TangentAt at) {
   for (Index i = 0; i < speeds.size() / 2; ++i) {
     if (!contact(i).slips_in_part || contact(i).beside) continue;
-    SlippingRings& rings = contact(i).rings;
+    SlipAnnuli& annuli = contact(i).annuli;
     const Vector2d speed = along(i, speeds);
-    if (at == TangentAt::iterate) rings.seen_slide = step.h * speed + slid(i);
-    rings.see(at == TangentAt::kinks, pressed(step, i, speeds[2 * i]), speed, slid(i), step.h);
+    if (at == TangentAt::iterate) annuli.tangent_slide = step.h * speed + slid(i);
+    annuli.place_tangent(at == TangentAt::kinks, pressed(step, i, speeds[2 * i]), speed, slid(i),
+                         step.h);
   }
 }
 
-SlippingRings::Pressed StepContacts::pressed(const TimeStep& step, Index owner,
-                                             double opens) const {
+SlipAnnuli::Pressed StepContacts::pressed(const TimeStep& step, Index owner, double opens) const {
   const Contact& one = contact(owner);
   if (one.normal_column < 0) {
     return one.pressed(one.given_force, one.given_force, 0.0);
@@ -62,10 +62,10 @@ SlippingRings::Pressed StepContacts::pressed(const TimeStep& step, Index owner,
 ContactRow StepContacts::partial_slip_row(const TimeStep& step, Index i) const {
   const Index first = owner(i);
   const Index row = i == first ? 0 : 1;
-  const SlippingRings::Pressed by = pressed(step, first, speed(step, 2 * first));
-  const SlippingRings& rings = contact(first).rings;
-  const Vector2d& speed = rings.seen_speed;
-  const SlippingRings::Law now = rings.law(by, rings.seen_slide, speed, step.h);
+  const SlipAnnuli::Pressed by = pressed(step, first, speed(step, 2 * first));
+  const SlipAnnuli& annuli = contact(first).annuli;
+  const Vector2d& speed = annuli.tangent_speed;
+  const SlipAnnuli::Law now = annuli.law(by, annuli.tangent_slide, speed, step.h);
   // As a speed: what the force lacks, moved in a step by a contact that sticks.
   const double unit = 1.0 / (by.stiffness * step.h);
   ContactRow law;
@@ -83,9 +83,9 @@ bool StepContacts::on_partial_slip_laws(const TimeStep& step, double drift) cons
   for (Index i = 0; i < speeds.size() / 2; ++i) {
     const Contact& one = contact(i);
     if (!one.slips_in_part || one.beside) continue;
-    const SlippingRings::Pressed by = pressed(step, i, speeds[2 * i]);
+    const SlipAnnuli::Pressed by = pressed(step, i, speeds[2 * i]);
     const Vector2d now = along(i, speeds);
-    Vector2d off = one.rings.law(by, step.h * now + slid(i), now, step.h).friction;
+    Vector2d off = one.annuli.law(by, step.h * now + slid(i), now, step.h).friction;
     off[0] += impulses[2 * i + 1] / step.h;
     if (partner(i) >= 0) off[1] += impulses[2 * partner(i) + 1] / step.h;
     const double least = one.is_elastic() ? one.force_at(one.least_depth) : 0.0;
@@ -99,10 +99,10 @@ void StepContacts::add_partial_slip(const TimeStep& step, Index owner, double op
                                     Problem& problem) const {
   const Index rows[2] = {2 * owner + 1, 2 * partner(owner) + 1};
   const int count = partner(owner) < 0 ? 1 : 2;
-  const SlippingRings& rings = contact(owner).rings;
-  const SlippingRings::Pressed by = pressed(step, owner, opens);
-  const Vector2d& speed = rings.seen_speed;
-  const SlippingRings::Law now = rings.law(by, rings.seen_slide, speed, step.h);
+  const SlipAnnuli& annuli = contact(owner).annuli;
+  const SlipAnnuli::Pressed by = pressed(step, owner, opens);
+  const Vector2d& speed = annuli.tangent_speed;
+  const SlipAnnuli::Law now = annuli.law(by, annuli.tangent_slide, speed, step.h);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> slopes(now.by_slide);
   const Vector2d slope = slopes.eigenvalues().cwiseMax(least_slope * by.stiffness);
   const Eigen::Matrix2d compliance =

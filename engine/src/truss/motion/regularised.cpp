@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
-#include "beginning.hpp"
 #include "bodies.hpp"
 #include "kernel_contacts.hpp"
+#include "start_of_motion.hpp"
 #include "statejump/failure.hpp"
 #include "statejump/kernel/require.hpp"
 #include "statejump/truss/motion.hpp"
@@ -226,7 +226,7 @@ bool Run::begin() {
     way = contacts_.start_way(*start, options_.start_friction);
   }
   const double h = duration_ / static_cast<double>(options_.steps);
-  // Pressed first, then rubbed: partial slip depends on the order.
+  // Normal force first, then friction: partial slip depends on the order.
   commit({q_, v_, 0.0, h, VectorXd::Zero(contacts_.numbers())});
   if (!way.isZero(0.0)) commit({q_, v_, 0.0, h, way});
   heat_.friction.setZero();

@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
-#include "beginning.hpp"
-#include "ladder.hpp"
+#include "dyadic_step_size.hpp"
 #include "smooth_stepper.hpp"
+#include "start_of_motion.hpp"
 #include "statejump/failure.hpp"
 #include "statejump/kernel/require.hpp"
 #include "statejump/truss/motion.hpp"
@@ -90,10 +90,10 @@ class Run {
   /// From one sample to the next. @param level halvings of the span for its first step; out: for
   /// the first of the next
   void make_span(long first, long count, int& level);
-  /// Makes a step as long as the ladder says, or shortens it. @param to where it ends, and the
+  /// Makes a step as long as the step size says, or shortens it. @param to where it ends, and the
   /// length of the whole span [s]; @param unsettled tries in the span that found no solution
   /// @return whether the step is made
-  bool try_step(double to, double span, detail::Ladder& ladder, int& unsettled);
+  bool try_step(double to, double span, detail::DyadicStepSize& step_size, int& unsettled);
   /// Steps of a truss whose branches change at times that are sought.
   void make_smooth_steps();
   [[noreturn]] void fail() const;
@@ -198,29 +198,29 @@ void Run::make_equal_step(long number, int& level) {
   const double whole = time_of(1.0);
   const int most =
       std::clamp(static_cast<int>(std::log2(whole / (shortest * duration_))), 0, most_halvings);
-  detail::Ladder ladder(level, most);
-  // Without damping, what rings in a step that is long beside its period rings on and may have left
-  // no solution: implicit Euler, which takes it away.
+  detail::DyadicStepSize step_size(level, most);
+  // Without damping, an oscillation whose period is short beside the step goes on and may leave no
+  // solution: implicit Euler damps it.
   bool damps = level > 0;
   int unsettled = 0;
-  while (!ladder.done()) {
-    const double to = time_of(static_cast<double>(number - 1) + ladder.to());
-    const double length = whole * ladder.length();
+  while (!step_size.done()) {
+    const double to = time_of(static_cast<double>(number - 1) + step_size.to());
+    const double length = whole * step_size.length();
     bool made = false;
     try {
       note(stepper_, length, [&] {
-        const bool give_up = unsettled < most_unsettled && !ladder.is_shortest();
+        const bool give_up = unsettled < most_unsettled && !step_size.is_shortest();
         made = damps ? stepper_.advance_damped(to, give_up) : stepper_.advance(to);
       });
     } catch (const Failure&) {
-      if (damps && ladder.is_shortest()) throw;
+      if (damps && step_size.is_shortest()) throw;
       made = false;
     }
     if (!made) {
       ++motion_.rejected_steps;
       ++unsettled;
       settled_ = 0;
-      if (damps) ladder.shorten(1);
+      if (damps) step_size.shorten(1);
       damps = true;
       continue;
     }
@@ -228,11 +228,11 @@ void Run::make_equal_step(long number, int& level) {
     check_parts(length);
     if (damps) ++motion_.inexact_steps;
     motion_.time_step = std::min(motion_.time_step, length);
-    const int before = ladder.level();
-    ladder.accept(++settled_ >= before_longer);
-    if (ladder.level() < before) settled_ = 0;
+    const int before = step_size.level();
+    step_size.accept(++settled_ >= before_longer);
+    if (step_size.level() < before) settled_ = 0;
   }
-  level = ladder.level();
+  level = step_size.level();
 }
 
 void Run::make_steps_within_tolerance() {
@@ -246,40 +246,40 @@ void Run::make_steps_within_tolerance() {
 void Run::make_span(long first, long count, int& level) {
   const double span = time_of(static_cast<double>(count));
   const int most = std::max(static_cast<int>(std::log2(span / (shortest * duration_))), 0);
-  detail::Ladder ladder(level, most);
+  detail::DyadicStepSize step_size(level, most);
   int unsettled = 0;
   const auto time_at = [&](double share) {
     return time_of(static_cast<double>(first) + share * static_cast<double>(count));
   };
-  while (!ladder.done()) {
-    const bool made = try_step(time_at(ladder.to()), span, ladder, unsettled);
-    if (made && !ladder.done() && !go_on(stepper_.time())) return;
+  while (!step_size.done()) {
+    const bool made = try_step(time_at(step_size.to()), span, step_size, unsettled);
+    if (made && !step_size.done() && !go_on(stepper_.time())) return;
   }
-  level = ladder.level();
+  level = step_size.level();
   sample(stepper_);
   go_on(time_of(static_cast<double>(first + count)));
 }
 
-bool Run::try_step(double to, double span, detail::Ladder& ladder, int& unsettled) {
-  const bool give_up = unsettled < most_unsettled && !ladder.is_shortest();
-  const double off = attempt(stepper_, to, give_up, ladder.is_shortest());
+bool Run::try_step(double to, double span, detail::DyadicStepSize& step_size, int& unsettled) {
+  const bool give_up = unsettled < most_unsettled && !step_size.is_shortest();
+  const double off = attempt(stepper_, to, give_up, step_size.is_shortest());
   if (!std::isfinite(off)) ++unsettled;
   const bool too_far = off > options_.displacement_tolerance;
-  if (too_far && !ladder.is_shortest()) {
+  if (too_far && !step_size.is_shortest()) {
     ++motion_.rejected_steps;
     // A force that turns up in a step puts it off by its square, a jump of the velocity by its
     // first power: then there is another try.
     const double halvings = 0.5 * std::log2(off / options_.displacement_tolerance);
-    ladder.shorten(std::isfinite(off) ? std::max(static_cast<int>(std::ceil(halvings)), 1) : 1);
+    step_size.shorten(std::isfinite(off) ? std::max(static_cast<int>(std::ceil(halvings)), 1) : 1);
     return false;
   }
   if (too_far) ++motion_.inexact_steps;
-  const double length = span * ladder.length();
+  const double length = span * step_size.length();
   note(stepper_, length, [&] { stepper_.accept(); });
   ++motion_.steps;
   motion_.time_step = std::min(motion_.time_step, length);
   // Of second order: a step of twice the length is eight times as far off.
-  ladder.accept(8.0 * off <= options_.displacement_tolerance);
+  step_size.accept(8.0 * off <= options_.displacement_tolerance);
   return true;
 }
 

@@ -15,7 +15,7 @@ void SmoothStepper::make_pattern(const Eigen::SparseMatrix<double>& damping) {
   each_entry(bodies_->mass(), n, add);
   each_entry(damping, n, add);
   each_entry(bars_.jacobian(), n, add);
-  for (const Rubbing& one : rubbings_) {
+  for (const FrictionElement& one : friction_elements_) {
     for (std::size_t i = 0; i < one.count; ++i) {
       for (std::size_t j = 0; j < one.count; ++j) add(one.rows[i], one.rows[j], 0.0);
     }
@@ -37,7 +37,7 @@ void SmoothStepper::make_pattern(const Eigen::SparseMatrix<double>& damping) {
   damping_places_ = places(damping);
   stiffness_places_ = places(bars_.jacobian());
   contact_places_.clear();
-  for (const Rubbing& one : rubbings_) {
+  for (const FrictionElement& one : friction_elements_) {
     for (std::size_t i = 0; i < one.count; ++i) {
       for (std::size_t j = 0; j < one.count; ++j) {
         contact_places_.push_back(place(stiffness_, one.rows[i], one.rows[j]));
@@ -73,8 +73,8 @@ void SmoothStepper::add_contacts() {
   stiffness = stiffness_entries_;
   sticking_damping_ = damping_entries_;
   auto to = contact_places_.begin();
-  for (const Rubbing& one : rubbings_) {
-    const bool sticks = one.branch == Rubbing::Branch::stick;
+  for (const FrictionElement& one : friction_elements_) {
+    const bool sticks = one.status == FrictionElement::Status::stick;
     for (std::size_t i = 0; i < one.count; ++i) {
       for (std::size_t j = 0; j < one.count; ++j) {
         const double both = sticks ? one.along[i] * one.along[j] : 0.0;

@@ -36,7 +36,7 @@ std::unique_ptr<SmoothStepper> SmoothStepper::of(const System& system, const Bod
   if (element_count(system.model()) != system.model().links.size()) return {};
   const Contacts contacts(system, bodies.joint_damping());
   if (!contacts.holds().empty() || !options.drives.empty() || contacts.slip_in_part()) return {};
-  std::optional<std::vector<Rubbing>> found = rubbings(system, contacts);
+  std::optional<std::vector<FrictionElement>> found = friction_elements(system, contacts);
   if (!found || found->empty() || found->size() > most_contacts) return {};
   std::unique_ptr<SmoothStepper> made(
       new SmoothStepper(system, bodies, inertia, options, std::move(*found), stages));
@@ -45,14 +45,14 @@ std::unique_ptr<SmoothStepper> SmoothStepper::of(const System& system, const Bod
 }
 
 SmoothStepper::SmoothStepper(const System& system, const Bodies& bodies, const Inertia& inertia,
-                             const MotionOptions& options, std::vector<Rubbing> rubbings,
+                             const MotionOptions& options, std::vector<FrictionElement> elements,
                              int stages)
     : system_(&system),
       bodies_(&bodies),
       options_(&options),
       radau_(stages),
       contacts_(system, bodies.joint_damping()),
-      rubbings_(std::move(rubbings)),
+      friction_elements_(std::move(elements)),
       bars_(system.assembly(System::Parts::elements)),
       rods_(system, inertia),
       pair_factors_(radau_.pairs.size()),
@@ -68,8 +68,8 @@ SmoothStepper::SmoothStepper(const System& system, const Bodies& bodies, const I
     }
   }
   std::sort(corners_.begin(), corners_.end());
-  level_.resize(rubbings_.size());
-  grace_.resize(rubbings_.size());
+  level_.resize(friction_elements_.size());
+  grace_.resize(friction_elements_.size());
 }
 
 void SmoothStepper::begin(const VectorXd& q, const VectorXd& v, const State* equilibrium) {
@@ -84,8 +84,8 @@ void SmoothStepper::begin(const VectorXd& q, const VectorXd& v, const State* equ
   Assembly joints = system_->assembly(System::Parts::joints);
   system_->evaluate_joints(z_, 0.0, origin_, statuses_, joints);
   const linear::SparseView jacobian = joints.jacobian();
-  for (std::size_t k = 0; k < rubbings_.size(); ++k) {
-    Rubbing& one = rubbings_[k];
+  for (std::size_t k = 0; k < friction_elements_.size(); ++k) {
+    FrictionElement& one = friction_elements_[k];
     one.elastic = contacts_.all()[k].elastic_friction;
     one.count = 0;
     for (linear::SparseView::InnerIterator it(jacobian, one.column); it; ++it) {
@@ -105,8 +105,8 @@ void SmoothStepper::force(const Rods::ConstColumn& q, const Rods::ConstColumn& v
                           VectorXd& to) {
   to = loads_;
   rods_.add_force(q, v, heat_at(time), to);
-  for (std::size_t k = 0; k < rubbings_.size(); ++k) {
-    const Rubbing& one = rubbings_[k];
+  for (std::size_t k = 0; k < friction_elements_.size(); ++k) {
+    const FrictionElement& one = friction_elements_[k];
     const double pull = one.force(slide(k, q), one.seen(v));
     for (std::size_t i = 0; i < one.count; ++i) to[one.rows[i]] -= pull * one.along[i];
   }
@@ -128,9 +128,9 @@ void SmoothStepper::start_from_here(bool anew) {
   smooth_until_ = std::numeric_limits<double>::infinity();
   const auto next = std::upper_bound(corners_.begin(), corners_.end(), time_);
   if (next != corners_.end()) smooth_until_ = *next;
-  slide_from_.resize(static_cast<Eigen::Index>(rubbings_.size()));
-  for (std::size_t k = 0; k < rubbings_.size(); ++k) {
-    slide_from_[static_cast<Eigen::Index>(k)] = rubbings_[k].seen(q_);
+  slide_from_.resize(static_cast<Eigen::Index>(friction_elements_.size()));
+  for (std::size_t k = 0; k < friction_elements_.size(); ++k) {
+    slide_from_[static_cast<Eigen::Index>(k)] = friction_elements_[k].seen(q_);
   }
   tangents_are_new_ = false;
   if (!anew) return;
@@ -142,8 +142,10 @@ std::optional<double> SmoothStepper::attempt(double to) {
   to_ = to;
   first_change_.reset();
   const double h = to_ - time_;
-  for (std::size_t k = 0; k < rubbings_.size(); ++k) {
-    level_[k] = std::min(rubbings_[k].margin(0.0, rubbings_[k].seen(v_), h), 0.0) - grace_[k];
+  for (std::size_t k = 0; k < friction_elements_.size(); ++k) {
+    level_[k] =
+        std::min(friction_elements_[k].margin(0.0, friction_elements_[k].seen(v_), h), 0.0) -
+        grace_[k];
   }
   // Steps of one length differ by the rounding of times.
   while (std::abs(factor_h_ - h) > 1e-9 * h ? !factorize(h) || !solve_stages() : !solve_stages()) {
@@ -218,8 +220,8 @@ void SmoothStepper::find_change() {
   const double h = to_ - time_;
   double first = std::numeric_limits<double>::infinity();
   std::vector<std::pair<double, std::size_t>> ends;
-  for (std::size_t k = 0; k < rubbings_.size(); ++k) {
-    const Rubbing& one = rubbings_[k];
+  for (std::size_t k = 0; k < friction_elements_.size(); ++k) {
+    const FrictionElement& one = friction_elements_[k];
     const auto speed = [&](Eigen::Index i) { return one.seen(stage_v_.col(i)); };
     const auto slid = [&](Eigen::Index i) { return slide(k, stage_q_.col(i)); };
     bool suspect = false;
@@ -227,10 +229,10 @@ void SmoothStepper::find_change() {
       suspect = one.has_ended(slid(i), speed(i), h, level_[k]);
     }
     if (!suspect) continue;
-    RubbingWay way;
+    SlipTrajectory way;
     way.add(0.0, 0.0, one.seen(v_));
     for (Eigen::Index i = 0; i < stages; ++i) way.add(radau_.c[i] * h, slid(i), speed(i));
-    const std::optional<double> when = end_of_branch(one, way, h, level_[k]);
+    const std::optional<double> when = end_of_status(one, way, h, level_[k]);
     if (!when) continue;
     ends.emplace_back(*when, k);
     first = std::min(first, *when);
@@ -247,8 +249,8 @@ void SmoothStepper::find_change() {
 void SmoothStepper::accept() {
   book();
   const Eigen::Index last = radau_.c.size() - 1;
-  for (std::size_t k = 0; k < rubbings_.size(); ++k) {
-    Rubbing& one = rubbings_[k];
+  for (std::size_t k = 0; k < friction_elements_.size(); ++k) {
+    FrictionElement& one = friction_elements_[k];
     one.elastic = one.spring(slide(k, stage_q_.col(last)));
   }
   const bool corner = to_ == smooth_until_;
@@ -257,15 +259,16 @@ void SmoothStepper::accept() {
   a_ = stage_a_.col(last);
   time_ = to_;
   start_from_here(corner);
-  for (std::size_t k = 0; k < rubbings_.size(); ++k) {
-    if (rubbings_[k].margin(0.0, rubbings_[k].seen(v_), 0.0) >= 0.0) grace_[k] = 0.0;
+  for (std::size_t k = 0; k < friction_elements_.size(); ++k) {
+    if (friction_elements_[k].margin(0.0, friction_elements_[k].seen(v_), 0.0) >= 0.0)
+      grace_[k] = 0.0;
   }
 }
 
 int SmoothStepper::turn() {
   std::vector<std::size_t> due;
   for (const std::size_t k : to_turn_) {
-    const Rubbing& one = rubbings_[k];
+    const FrictionElement& one = friction_elements_[k];
     const double speed = one.seen(v_);
     const double rise = one.seen(a_);
     if (one.margin_rate(0.0, speed, rise) < 0.0 &&
@@ -278,12 +281,12 @@ int SmoothStepper::turn() {
   write();
   origin_ = system_->commit(z_, time_, statuses_, origin_);
   for (const std::size_t k : due) {
-    Rubbing& one = rubbings_[k];
+    FrictionElement& one = friction_elements_[k];
     const double speed = one.seen(v_);
     grace_[k] = 2.0 * std::max(one.shortfall(0.0, speed, one.seen(a_)), 0.0);
     one.turn(0.0, speed);
     // Without a dashpot its spring is at its bound.
-    if (one.branch != Rubbing::Branch::stick && one.damping == 0.0) {
+    if (one.status != FrictionElement::Status::stick && one.damping == 0.0) {
       const double at_bound = one.sign() * one.bound;
       account_.friction[one.joint] -=
           0.5 * (at_bound * at_bound - one.elastic * one.elastic) / one.stiffness;
@@ -306,9 +309,9 @@ void SmoothStepper::book() {
     account_.damping += weight(i) * now.heat;
     account_.thermal_work += weight(i) * now.thermal;
   }
-  for (std::size_t k = 0; k < rubbings_.size(); ++k) {
-    const Rubbing& one = rubbings_[k];
-    if (one.branch == Rubbing::Branch::stick) {
+  for (std::size_t k = 0; k < friction_elements_.size(); ++k) {
+    const FrictionElement& one = friction_elements_[k];
+    if (one.status == FrictionElement::Status::stick) {
       if (one.damping == 0.0) continue;
       for (Eigen::Index i = 0; i < stages; ++i) {
         account_.damping += weight(i) * one.damping * std::pow(one.seen(stage_v_.col(i)), 2);
@@ -329,12 +332,13 @@ void SmoothStepper::write() {
   z_.head(displacements) = q_;
   z_.tail(z_.size() - displacements).setZero();
   statuses_ = system_->all_stick();
-  for (const Rubbing& one : rubbings_) {
+  for (const FrictionElement& one : friction_elements_) {
     z_[one.column] += one.elastic;
-    if (one.branch == Rubbing::Branch::stick) continue;
+    if (one.status == FrictionElement::Status::stick) continue;
     // A joint slips where any of its contacts does.
-    statuses_[index(one.joint)] =
-        one.branch == Rubbing::Branch::slip_plus ? JointStatus::slip_plus : JointStatus::slip_minus;
+    statuses_[index(one.joint)] = one.status == FrictionElement::Status::slip_plus
+                                      ? JointStatus::slip_plus
+                                      : JointStatus::slip_minus;
   }
 }
 
@@ -344,7 +348,7 @@ void SmoothStepper::describe(State& state) {
   system_->describe(z_, time_, origin_, state);
   if (contacts_.damped()) {
     VectorXd whole = z_;
-    for (const Rubbing& one : rubbings_) {
+    for (const FrictionElement& one : friction_elements_) {
       whole[one.column] += one.force(0.0, one.seen(v_)) - one.elastic;
     }
     State with;

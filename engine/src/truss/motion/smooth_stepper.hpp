@@ -9,15 +9,15 @@
 #include "bodies.hpp"
 #include "contacts.hpp"
 #include "energy_account.hpp"
+#include "friction_element.hpp"
 #include "linear/complex_factor.hpp"
 #include "linear/sparse_factor.hpp"
 #include "radau.hpp"
 #include "rods.hpp"
-#include "rubbing.hpp"
 
 namespace statejump::truss::detail {
 
-/// A truss in motion whose joints rub behind springs: between changes of their branches its
+/// A truss in motion whose friction acts in series with springs: between changes of statuses its
 /// equations M v' = f(q, v, t), q' = v are smooth, and steps are of Radau IIA. A step is tried on
 /// the branches that hold at its start; where one of them ends within it, whoever asks tries again
 /// up to there, so that the order is kept over changes of branches.
@@ -47,7 +47,7 @@ class SmoothStepper {
   /// Changes the branches that were found to end here. How many.
   int turn();
   /// Joint of the contact whose branch ended first in a step; for messages.
-  int turning_joint() const { return rubbings_[first_to_turn_].joint; }
+  int turning_joint() const { return friction_elements_[first_to_turn_].joint; }
 
   double time() const { return time_; }
   const VectorXd& velocity() const { return v_; }
@@ -62,7 +62,7 @@ class SmoothStepper {
   using Complex = std::complex<double>;
 
   SmoothStepper(const System& system, const Bodies& bodies, const Inertia& inertia,
-                const MotionOptions& options, std::vector<Rubbing> rubbings, int stages);
+                const MotionOptions& options, std::vector<FrictionElement> elements, int stages);
 
   // The iteration matrix.
   void make_pattern(const Eigen::SparseMatrix<double>& damping);
@@ -86,7 +86,7 @@ class SmoothStepper {
   }
   /// Slide of a contact since the start of the step at a place [m].
   double slide(std::size_t contact, const Rods::ConstColumn& q) const {
-    return rubbings_[contact].seen(q) - slide_from_[static_cast<Eigen::Index>(contact)];
+    return friction_elements_[contact].seen(q) - slide_from_[static_cast<Eigen::Index>(contact)];
   }
   /// A new start of a step. @param anew forces or rates have jumped
   void start_from_here(bool anew);
@@ -100,7 +100,7 @@ class SmoothStepper {
   const MotionOptions* options_;
   const Radau radau_;
   Contacts contacts_;
-  std::vector<Rubbing> rubbings_;
+  std::vector<FrictionElement> friction_elements_;
   std::vector<double> corners_;  ///< Of all programs [s].
   Assembly bars_;                ///< Stiffness.
   Rods rods_;
@@ -134,7 +134,7 @@ class SmoothStepper {
   Eigen::MatrixXd stage_q_;
   Eigen::MatrixXd stage_v_;
   Eigen::MatrixXd stage_a_;
-  std::vector<double> level_;  ///< See Rubbing::has_ended().
+  std::vector<double> level_;  ///< See FrictionElement::has_ended().
   std::optional<double> first_change_;
   std::size_t first_to_turn_ = 0;
   std::vector<std::size_t> to_turn_;  ///< Contacts whose branch ended first, in the last such step.

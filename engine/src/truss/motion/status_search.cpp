@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "status_search.hpp"
 
+#include <optional>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "neighbourhood_pivots.hpp"
 
@@ -23,67 +25,99 @@ ContactStatuses first_statuses(const StepContacts& contacts, const MotionState& 
   return found;
 }
 
+/// The equations of one step, for find_active_set().
+class StepPivots {
+ public:
+  using Changes = std::vector<std::pair<std::size_t, ContactStatus>>;
+
+  StepPivots(StepForces& forces, StepMatrix& matrix, StatusSolver& solver, TimeStep& step,
+             StepContacts& contacts)
+      : forces_(forces),
+        matrix_(matrix),
+        solver_(solver),
+        step_(step),
+        contacts_(contacts),
+        next_{first_statuses(contacts, forces.state()), false} {}
+
+  const ContactStatuses& key() const { return next_.statuses; }
+
+  Changes violated() const {
+    Changes found;
+    for (std::size_t i = 0; i < solved_.size(); ++i) {
+      const ContactStatus wanted =
+          contacts_.requested(step_, static_cast<Eigen::Index>(i), solved_[i]);
+      if (wanted != solved_[i]) found.emplace_back(i, wanted);
+    }
+    return found;
+  }
+
+  bool change(const Changes& changes, const std::set<ContactStatuses>& tried, Pivot pivot) {
+    Guess changed{solved_, false};
+    for (const auto& [contact, wanted] : changes) changed.statuses[contact] = wanted;
+    next_ = std::move(changed);
+    if (pivot == Pivot::single) return true;
+    const VectorXd impulses = contacts_.impulses;
+    std::optional<ContactStatuses> found = pivot_locally(changes);
+    if (!found) {
+      contacts_.impulses = impulses;
+    } else if (tried.count(*found) == 0) {
+      next_ = {std::move(*found), true};
+    }
+    return true;
+  }
+
+  bool solve() {
+    solved_ = next_.statuses;
+    return solver_.solve(solved_, step_, contacts_, next_.is_near);
+  }
+
+ private:
+  /// Statuses of the next solve, and whether the iterate is near to its solution.
+  struct Guess {
+    ContactStatuses statuses;
+    bool is_near = false;
+  };
+
+  /// Pivots around each violated contact; the iterate is near to the solution on what that finds.
+  std::optional<ContactStatuses> pivot_locally(const Changes& violated);
+
+  StepForces& forces_;
+  StepMatrix& matrix_;
+  StatusSolver& solver_;
+  TimeStep& step_;
+  StepContacts& contacts_;
+  ContactStatuses solved_;
+  Guess next_;
+};
+
+std::optional<ContactStatuses> StepPivots::pivot_locally(const Changes& violated) {
+  matrix_.assemble(solved_, step_, contacts_);
+  ContactStatuses found = solved_;
+  NeighbourhoodPivots pivots(forces_, matrix_, step_, contacts_, found);
+  std::vector<std::size_t> left;
+  for (const auto& one : violated) left.push_back(one.first);
+  if (pivots.reach_of(left) > matrix_.matrix().cols()) return std::nullopt;
+  // A settled contact may be violated again when others are settled.
+  for (; !left.empty(); left = pivots.reached_violations()) {
+    for (const std::size_t contact : left) {
+      if (pivots.settle(contact)) continue;
+      if (!pivots.is_spent()) return std::nullopt;
+      for (const auto& [one, wanted] : violated) {
+        if (found[one] == solved_[one]) found[one] = wanted;
+      }
+      return found;
+    }
+  }
+  return found;
+}
+
 }  // namespace
 
 bool StatusSearch::find(TimeStep& step, StepContacts& contacts) {
-  ContactStatuses statuses = first_statuses(contacts, forces_.state());
-  std::set<ContactStatuses> tried{statuses};
-  std::size_t fewest = statuses.size() + 1;
-  bool one_by_one = false;
-  Guess guess{std::move(statuses), false};
-  for (;;) {
-    if (!solver_.solve(guess.statuses, step, contacts, guess.is_near)) return false;
-    statuses = std::move(guess.statuses);
-    ContactStatuses next = statuses;
-    std::vector<std::size_t> violated;
-    for (std::size_t i = 0; i < statuses.size(); ++i) {
-      next[i] = contacts.requested(step, static_cast<Eigen::Index>(i), statuses[i]);
-      if (next[i] != statuses[i]) violated.push_back(i);
-    }
-    if (violated.empty()) return true;
-    if (violated.size() < fewest) {
-      fewest = violated.size();
-      one_by_one = false;
-      tried = {statuses};
-    }
-    if (!one_by_one) {
-      const VectorXd impulses = contacts.impulses;
-      guess = pivot_locally(statuses, next, violated, step, contacts);
-      if (!guess.is_near) contacts.impulses = impulses;
-      if (guess.is_near && tried.count(guess.statuses) > 0) guess = {next, false};
-      one_by_one = tried.count(guess.statuses) > 0;
-      if (one_by_one) tried = {statuses};
-    }
-    if (one_by_one) {
-      // The contact problem takes no more systems than that.
-      if (tried.size() > statuses.size()) return false;
-      guess = {statuses, false};
-      guess.statuses[violated.front()] = next[violated.front()];
-    }
-    if (!tried.insert(guess.statuses).second) return false;
-  }
-}
-
-StatusSearch::Guess StatusSearch::pivot_locally(const ContactStatuses& statuses,
-                                                const ContactStatuses& next,
-                                                const std::vector<std::size_t>& violated,
-                                                TimeStep& step, StepContacts& contacts) {
-  matrix_.assemble(statuses, step, contacts);
-  ContactStatuses found = statuses;
-  NeighbourhoodPivots pivots(forces_, matrix_, step, contacts, found);
-  if (pivots.reach_of(violated) > matrix_.matrix().cols()) return {next, false};
-  // A settled contact may be violated again when others are settled.
-  for (std::vector<std::size_t> left = violated; !left.empty(); left = pivots.violated()) {
-    for (const std::size_t contact : left) {
-      if (pivots.settle(contact)) continue;
-      if (!pivots.is_spent()) return {next, false};
-      for (const std::size_t one : violated) {
-        if (found[one] == statuses[one]) found[one] = next[one];
-      }
-      return {found, true};
-    }
-  }
-  return {found, true};
+  StepPivots pivots(forces_, matrix_, solver_, step, contacts);
+  // The contact problem takes no more systems than there are contacts.
+  const auto most_single = static_cast<std::size_t>(contacts.count());
+  return pivots.solve() && find_active_set(pivots, Blocks::until_repeated, most_single);
 }
 
 }  // namespace statejump::truss::detail

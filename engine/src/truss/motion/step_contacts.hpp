@@ -101,7 +101,7 @@ class StepContacts {
   void add_partial_slip(const TimeStep& step, Index owner, double opens,
                         complementarity::Problem& problem) const;
   /// The loads on the annuli of a contact that opens at a speed [m/s].
-  SlippingRings::Pressed pressed(const TimeStep& step, Index owner, double opens) const;
+  SlipAnnuli::Pressed pressed(const TimeStep& step, Index owner, double opens) const;
   /// Entries of both tangents of a contact; the second of a plane is 0.
   Vector2d along(Index owner, const VectorXd& speeds) const;
   /// Slip of the step that does not depend on its speed [m].

@@ -48,7 +48,7 @@ void Stepper::begin(const VectorXd& q, const VectorXd& v, const State* equilibri
   contacts_.remember_clearances();
   state_.force = forces_.elastic_force(q, 0.0);
   state_.origin = system_.begin(state_.z, 0.0, statuses, 1.0);
-  contacts_.tell_rings(state_.origin);
+  contacts_.write_annuli(state_.origin);
 }
 
 void Stepper::note_statuses() {
@@ -198,7 +198,7 @@ void Stepper::commit(const TimeStep& step, const StepContacts& contacts) {
   Statuses statuses = state_.origin.statuses;
   contacts_.write(z, statuses);
   StepStart after = system_.commit(z, step.to, statuses, state_.origin);
-  contacts_.tell_rings(after);
+  contacts_.write_annuli(after);
   account_.thermal_work += system_.work_on_elements({state_.z, state_.time, z, step.to});
   note_statuses();
   contacts_.remember_clearances();

@@ -73,15 +73,15 @@ TEST(SmoothSteps, ComplexFactorSolvesWhatItFactors) {
   EXPECT_FALSE(factor.factorize(matrix.valuePtr()));
 }
 
-TEST(SmoothSteps, WayOfASlideIsExactForPolynomials) {
+TEST(SmoothSteps, TrajectoryOfASlideIsExactForPolynomials) {
   // Degree 11 through six places with their rates, on a step of 0.7 s.
   const auto slide = [](double t) { return std::pow(t, 11) - 2.0 * std::pow(t, 3) + t; };
   const auto speed = [](double t) { return 11.0 * std::pow(t, 10) - 6.0 * t * t + 1.0; };
-  detail::RubbingWay way;
-  for (const double t : {0.0, 0.04, 0.2, 0.4, 0.6, 0.7}) way.add(t, slide(t), speed(t));
+  detail::SlipTrajectory slip;
+  for (const double t : {0.0, 0.04, 0.2, 0.4, 0.6, 0.7}) slip.add(t, slide(t), speed(t));
   for (const double t : {0.02, 0.3, 0.65}) {
-    EXPECT_NEAR(way.slide_at(t), slide(t), 1e-13);
-    EXPECT_NEAR(way.speed_at(t), speed(t), 1e-12);
+    EXPECT_NEAR(slip.slide_at(t), slide(t), 1e-13);
+    EXPECT_NEAR(slip.speed_at(t), speed(t), 1e-12);
   }
 }
 

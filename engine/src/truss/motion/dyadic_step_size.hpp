@@ -3,14 +3,14 @@
 
 namespace statejump::truss::detail {
 
-/// Lengths of steps through one span of time, each a half of the next longer one, so that factors
-/// of a length may be kept. A step of a length begins at a multiple of it: both ends of the span
-/// are hit.
-class Ladder {
+/// Step sizes through one span of time, each a half of the next longer one, so that factors of a
+/// length may be kept. A step begins at a multiple of its length, so that steps end at the end of
+/// the span.
+class DyadicStepSize {
  public:
   /// @param level halvings of the span for the first step; @param most_halvings at which the
   /// shortest step is
-  Ladder(int level, int most_halvings);
+  DyadicStepSize(int level, int most_halvings);
 
   /// Share of the span where the next step ends.
   double to() const;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "condensed_pivots.hpp"
+#include "schur_active_set.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
+#include <set>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
+
+#include "active_set.hpp"
 
 namespace statejump::truss::detail {
 
@@ -27,9 +28,10 @@ struct Row {
 /// Rows of a joint's forces on one of its branches.
 using Rows = std::vector<Row>;
 
-class Pivots {
+/// The equations of a step, condensed to the rows that change.
+class Condensed {
  public:
-  Pivots(const System& system, const Linearized& of, const std::vector<int>& joints)
+  Condensed(const System& system, const Linearized& of, const std::vector<int>& joints)
       : system_(system),
         of_(of),
         listing_(Assembly::listing(system.unknowns())),
@@ -47,31 +49,41 @@ class Pivots {
     }
   }
 
-  std::optional<CondensedPivots> solve() {
-    std::size_t fewest = std::numeric_limits<std::size_t>::max();
-    std::unordered_set<std::size_t> sets{fingerprint(statuses_)};
-    for (;;) {
-      const Rounding slack = system_.rounding(end_);
-      std::vector<std::pair<int, JointStatus>> changes;
-      for (const int joint : joints_) {
-        const JointStatus status = statuses_[index(joint)];
-        const JointStatus wanted =
-            system_.decide(joint, end_, of_.time, of_.start, of_.model, of_.opening, status, slack);
-        if (wanted != status && wanted != JointStatus::open) changes.emplace_back(joint, wanted);
-      }
-      if (changes.empty()) return CondensedPivots{statuses_, whole_step()};
-      if (changes.size() < fewest) {
-        fewest = changes.size();
-        sets.clear();
-      } else {
-        changes.resize(1);
-      }
-      for (const auto& [joint, status] : changes) {
-        if (!change(joint, status)) return std::nullopt;
-      }
-      if (!sets.insert(fingerprint(statuses_)).second) return std::nullopt;
-      move();
+  std::optional<SchurActiveSet> find() {
+    if (!find_active_set(*this)) return std::nullopt;
+    return SchurActiveSet{statuses_, whole_step()};
+  }
+
+  // For find_active_set().
+  using Changes = std::vector<std::pair<int, JointStatus>>;
+  std::size_t key() const { return fingerprint(statuses_); }
+  Changes violated() const {
+    const Rounding slack = system_.rounding(end_);
+    Changes found;
+    for (const int joint : joints_) {
+      const JointStatus status = statuses_[index(joint)];
+      const JointStatus wanted =
+          system_.decide(joint, end_, of_.time, of_.start, of_.model, of_.opening, status, slack);
+      if (wanted != status && wanted != JointStatus::open) found.emplace_back(joint, wanted);
     }
+    return found;
+  }
+  bool change(const Changes& changes, const std::set<std::size_t>&, Pivot) {
+    return std::all_of(changes.begin(), changes.end(),
+                       [&](const auto& one) { return change(one.first, one.second); });
+  }
+  /// Goes to the solution on the present statuses, as far as the joints see it.
+  bool solve() {
+    condensed_ = inverse_ * values_;
+    VectorXd moved = VectorXd::Zero(static_cast<Index>(seen_.size()));
+    for (std::size_t j = 0; j < responses_.size(); ++j) {
+      moved += condensed_[static_cast<Index>(j)] * responses_[j];
+    }
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      const int unknown = seen_[k];
+      end_[unknown] = of_.z[unknown] + of_.step[unknown] - moved[static_cast<Index>(k)];
+    }
+    return true;
   }
 
  private:
@@ -161,19 +173,6 @@ class Pivots {
     return true;
   }
 
-  /// Goes to the solution on the present branches, as far as the joints see it.
-  void move() {
-    condensed_ = inverse_ * values_;
-    VectorXd moved = VectorXd::Zero(static_cast<Index>(seen_.size()));
-    for (std::size_t j = 0; j < responses_.size(); ++j) {
-      moved += condensed_[static_cast<Index>(j)] * responses_[j];
-    }
-    for (std::size_t k = 0; k < seen_.size(); ++k) {
-      const int unknown = seen_[k];
-      end_[unknown] = of_.z[unknown] + of_.step[unknown] - moved[static_cast<Index>(k)];
-    }
-  }
-
   VectorXd whole_step() const {
     VectorXd right = VectorXd::Zero(system_.unknowns());
     for (std::size_t j = 0; j < rows_condensed_.size(); ++j) {
@@ -203,9 +202,9 @@ class Pivots {
 
 }  // namespace
 
-std::optional<CondensedPivots> condensed_pivots(const System& system, const Linearized& of,
-                                                const std::vector<int>& joints) {
-  return Pivots(system, of, joints).solve();
+std::optional<SchurActiveSet> schur_active_set(const System& system, const Linearized& of,
+                                               const std::vector<int>& joints) {
+  return Condensed(system, of, joints).find();
 }
 
 }  // namespace statejump::truss::detail

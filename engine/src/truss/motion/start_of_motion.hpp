@@ -7,7 +7,7 @@
 
 namespace statejump::truss::detail {
 
-/// Checks of a model and its options that all integrators need. Throws std::invalid_argument.
+/// Checks a model and its options for every scheme. Throws std::invalid_argument.
 void check_motion(const Model& model, const MotionOptions& options);
 
 /// First state of the quasi-static path; empty if the caller cancelled the search.

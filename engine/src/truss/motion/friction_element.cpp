@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "rubbing.hpp"
+#include "friction_element.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,49 +7,49 @@
 
 namespace statejump::truss::detail {
 
-double Rubbing::spring(double slide) const {
+double FrictionElement::spring(double slide) const {
   const double free = elastic + stiffness * slide;
-  if (branch == Branch::stick) return free;
+  if (status == Status::stick) return free;
   return sign() * std::min(sign() * free, bound);
 }
 
-double Rubbing::force(double slide, double speed) const {
-  return branch == Branch::stick ? elastic + stiffness * slide + damping * speed : sign() * bound;
+double FrictionElement::force(double slide, double speed) const {
+  return status == Status::stick ? elastic + stiffness * slide + damping * speed : sign() * bound;
 }
 
-double Rubbing::margin(double slide, double speed, double h) const {
-  if (branch == Branch::stick) {
+double FrictionElement::margin(double slide, double speed, double h) const {
+  if (status == Status::stick) {
     return bound - std::abs(elastic + stiffness * slide + damping * speed);
   }
   if (sign() * elastic >= bound) return sign() * speed * (damping + stiffness * h);
   return sign() * (spring(slide) + damping * speed) - bound;
 }
 
-double Rubbing::margin_rate(double slide, double speed, double rise) const {
+double FrictionElement::margin_rate(double slide, double speed, double rise) const {
   const double free = elastic + stiffness * slide;
-  if (branch == Branch::stick) {
+  if (status == Status::stick) {
     return -std::copysign(1.0, free + damping * speed) * (stiffness * speed + damping * rise);
   }
   if (sign() * free >= bound) return sign() * rise;
   return sign() * (stiffness * speed + damping * rise);
 }
 
-void Rubbing::turn(double slide, double speed) {
-  if (branch != Branch::stick) {
-    branch = Branch::stick;
+void FrictionElement::turn(double slide, double speed) {
+  if (status != Status::stick) {
+    status = Status::stick;
     return;
   }
   const bool forward = elastic + stiffness * slide + damping * speed > 0.0;
-  branch = forward ? Branch::slip_plus : Branch::slip_minus;
+  status = forward ? Status::slip_plus : Status::slip_minus;
 }
 
-double Rubbing::shortfall(double slide, double speed, double rise) const {
-  if (branch == Branch::stick || sign() * elastic < bound) return margin(slide, speed, 0.0);
+double FrictionElement::shortfall(double slide, double speed, double rise) const {
+  if (status == Status::stick || sign() * elastic < bound) return margin(slide, speed, 0.0);
   const double forward = sign() * speed;
   return damping * forward + 0.5 * stiffness * forward * std::abs(speed / rise);
 }
 
-void RubbingWay::add(double time, double slide, double speed) {
+void SlipTrajectory::add(double time, double slide, double speed) {
   // Newton's divided differences, the new place twice: their last diagonal is all that is needed.
   for (const bool again : {false, true}) {
     const std::size_t k = time_.size();
@@ -65,13 +65,13 @@ void RubbingWay::add(double time, double slide, double speed) {
   }
 }
 
-double RubbingWay::slide_at(double time) const {
+double SlipTrajectory::slide_at(double time) const {
   double sum = 0.0;
   for (std::size_t k = factor_.size(); k-- > 0;) sum = sum * (time - time_[k]) + factor_[k];
   return sum;
 }
 
-double RubbingWay::speed_at(double time) const {
+double SlipTrajectory::speed_at(double time) const {
   double sum = 0.0;
   double rate = 0.0;
   for (std::size_t k = factor_.size(); k-- > 0;) {
@@ -81,17 +81,17 @@ double RubbingWay::speed_at(double time) const {
   return rate;
 }
 
-std::optional<double> end_of_branch(const Rubbing& rubbing, const RubbingWay& way, double h,
-                                    double level) {
+std::optional<double> end_of_status(const FrictionElement& element, const SlipTrajectory& way,
+                                    double h, double level) {
   const auto margin = [&](double time) {
-    return rubbing.margin(way.slide_at(time), way.speed_at(time), h);
+    return element.margin(way.slide_at(time), way.speed_at(time), h);
   };
   // Between so many places a smooth way does not turn back unseen by more than the error of a step.
   constexpr int places = 32;
   double before = 0.0;
   for (int k = 1; k <= places; ++k) {
     double after = h * static_cast<double>(k) / places;
-    if (margin(after) >= level - Rubbing::allowance * rubbing.bound) {
+    if (margin(after) >= level - FrictionElement::allowance * element.bound) {
       before = after;
       continue;
     }
@@ -105,8 +105,9 @@ std::optional<double> end_of_branch(const Rubbing& rubbing, const RubbingWay& wa
   return {};
 }
 
-std::optional<std::vector<Rubbing>> rubbings(const System& system, const Contacts& contacts) {
-  std::vector<Rubbing> found;
+std::optional<std::vector<FrictionElement>> friction_elements(const System& system,
+                                                              const Contacts& contacts) {
+  std::vector<FrictionElement> found;
   if (contacts.have_springs()) return {};
   for (const Contact& contact : contacts.all()) {
     const Joint& joint = system.model().joints[index(contact.joint)];
@@ -116,7 +117,7 @@ std::optional<std::vector<Rubbing>> rubbings(const System& system, const Contact
     const bool springs =
         contact.normal_column < 0 && contact.tangential_stiffness < Contact::infinite;
     if (!straight || !springs || !(contact.given_force > 0.0)) return {};
-    Rubbing one;
+    FrictionElement one;
     one.joint = contact.joint;
     one.column = contact.tangential_column;
     one.bound = contact.friction_coefficient * contact.given_force;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "beginning.hpp"
+#include "start_of_motion.hpp"
 
 #include <utility>
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "rate_sets.hpp"
+#include "status_enumeration.hpp"
 
 #include <Eigen/LU>
 #include <set>
 
+#include "active_set.hpp"
 #include "newton.hpp"
 #include "rate_problem.hpp"
 
@@ -181,67 +182,80 @@ Found try_all(const Branches& of, const Group& group, const Asking& asking) {
   return found;
 }
 
-/// A contact that pulls while it sticks and closes while it is open may slide: leads to such a
-/// choice, if there is one that is not known.
-void slide_instead(const Branches& of, std::size_t candidate, const std::set<Choice>& seen,
-                   Choice& choice) {
-  const std::vector<JointStatus>& branches = of.candidates[candidate].branches;
-  if (!of.candidates[candidate].has(JointStatus::open)) return;
-  for (std::size_t branch = 0; branch < branches.size(); ++branch) {
-    if (!is_slip(branches[branch])) continue;
-    Choice sliding = choice;
-    sliding[candidate] = branch;
-    if (seen.count(sliding) > 0) continue;
-    choice = std::move(sliding);
-    return;
+/// A group of candidates of which not all sets can be tried, for find_active_set().
+class GroupPivots {
+ public:
+  GroupPivots(const Branches& of, const Group& group, const Asking& asking)
+      : of_(of), group_(group), asking_(asking), choice_(of.candidates.size(), 0) {
+    found_.examined = false;
   }
-}
 
-/// One motion of a group of which not all sets can be tried, by block principal pivoting and, where
-/// a block does not help, single pivots of the lowest number (Murty). That there is another one is
-/// not excluded.
-Found pivot(const Branches& of, const Group& group, const Asking& asking) {
-  Found found;
-  found.examined = false;
-  Choice choice(of.candidates.size(), 0);
-  std::size_t fewest = group.size() + 1;
-  std::set<Choice> seen;
-  while (seen.insert(choice).second) {
-    const auto motion = motion_on(of, group, choice);
-    if (!motion) {
-      found.singular = choice;
-      return found;
+  /// One motion. That there is another one is not excluded.
+  Found find() {
+    if (solve() && find_active_set(*this) && asking_.is_short(*motion_)) {
+      found_.motions.push_back(*motion_);
     }
-    std::vector<Wish> off = violations(of, group, asking, *motion);
-    if (off.empty()) {
-      if (asking.is_short(*motion)) found.motions.push_back(*motion);
-      return found;
-    }
-    for (const Wish& wish : off) {
-      if (!of.candidates[wish.first].has(wish.second)) found.wishes.push_back(wish);
-    }
-    if (!found.wishes.empty()) return found;
-    if (off.size() < fewest) {
-      fewest = off.size();
-      seen.clear();
-    } else {
-      off.resize(1);
-    }
-    for (const auto& [i, wanted] : off) {
-      const auto& branches = of.candidates[i].branches;
-      choice[i] = static_cast<std::size_t>(std::find(branches.begin(), branches.end(), wanted) -
-                                           branches.begin());
-    }
-    if (seen.count(choice) > 0) slide_instead(of, off.front().first, seen, choice);
+    return std::move(found_);
   }
-  return found;
-}
+
+  const Choice& key() const { return choice_; }
+  const std::vector<Wish>& violated() const { return violated_; }
+  bool change(const std::vector<Wish>& changes, const std::set<Choice>& tried, Pivot) {
+    for (const auto& [i, wanted] : changes) choice_[i] = branch_of(i, wanted);
+    if (tried.count(choice_) > 0) slide_instead(changes.front().first, tried);
+    return true;
+  }
+  /// False if the equations are singular, or a candidate requests a status that it is not known to
+  /// have.
+  bool solve() {
+    motion_ = motion_on(of_, group_, choice_);
+    if (!motion_) {
+      found_.singular = choice_;
+      return false;
+    }
+    violated_ = violations(of_, group_, asking_, *motion_);
+    for (const Wish& wish : violated_) {
+      if (!of_.candidates[wish.first].has(wish.second)) found_.wishes.push_back(wish);
+    }
+    return found_.wishes.empty();
+  }
+
+ private:
+  std::size_t branch_of(std::size_t candidate, JointStatus status) const {
+    const std::vector<JointStatus>& branches = of_.candidates[candidate].branches;
+    const auto found = std::find(branches.begin(), branches.end(), status);
+    return static_cast<std::size_t>(found - branches.begin());
+  }
+
+  /// A contact that pulls while it sticks and closes while it is open may slide: leads to such a
+  /// choice, if there is one that was not tried.
+  void slide_instead(std::size_t candidate, const std::set<Choice>& tried) {
+    const std::vector<JointStatus>& branches = of_.candidates[candidate].branches;
+    if (!of_.candidates[candidate].has(JointStatus::open)) return;
+    for (std::size_t branch = 0; branch < branches.size(); ++branch) {
+      if (!is_slip(branches[branch])) continue;
+      Choice sliding = choice_;
+      sliding[candidate] = branch;
+      if (tried.count(sliding) > 0) continue;
+      choice_ = std::move(sliding);
+      return;
+    }
+  }
+
+  const Branches& of_;
+  const Group& group_;
+  const Asking& asking_;
+  Choice choice_;
+  std::optional<Motion> motion_;
+  std::vector<Wish> violated_;
+  Found found_;
+};
 
 }  // namespace
 
 Found motions_of(const Branches& of, const Group& group, const Asking& asking) {
   const bool few = group.size() <= most_joints && sets_of(of, group) <= most_sets;
-  return few ? try_all(of, group, asking) : pivot(of, group, asking);
+  return few ? try_all(of, group, asking) : GroupPivots(of, group, asking).find();
 }
 
 }  // namespace statejump::truss::detail

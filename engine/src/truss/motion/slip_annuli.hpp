@@ -7,13 +7,13 @@
 
 namespace statejump::truss::detail {
 
-/// Friction of a contact that slides at its rim first, as a row of rings each under its own bound.
-/// No branch of the contact tells which of them slip: the law is one function of the slide of a
+/// Friction of a contact that slides at its rim first, as a row of annuli each under its own bound.
+/// No status of the contact says which of them slip: the law is one function of the slide of a
 /// step, whose slope falls from k_t to 0, and its tangent is what a step is solved with.
 ///
-/// So is the friction of a contact with a play in series: k_t times what the bend has beyond half
-/// of the play, up to Coulomb's bound. It has one ring, one direction and no dashpot.
-struct SlippingRings {
+/// Friction of a contact with a play in series is such a law as well: k_t times the bend beyond
+/// half of the play, up to Coulomb's bound. It has one annulus, one direction and no dashpot.
+struct SlipAnnuli {
   kernel::PartialSlipMemory memory;  ///< At the end of the last step.
   double energy = 0.0;               ///< That it holds [J].
   bool slip_all = false;             ///< None of them stuck there.
@@ -21,10 +21,10 @@ struct SlippingRings {
   double bend = 0.0;                 ///< Of a contact with a play, at the end of the last step [m].
 
   /// Where in a step the tangent of the law is taken: slide [m] and speed [m/s].
-  Eigen::Vector2d seen_slide = Eigen::Vector2d::Zero();
-  Eigen::Vector2d seen_speed = Eigen::Vector2d::Zero();
+  Eigen::Vector2d tangent_slide = Eigen::Vector2d::Zero();
+  Eigen::Vector2d tangent_speed = Eigen::Vector2d::Zero();
 
-  /// What presses them at the end of a step.
+  /// Loads on them at the end of a step.
   struct Pressed {
     double stiffness = 0.0;  ///< k_t [N/m]
     double stiffens = 0.0;   ///< ∂k_t/∂λ_n [1/m]
@@ -33,7 +33,7 @@ struct SlippingRings {
     double dashpot = 0.0;       ///< c_t [N s/m]
   };
   /// Friction at the end of a step against the slide [N], with the dashpot within the bound of
-  /// Coulomb, and its derivatives. (The kernel's has no dashpot where all rings slip: that differs
+  /// Coulomb, and its derivatives. (The kernel's has no dashpot where all annuli slip: that differs
   /// where they slip one way because less presses them and the slide goes the other way, and would
   /// be a jump of the law.)
   struct Law {
@@ -52,8 +52,8 @@ struct SlippingRings {
   /// and from a slide that is too short, a tangent falls short of where it leads to; one from the
   /// other side may leap over it for ever.
   /// @param begins there is no iterate yet; @param slid of the slide, what no speed tells [m]
-  void see(bool begins, const Pressed& by, const Eigen::Vector2d& speed,
-           const Eigen::Vector2d& slid, double h);
+  void place_tangent(bool begins, const Pressed& by, const Eigen::Vector2d& speed,
+                     const Eigen::Vector2d& slid, double h);
   /// Takes a step over. @return friction without the dashpot [N]
   Eigen::Vector2d take(const Pressed& by, const Eigen::Vector2d& slide);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "slipping_rings.hpp"
+#include "slip_annuli.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,24 +15,24 @@ Vector2d vector(const kernel::Tangent& of) {
   return {of.a, of.b};
 }
 
-double bound_of(const SlippingRings::Pressed& by) {
+double bound_of(const SlipAnnuli::Pressed& by) {
   return by.friction_coefficient * std::max(by.normal_force, 0.0);
 }
 
 }  // namespace
 
-SlippingRings::Law SlippingRings::law(const Pressed& by, const Vector2d& slide,
-                                      const Vector2d& speed, double h) const {
+SlipAnnuli::Law SlipAnnuli::law(const Pressed& by, const Vector2d& slide, const Vector2d& speed,
+                                double h) const {
   if (play > 0.0) return law_of_play(by, slide[0]);
   Law law;
   const double bound = bound_of(by);
   if (!(bound > 0.0)) return law;
-  const kernel::PartialSlipPlane rings =
+  const kernel::PartialSlipPlane annuli =
       kernel::partial_slip_plane(by.stiffness, bound, {slide[0], slide[1]}, memory);
-  law.friction = vector(rings.force);
-  law.by_slide << vector(rings.by_slide_a), vector(rings.by_slide_b);
+  law.friction = vector(annuli.force);
+  law.by_slide << vector(annuli.by_slide_a), vector(annuli.by_slide_b);
   law.by_normal =
-      by.friction_coefficient * vector(rings.by_limit) + by.stiffens * vector(rings.by_stiffness);
+      by.friction_coefficient * vector(annuli.by_limit) + by.stiffens * vector(annuli.by_stiffness);
   if (by.dashpot == 0.0) return law;
   law.friction += by.dashpot * speed;
   law.by_slide += by.dashpot / h * Matrix2d::Identity();
@@ -45,31 +45,31 @@ SlippingRings::Law SlippingRings::law(const Pressed& by, const Vector2d& slide,
   return law;
 }
 
-Vector2d SlippingRings::kink(const Pressed& by) const {
+Vector2d SlipAnnuli::kink(const Pressed& by) const {
   const double bound = bound_of(by);
   if (!(bound > 0.0) || play > 0.0) return Vector2d::Zero();
-  const kernel::PartialSlipPlane rings =
+  const kernel::PartialSlipPlane annuli =
       kernel::partial_slip_plane(by.stiffness, bound, {0.0, 0.0}, memory);
-  const double size = rings.centre.norm();
-  if (!(size > rings.bound)) return Vector2d::Zero();
-  return (rings.bound / size - 1.0) * vector(rings.centre);
+  const double size = annuli.centre.norm();
+  if (!(size > annuli.bound)) return Vector2d::Zero();
+  return (annuli.bound / size - 1.0) * vector(annuli.centre);
 }
 
-void SlippingRings::see(bool begins, const Pressed& by, const Vector2d& speed, const Vector2d& slid,
-                        double h) {
+void SlipAnnuli::place_tangent(bool begins, const Pressed& by, const Vector2d& speed,
+                               const Vector2d& slid, double h) {
   const Vector2d slide = h * speed + slid;
   const Vector2d from = kink(by);
-  const bool beyond = begins || (slide - from).dot(seen_slide - from) < 0.0;
-  seen_slide = beyond ? from : slide;
-  seen_speed = beyond ? Vector2d((from - slid) / h) : speed;
+  const bool beyond = begins || (slide - from).dot(tangent_slide - from) < 0.0;
+  tangent_slide = beyond ? from : slide;
+  tangent_speed = beyond ? Vector2d((from - slid) / h) : speed;
 }
 
-double SlippingRings::played() const {
+double SlipAnnuli::played() const {
   return std::clamp(bend, -0.5 * play, 0.5 * play);
 }
 
-SlippingRings::Law SlippingRings::law_of_play(const Pressed& by, double slide) const {
-  SlippingRings there = *this;
+SlipAnnuli::Law SlipAnnuli::law_of_play(const Pressed& by, double slide) const {
+  SlipAnnuli there = *this;
   there.bend += slide;
   const double pulls = by.stiffness * (there.bend - there.played());
   const double bound = bound_of(by);
@@ -79,7 +79,7 @@ SlippingRings::Law SlippingRings::law_of_play(const Pressed& by, double slide) c
   return law;
 }
 
-Vector2d SlippingRings::take_play(const Pressed& by, double slide) {
+Vector2d SlipAnnuli::take_play(const Pressed& by, double slide) {
   const double friction = law_of_play(by, slide).friction[0];
   const double reach = 0.5 * play + bound_of(by) / by.stiffness;
   slip_all = std::abs(bend + slide) >= reach;
@@ -88,7 +88,7 @@ Vector2d SlippingRings::take_play(const Pressed& by, double slide) {
   return {friction, 0.0};
 }
 
-Vector2d SlippingRings::take(const Pressed& by, const Vector2d& slide) {
+Vector2d SlipAnnuli::take(const Pressed& by, const Vector2d& slide) {
   if (play > 0.0) return take_play(by, slide[0]);
   const double bound = bound_of(by);
   const kernel::PartialSlipResponse now = kernel::partial_slip_step(

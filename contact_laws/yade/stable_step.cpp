@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stable_step.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "blocked_motion.hpp"
+#include "bore.hpp"
+#include "joint.hpp"
+#include "prismatic.hpp"
+#include "statejump/kernel/stable_step.hpp"
+#include "thermal.hpp"
+#include "torsion.hpp"
+
+namespace statejump::dem {
+namespace {
+
+// Acceleration of a body by a unit force with the given arm [1/kg]: along the force, and through
+// the rotation if the body may rotate. Zero for an arm that does not rotate it.
+Real mobility(const yade::State& state, Real arm_squared) {
+  Real smallest_inertia = 0;
+  for (int i = 0; i < 3; ++i) {
+    const bool free = !(state.blockedDOFs & (8u << i));
+    if (free && state.inertia[i] > 0 &&
+        (smallest_inertia == 0 || state.inertia[i] < smallest_inertia)) {
+      smallest_inertia = state.inertia[i];
+    }
+  }
+  return inverse_mass(state) + (smallest_inertia > 0 ? arm_squared / smallest_inertia : 0);
+}
+
+// Sums over the springs and dashpots of each body.
+//
+// Let s be the stretch of a spring of stiffness k between two bodies. Then s^2 <= 2 (s1^2 + s2^2)
+// and s_i^2 <= mobility_i * 2 * (kinetic energy per unit rate squared). So the largest eigenvalue
+// is at most the largest sum of 2 k mobility over the springs of one body.
+class BodySums {
+ public:
+  explicit BodySums(const yade::Scene& scene)
+      : scene_(scene), stiffness_(number_of_bodies(scene), 0), damping_(stiffness_) {}
+
+  void add(const yade::Interaction& contact) {
+    if (const auto* pair = dynamic_cast<const BoreGeom*>(contact.geom.get())) {
+      const auto* all = dynamic_cast<const BorePhys*>(contact.phys.get());
+      const std::size_t count = all ? std::min(pair->contacts.size(), all->contacts.size()) : 0;
+      for (std::size_t k = 0; k < count; ++k) {
+        if (pair->contacts[k]->penetrationDepth > 0) {
+          add_at(contact, *pair->contacts[k], *all->contacts[k]);
+        }
+      }
+      return;
+    }
+    const auto* physics = dynamic_cast<const JointPhys*>(contact.phys.get());
+    const auto* geometry = dynamic_cast<const JointGeom*>(contact.geom.get());
+    if (physics && geometry) add_at(contact, *geometry, *physics);
+  }
+
+  void add(const ThermalLink& link) {
+    const Real root = inverse_mass(state_of(link.id1, "ThermalLink.id1"));
+    const Real tip = inverse_mass(state_of(link.id2, "ThermalLink.id2"));
+    const Real length = link.stressFreeLength;
+    const Real k = link.youngModulus * link.crossSectionArea / length;
+    const Real c =
+        stepper::damping_coefficient(link, root + tip) + link.pinDamping / (length * length);
+    add(link.id1, root, k, c);
+    add(link.id2, tip, k, c);
+  }
+
+  void add(const TorsionSpring& spring) {
+    if (!spring.link1 || !spring.link2) return;
+    // The angle is the sum of up to four displacements over their lengths. So its square is at
+    // most the number of moving ends times the sum of the squares; the common factor 2 is applied
+    // later.
+    const std::array<LinkEnds, 2> links = {ends_of(scene_, *spring.link1),
+                                           ends_of(scene_, *spring.link2)};
+    int moving = 0;
+    for (const LinkEnds& ends : links) {
+      moving += (inverse_mass(ends.root) > 0) + (inverse_mass(ends.tip) > 0);
+    }
+    for (std::size_t i = 0; i < links.size(); ++i) {
+      const ThermalLink& link = i == 0 ? *spring.link1 : *spring.link2;
+      const Real k = 0.5 * moving * stepper::largest_stiffness(spring) /
+                     (links[i].span.length * links[i].span.length);
+      add(link.id1, inverse_mass(links[i].root), k, 0);
+      add(link.id2, inverse_mass(links[i].tip), k, 0);
+    }
+  }
+
+  void add(const PrismaticJoint& joint) {
+    const Real one = inverse_mass(state_of(joint.id1, "PrismaticJoint.id1"));
+    const Real two = inverse_mass(state_of(joint.id2, "PrismaticJoint.id2"));
+    const Real k = stepper::largest_stiffness(joint);
+    const Real c = one + two > 0 ? stepper::largest_damping(joint, 1 / (one + two)) : 0;
+    add(joint.id1, one, k, c);
+    add(joint.id2, two, k, c);
+  }
+
+  double stable_time_step() const {
+    double smallest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < stiffness_.size(); ++i) {
+      smallest =
+          std::min(smallest, kernel::critical_time_step(1, 2 * stiffness_[i], 2 * damping_[i]));
+    }
+    return smallest;
+  }
+
+ private:
+  const yade::State& state_of(int id, const char* who) const {
+    return *body_of(scene_, id, who).state;
+  }
+
+  void add(int id, Real mobility_of_body, Real k, Real c) {
+    stiffness_[static_cast<std::size_t>(id)] += mobility_of_body * k;
+    damping_[static_cast<std::size_t>(id)] += mobility_of_body * c;
+  }
+
+  void add_at(const yade::Interaction& contact, const JointGeom& geometry,
+              const JointPhys& physics) {
+    const Real normal_damping =
+        kernel::viscous_damping(physics.normalDampingRatio, physics.effectiveMass, physics.kn) +
+        physics.dissipationSlope;
+    const Real tangential_damping =
+        kernel::viscous_damping(physics.tangentialDampingRatio, physics.effectiveMass, physics.ks) +
+        physics.frictionSlope;
+    for (const int id : {contact.id1, contact.id2}) {
+      const yade::State& state = state_of(id, "stable_time_step");
+      const Vector3r arm = geometry.contactPoint - state.se3.position;
+      add(id, mobility(state, arm.cross(geometry.normal).squaredNorm()), physics.kn,
+          normal_damping);
+      add(id, mobility(state, arm.squaredNorm()), physics.ks, tangential_damping);
+    }
+  }
+
+  const yade::Scene& scene_;
+  std::vector<Real> stiffness_;  // per mass [1/s2]
+  std::vector<Real> damping_;    // per mass [1/s]
+};
+
+template <class List>
+void add_each(const List& list, BodySums& sums) {
+  for (const auto& one : list) {
+    if (one) sums.add(*one);
+  }
+}
+
+}  // namespace
+
+double stable_time_step(const yade::Scene& scene) {
+  BodySums sums(scene);
+  for (std::size_t i = 0; i < number_of_interactions(scene); ++i) {
+    const yade::Interaction& contact = interaction_at(scene, i);
+    if (contact.isReal()) sums.add(contact);
+  }
+  for (const auto& engine : scene.engines) {
+    if (const auto* links = dynamic_cast<const ThermalLinks*>(engine.get())) {
+      add_each(links->links, sums);
+    } else if (const auto* springs = dynamic_cast<const TorsionSprings*>(engine.get())) {
+      add_each(springs->springs, sums);
+    } else if (const auto* joints = dynamic_cast<const PrismaticJoints*>(engine.get())) {
+      add_each(joints->joints, sums);
+    }
+  }
+  return sums.stable_time_step();
+}
+
+}  // namespace statejump::dem
