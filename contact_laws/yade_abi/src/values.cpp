@@ -37,14 +37,15 @@ SharedPointer shared(const py::object& object, const std::string& class_name) {
 
 // Gives a place in an object of ours the bits of a value and takes them away again. The library may
 // read the member meanwhile, at the place where it believes it to be.
-class Lent {
+class ScopedOverride {
  public:
-  Lent(char* place, const void* value, std::size_t bytes) : place_(place), kept_(place, bytes) {
+  ScopedOverride(char* place, const void* value, std::size_t bytes)
+      : place_(place), kept_(place, bytes) {
     std::memcpy(place_, value, bytes);
   }
-  ~Lent() { std::memcpy(place_, kept_.data(), kept_.size()); }
-  Lent(const Lent&) = delete;
-  Lent& operator=(const Lent&) = delete;
+  ~ScopedOverride() { std::memcpy(place_, kept_.data(), kept_.size()); }
+  ScopedOverride(const ScopedOverride&) = delete;
+  ScopedOverride& operator=(const ScopedOverride&) = delete;
   // An empty vector or pointer is a row of zeros.
   bool was_empty() const { return kept_.find_first_not_of('\0') == std::string::npos; }
 
@@ -53,7 +54,8 @@ class Lent {
   std::string kept_;
 };
 
-// ---- sentinels: the place is lent a value, Python shows it -------------------------------------
+// ---- sentinels: the place is overridden a value, Python shows it
+// -------------------------------------
 
 // Numbers that occur nowhere else.
 class Sentinels {
@@ -67,7 +69,7 @@ class Sentinels {
 
 template <class Type>
 bool shown(char* place, const py::object& object, const std::string& attribute, Type value) {
-  const Lent lent(place, &value, sizeof value);
+  const ScopedOverride overridden(place, &value, sizeof value);
   const py::object seen = object.attr(attribute.c_str());
   const py::extract<Type> number(seen);
   return number.check() && number() == value;
@@ -76,7 +78,7 @@ bool shown(char* place, const py::object& object, const std::string& attribute, 
 template <class Type, std::size_t length>
 bool vector_shown(char* place, const py::object& object, const std::string& attribute,
                   const std::array<Type, length>& value) {
-  const Lent lent(place, value.data(), sizeof value);
+  const ScopedOverride overridden(place, value.data(), sizeof value);
   const py::object seen = object.attr(attribute.c_str());
   for (std::size_t i = 0; i < length; ++i) {
     const py::object part = seen[i];
@@ -265,8 +267,9 @@ class Search {
     const Place engine = make("NewtonIntegrator", "Engine");
     if (!engine.start) return;
     const std::vector<SharedPointer> list = {shared(engine.object, "Engine")};
-    const Lent lent(scene_.start + member("Scene", "engines")->offset, &list, sizeof list);
-    expect(by_name && lent.was_empty() &&
+    const ScopedOverride overridden(scene_.start + member("Scene", "engines")->offset, &list,
+                                    sizeof list);
+    expect(by_name && overridden.was_empty() &&
                by_name(scene_.start, "NewtonIntegrator").get() == list.front().get(),
            "Scene", "engines");
   }
@@ -287,8 +290,9 @@ class Search {
     Offsets found;
     {
       const void* scene = scene_.start;
-      const Lent lent_scene(engine.start + member("Engine", "scene")->offset, &scene, sizeof scene);
-      const Lent lent_step(scene_.start + iter, &step, sizeof step);
+      const ScopedOverride overridden_scene(engine.start + member("Engine", "scene")->offset,
+                                            &scene, sizeof scene);
+      const ScopedOverride overridden_step(scene_.start + iter, &step, sizeof step);
       action(engine.start);
       for (const std::size_t offset : where_word(scene_, step)) {
         if (offset != iter) found.push_back(offset);
@@ -314,7 +318,8 @@ class Search {
       return;
     }
     const void* scene = scene_.start;
-    const Lent lent(engine + member("Engine", "scene")->offset, &scene, sizeof scene);
+    const ScopedOverride overridden(engine + member("Engine", "scene")->offset, &scene,
+                                    sizeof scene);
     action(engine);
     expect_at("Functor", "scene", where_word(functor, address_of(scene)));
   }
@@ -334,8 +339,10 @@ class Search {
       bodies_.push_back(shared(body.object, "Body"));
     }
     const auto size = function<std::size_t(const void*)>("_ZNK4yade13BodyContainer4sizeEv");
-    const Lent lent(part_of_scene("bodies") + list->offset, &bodies_, sizeof bodies_);
-    expect(size && lent.was_empty() && size(part_of_scene("bodies")) == 2, "BodyContainer", "body");
+    const ScopedOverride overridden(part_of_scene("bodies") + list->offset, &bodies_,
+                                    sizeof bodies_);
+    expect(size && overridden.was_empty() && size(part_of_scene("bodies")) == 2, "BodyContainer",
+           "body");
   }
 
   // An interaction between them, which the library puts where it believes the list to be.
@@ -350,7 +357,8 @@ class Search {
     }
     char* container = part_of_scene("interactions");
     const std::size_t size = declared_.find_class("InteractionContainer")->size;
-    const Lent lent(part_of_scene("bodies") + list->offset, &bodies_, sizeof bodies_);
+    const ScopedOverride overridden(part_of_scene("bodies") + list->offset, &bodies_,
+                                    sizeof bodies_);
     const std::string before(container, size);
     insert(container, 0, 1);
     Offsets count;

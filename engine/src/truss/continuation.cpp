@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "path_follower.hpp"
 #include "status_enumeration.hpp"
-#include "walker.hpp"
 
 namespace statejump::truss::detail {
 
@@ -25,11 +25,11 @@ constexpr double tangent_steps[] = {1.0, 2.0, 4.0};
 
 /// Whether a joint slips. Where none does, an index below zero is buckling, which corners of the
 /// programs look for.
-bool Walker::any_slips(const Statuses& statuses) const {
+bool PathFollower::any_slips(const Statuses& statuses) const {
   return system.slips_smoothly() || std::any_of(statuses.begin(), statuses.end(), is_slip);
 }
 
-void Walker::fail_continuation(FailureKind kind, double when, std::vector<int> joints) const {
+void PathFollower::fail_continuation(FailureKind kind, double when, std::vector<int> joints) const {
   if (joints.empty()) {
     for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
       if (slide_rate[i] != 0.0) joints.push_back(i);
@@ -48,8 +48,8 @@ void Walker::fail_continuation(FailureKind kind, double when, std::vector<int> j
 /// @param first how the solve over it ended, @param to, statuses where
 /// @returns how it ended at last, with `to` and `statuses`
 /// @throws Failure if the path ends or parts there
-SolveReport Walker::continue_from_event(double target, VectorXd& to, Statuses& statuses,
-                                        SolveReport first) {
+SolveReport PathFollower::continue_from_event(double target, VectorXd& to, Statuses& statuses,
+                                              SolveReport first) {
   if (first.end == SolveEnd::stopped) return first;
   const bool converged = first.end == SolveEnd::converged;
   // Dashpots in all contacts decide where a step leads.
@@ -117,7 +117,7 @@ SolveReport Walker::continue_from_event(double target, VectorXd& to, Statuses& s
 }
 
 /// Rates of the programs on this side of a corner that may be at `target` [K/s].
-std::vector<double> Walker::program_rates_before(double target) const {
+std::vector<double> PathFollower::program_rates_before(double target) const {
   std::vector<double> rates_before;
   for (const thermal::Program& program : model.programs) {
     const double near = std::min(Model::same_time * program.duration(), 0.5 * (target - time));
@@ -131,8 +131,8 @@ std::vector<double> Walker::program_rates_before(double target) const {
 /// farther by: then their signs say nothing.
 /// @param to, statuses where a step has converged, and where it does in the end
 /// @param first how it ended
-SolveReport Walker::slide_on(double target, bool is_short, VectorXd& to, Statuses& statuses,
-                             SolveReport first) {
+SolveReport PathFollower::slide_on(double target, bool is_short, VectorXd& to, Statuses& statuses,
+                                   SolveReport first) {
   std::vector<int> stopped;
   for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
     const JointStatus before = origin.statuses[index(i)];
@@ -173,7 +173,7 @@ SolveReport Walker::slide_on(double target, bool is_short, VectorXd& to, Statuse
 
 /// Whether a step that has converged passes an instability by slip: what slips at its end is
 /// unstable there, or would be at its start.
-bool Walker::passes_instability(const Statuses& statuses) {
+bool PathFollower::passes_instability(const Statuses& statuses) {
   if (!any_slips(statuses)) return false;
   if (newton.stability_index() < 0) return true;
   if (statuses == origin.statuses) return false;
@@ -183,7 +183,7 @@ bool Walker::passes_instability(const Statuses& statuses) {
 /// Whether the rates at the ends of a step without events explain where it leads. A path that jumps
 /// from a limit point to another equilibrium goes farther; a step that is bent as much as that is
 /// too long to tell.
-bool Walker::follows_its_rates(const Ends& ends) const {
+bool PathFollower::follows_its_rates(const Ends& ends) const {
   if (ends.start.statuses != ends.statuses) return true;
   const Eigen::Index n = system.displacements();
   const double half = 0.5 * (ends.to_time - ends.from_time);

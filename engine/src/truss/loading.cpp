@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "path_follower.hpp"
 #include "status_enumeration.hpp"
-#include "walker.hpp"
 
 namespace statejump::truss::detail {
 
@@ -33,7 +33,7 @@ Model loaded(Model model, double fraction) {
 }  // namespace
 
 /// Whether loads and misfits work on one of these displacements of the drawn shape.
-bool Walker::are_loaded(const std::vector<VectorXd>& shapes) const {
+bool PathFollower::are_loaded(const std::vector<VectorXd>& shapes) const {
   Assembly at = Assembly::without_jacobian(system.unknowns());
   const VectorXd drawn = VectorXd::Zero(system.unknowns());
   const Statuses stuck = system.all_stick();
@@ -48,7 +48,7 @@ bool Walker::are_loaded(const std::vector<VectorXd>& shapes) const {
 }
 
 /// Whether displacements are small beside the truss.
-bool Walker::is_near(const VectorXd& moved) const {
+bool PathFollower::is_near(const VectorXd& moved) const {
   const double farthest = length_of(moved, system.displacements());
   return system.size() == 0.0 || farthest <= near_share * system.size();
 }
@@ -57,7 +57,7 @@ bool Walker::is_near(const VectorXd& moved) const {
 /// equilibrium. A joint whose friction is exhausted slides to the next equilibrium if that is near:
 /// to a stop, to where another element carries.
 /// @returns where no step leads on; nothing if the whole load is reached or the path was stopped
-std::optional<Stall> Walker::follow_loads() {
+std::optional<Stall> PathFollower::follow_loads() {
   z = VectorXd::Zero(system.unknowns());
   origin.statuses = system.all_stick();
   StepStart begin = system.begin(z, 0.0, origin.statuses, 1.0);
@@ -101,7 +101,7 @@ std::optional<Stall> Walker::follow_loads() {
 }
 
 /// Names what ends the way of the loads: buckling, or the joints that slip there or beyond.
-void Walker::refuse_overload(const Stall& at) {
+void PathFollower::refuse_overload(const Stall& at) {
   std::set<int> exhausted(at.report.joints.begin(), at.report.joints.end());
   Statuses beyond = at.statuses;
   system.settle(at.z, 0.0, system.begin(z, 0.0, origin.statuses, 1.0), beyond);

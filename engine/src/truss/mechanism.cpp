@@ -72,13 +72,13 @@ Modes lowest_modes(const Eigen::SparseMatrix<double>& matrix, const Factors& fac
   return {found.eigenvalues(), block * found.eigenvectors()};
 }
 
-/// The stiffness of the truss with held joints, see joined_stiffness(), plus a fraction of that of
+/// The stiffness of the truss with held joints, see penalty_stiffness(), plus a fraction of that of
 /// its stiffest element on the diagonal.
 Eigen::SparseMatrix<double> shifted_stiffness(const System& system, const VectorXd& z, double time,
                                               const Statuses& statuses, JointModel joints,
                                               double held, double slack, double share) {
   Eigen::SparseMatrix<double> shifted =
-      system.joined_stiffness(z, time, statuses, joints, held, slack);
+      system.penalty_stiffness(z, time, statuses, joints, held, slack);
   // In place: diagonal entries exist, except for nodes without any stiffness.
   for (Eigen::Index i = 0; i < shifted.rows(); ++i) {
     shifted.coeffRef(i, i) += share * system.stiffness_scale();

@@ -163,7 +163,7 @@ Newton::Violation Newton::first_violation(const std::vector<int>& joints, const 
 
 SolveReport Newton::solve(double time, const StepStart& start, JointModel joints, double opening,
                           int most_iterations, VectorXd& z, Statuses& statuses,
-                          const std::optional<Ahead>& ahead, Effort effort) {
+                          const std::optional<EventSearch>& search, Effort effort) {
   SolveReport report;
   current_ = false;
   regularisation_ = Regularisation::none;
@@ -173,8 +173,8 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   bool kept = std::exchange(quiet_, false) && may_keep;
   bool stale = true;  // no factors have been made yet
   bool pivoted = false;
-  bool looking = ahead.has_value();
-  const bool gives_up = ahead || effort == Effort::brief;
+  bool looking = search.has_value();
+  const bool gives_up = search || effort == Effort::brief;
   const int displacements = system_->displacements();
   const auto length = [displacements](const VectorXd& of) {
     return displacements == 0 ? 0.0 : of.head(displacements).lpNorm<Eigen::Infinity>();
@@ -218,12 +218,12 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   const VectorXd first_z = z;
   const Statuses first_statuses = statuses;
   // Where a change is to be located it is sought along the tangent at the start.
-  const bool is_foreseen = ahead && !ahead->stop;
+  const bool is_foreseen = search && !search->stop;
   // The tension of elements that are not yet as long as their temperature makes them would turn
   // slack ones.
-  const bool hangs = ahead && any_open(statuses);
-  const VectorXd& begun_at = is_foreseen || hangs ? ahead->foreseen : first_z;
-  if (is_foreseen || hangs || (ahead && kept && keeps(statuses, joints))) z = ahead->foreseen;
+  const bool hangs = search && any_open(statuses);
+  const VectorXd& begun_at = is_foreseen || hangs ? search->foreseen : first_z;
+  if (is_foreseen || hangs || (search && kept && keeps(statuses, joints))) z = search->foreseen;
   bool condensed = false;
   bool patient = false;  // whether joints change only where the equations of their branches hold
   /// Takes the step from the start that pivots on its factors lead to; false: there is none. What
@@ -276,7 +276,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     const bool wanders = at_.pieces == 0 && pivoting == Pivoting::block && stepped && idle > 0 &&
                          paid >= static_cast<double>(wandering.size());
     if (wanders && !condensed && condense()) return begin_anew();
-    if (wanders && ahead) {
+    if (wanders && search) {
       // Steps that have not converged may ask for branches that the solution does not.
       if (std::exchange(patient, true)) return false;
       statuses = found.corrected;
@@ -333,14 +333,14 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     }
     if (leaving.empty()) return false;
     const Violation first =
-        first_violation(leaving, first_z, z, ahead->from_time, time, start, joints, statuses);
-    report.leaves_at_start = !(first.share > ahead->now);
+        first_violation(leaving, first_z, z, search->from_time, time, start, joints, statuses);
+    report.leaves_at_start = !(first.share > search->now);
     if (report.leaves_at_start) return false;
     looking = false;
     report.first_change = first.share;
     report.leaving.emplace(first.joint, found.corrected[index(first.joint)]);
     report.joints = found.joints;
-    if (!ahead->stop) return false;
+    if (!search->stop) return false;
     quiet_ = !pivoted;
     report.end = SolveEnd::event_ahead;
     return true;

@@ -35,7 +35,7 @@ class Tracer;
 enum class Regularisation : unsigned char { none, reactions, displacements };
 
 /// From where to where a step goes, for the question when within it the first joint changes.
-struct Ahead {
+struct EventSearch {
   double from_time;  ///< [s]
   double now;        ///< Share of the step within which a change counts as one at its start.
   bool stop;         ///< End the solve there instead of passing it.
@@ -107,13 +107,13 @@ class Newton {
 
   /// Solves for z and statuses at `time`, from the guess in them. On failure they are unspecified.
   /// @param most_iterations on one set of branches
-  /// @param ahead whether and from where changes are looked for; else they are not
+  /// @param search whether and from where changes are looked for; else they are not
   /// @param effort `held`: the joints stay on these branches, whatever their inequalities say;
   /// `brief`: one that does not converge soon is given up, because the caller has another way, as
-  /// with `ahead`
+  /// with `search`
   SolveReport solve(double time, const StepStart& start, JointModel joints, double opening,
                     int most_iterations, VectorXd& z, Statuses& statuses,
-                    const std::optional<Ahead>& ahead = {}, Effort effort = Effort::whole);
+                    const std::optional<EventSearch>& search = {}, Effort effort = Effort::whole);
 
   /// Whether the last solve needed the regularisation of regularise(), and why.
   Regularisation regularisation() const { return regularisation_; }

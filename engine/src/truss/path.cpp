@@ -8,18 +8,18 @@
 #include <string>
 #include <utility>
 
+#include "path_follower.hpp"
 #include "start_choice.hpp"
 #include "trace.hpp"
-#include "walker.hpp"
 
 namespace statejump::truss {
 
 using detail::failure_at;
 using detail::index;
 using detail::Newton;
+using detail::PathFollower;
 using detail::StepEnd;
 using detail::System;
-using detail::Walker;
 using Eigen::VectorXd;
 
 const char* to_string(JointStatus status) {
@@ -141,32 +141,32 @@ Path solve(const Model& model, const Options& options) {
   double now = 0.0;
   const auto going_on = [&] { return !options.progress || options.progress(now / duration); };
   detail::Tracer tracer(model, options.trace);
-  Walker walker{.model = model,
-                .system = system,
-                .options = options,
-                .newton = Newton(system, options.locate_events, going_on),
-                .rates = detail::RateProblem(system)};
-  if (tracer) walker.newton.trace(&tracer);
+  PathFollower follower{.model = model,
+                        .system = system,
+                        .options = options,
+                        .newton = Newton(system, options.locate_events, going_on),
+                        .rates = detail::RateProblem(system)};
+  if (tracer) follower.newton.trace(&tracer);
   const auto joints = static_cast<Eigen::Index>(model.joints.size());
-  walker.slide_rate = VectorXd::Zero(joints);
-  walker.path.unknowns = system.unknowns();
-  walker.state.joint_dissipation = VectorXd::Zero(joints);
-  detail::start_as_chosen(walker);
-  walker.is_slack = walker.note_slack(0.0, walker.z, walker.origin.statuses);
-  system.describe(walker.z, 0.0, walker.origin, walker.state);
-  if (!options.cycle_ends_only) walker.path.states.push_back(walker.state);
-  walker.path.cycle_ends.push_back(walker.state);
+  follower.slide_rate = VectorXd::Zero(joints);
+  follower.path.unknowns = system.unknowns();
+  follower.state.joint_dissipation = VectorXd::Zero(joints);
+  detail::start_as_chosen(follower);
+  follower.is_slack = follower.note_slack(0.0, follower.z, follower.origin.statuses);
+  system.describe(follower.z, 0.0, follower.origin, follower.state);
+  if (!options.cycle_ends_only) follower.path.states.push_back(follower.state);
+  follower.path.cycle_ends.push_back(follower.state);
 
   std::vector<int> changes(model.joints.size());
   const std::vector<double> times = corners(model);
   int cycle = 1;
-  for (std::size_t b = 0; b + 1 < times.size() && walker.path.complete; ++b) {
+  for (std::size_t b = 0; b + 1 < times.size() && follower.path.complete; ++b) {
     const double length = times[b + 1] - times[b];
     const double tolerance = options.event_tolerance * length;
-    walker.shortest_balanced =
-        length / (Walker::most_parts * static_cast<double>(options.increments_per_branch));
-    walker.slack_level = 0;
-    walker.snap_travel = 0.0;
+    follower.shortest_balanced =
+        length / (PathFollower::most_parts * static_cast<double>(options.increments_per_branch));
+    follower.slack_level = 0;
+    follower.snap_travel = 0.0;
     double convergent = length;  // longest step that Newton is trusted with
     for (int k = 0; k <= options.increments_per_branch; ++k) {
       // k = 0: the short first step, within which slips turn into sticks after the corner.
@@ -174,12 +174,12 @@ Path solve(const Model& model, const Options& options) {
                             : k == options.increments_per_branch
                                 ? times[b + 1]
                                 : times[b] + length * k / options.increments_per_branch;
-      std::size_t counted = walker.path.events.size();
+      std::size_t counted = follower.path.events.size();
       std::fill(changes.begin(), changes.end(), 0);
       // In equal parts of what is left, none longer than energies balance over.
       const auto balanced = [&] {
-        const double left = target - walker.time;
-        return left / std::ceil(std::max(1.0, left / walker.balanced_step));
+        const double left = target - follower.time;
+        return left / std::ceil(std::max(1.0, left / follower.balanced_step));
       };
       double stride = std::min(balanced(), convergent);
       bool locating = false;
@@ -192,20 +192,20 @@ Path solve(const Model& model, const Options& options) {
       bool foresaw = false;
       int unconfirmed = 0;
       int swinging = 0;  // steps that did not converge while elements were slack
-      walker.locates = true;
-      walker.flickers = false;
+      follower.locates = true;
+      follower.flickers = false;
       int located = 0;  // changes while elements are slack
       int held = 0;     // steps before a longer one is tried
-      walker.softest_level = 0.0;
+      follower.softest_level = 0.0;
       int unstable = 0;  // steps since the last change whose slip would be unstable
-      while (walker.time < target && walker.path.complete) {
+      while (follower.time < target && follower.path.complete) {
         tracer.begin_step(static_cast<int>(b) + 1, k);
-        const double goal =
-            std::max(std::nextafter(walker.time, target), std::min(target, walker.time + stride));
-        const double from = walker.time;
+        const double goal = std::max(std::nextafter(follower.time, target),
+                                     std::min(target, follower.time + stride));
+        const double from = follower.time;
         const double shortest = std::nextafter(from, target) - from;
         const StepEnd end =
-            walker.step_with_slack(goal, times[b + 1], std::max(tolerance, shortest));
+            follower.step_with_slack(goal, times[b + 1], std::max(tolerance, shortest));
         if (end == StepEnd::done) {
           if (held == 0) convergent = std::max(2.0 * convergent, tolerance);
           held = std::max(0, held - 1);
@@ -214,50 +214,51 @@ Path solve(const Model& model, const Options& options) {
           // While a change is being located, the next one may be near, and to pass it costs a pivot
           // for every joint that it moves. Where the one that was foreseen did not come, the
           // tangent of a long step does not tell what is near: steps grow little by little.
-          const bool unchanged = walker.path.events.size() - counted == walker.idle_changes.size();
+          const bool unchanged =
+              follower.path.events.size() - counted == follower.idle_changes.size();
           const bool creeps = locating && (!options.locate_events || unchanged);
           stride = std::min(balanced(), creeps ? 8.0 * stride : convergent);
           if (foresaw) unconfirmed = ahead >= nearer * least_ahead ? unconfirmed + 1 : 0;
           if (foresaw) least_ahead = std::min(least_ahead, ahead);
           foresaw = false;
           // Those of a joint that flickers end no count of steps.
-          if (!unchanged && !walker.flickers) {
+          if (!unchanged && !follower.flickers) {
             steps = unconfirmed = unstable = swinging = 0;
             least_ahead = length;
           }
-          for (; counted < walker.path.events.size(); ++counted) {
-            const Event& event = walker.path.events[counted];
-            if (walker.idle_changes.count(event.joint) > 0) continue;
+          for (; counted < follower.path.events.size(); ++counted) {
+            const Event& event = follower.path.events[counted];
+            if (follower.idle_changes.count(event.joint) > 0) continue;
             const bool is_often = ++changes[index(event.joint)] > most_located;
-            const bool are_many = walker.has_slack() && ++located > most_located_with_slack;
-            walker.flickers = walker.flickers || is_often || are_many;
+            const bool are_many = follower.has_slack() && ++located > most_located_with_slack;
+            follower.flickers = follower.flickers || is_often || are_many;
           }
           // A change that recedes before the steps is passed, and those of a joint that flickers.
-          walker.locates = !walker.flickers && unconfirmed < most_unconfirmed;
+          follower.locates = !follower.flickers && unconfirmed < most_unconfirmed;
         } else if (end == StepEnd::stopped) {
-          walker.path.complete = false;
+          follower.path.complete = false;
         } else if (end == StepEnd::imprecise) {
           stride = std::max(balanced(), tolerance);
         } else {
           // To where the change is foreseen, half of what it is located to before it; where nothing
           // is, or a change comes before the end of whatever step is tried, to an eighth.
-          const bool foreseen = end == StepEnd::event_inside && walker.event_share < 1.0;
+          const bool foreseen = end == StepEnd::event_inside && follower.event_share < 1.0;
           const double tried = goal - from;
           // Where one stands that is real, foresight comes nearer by more than half each time.
-          const double short_by = 1.0 - walker.event_share;
+          const double short_by = 1.0 - follower.event_share;
           foreseen_from_here = short_by > 0.5 * short_by_before ? foreseen_from_here + 1 : 0;
           short_by_before = short_by;
           const bool moves = foreseen && foreseen_from_here > most_foreseen;
-          stride = foreseen ? walker.event_share * tried : 0.125 * tried;
+          stride = foreseen ? follower.event_share * tried : 0.125 * tried;
           if (foreseen) stride = moves ? 0.5 * stride : stride - 0.5 * tolerance;
           stride = std::max(stride, tolerance);
-          if (walker.slip_is_unstable && ++unstable >= most_unconfirmed) {
+          if (follower.slip_is_unstable && ++unstable >= most_unconfirmed) {
             unstable = 0;
-            walker.follow_snap(times[b + 1], std::max(tolerance, shortest));
+            follower.follow_snap(times[b + 1], std::max(tolerance, shortest));
           }
           // Elements that hang on soft dashpots swing: stiffer ones carry them over longer steps.
-          const bool swings = end == StepEnd::not_converged && walker.has_slack();
-          if (swings && (walker.flickers || ++swinging >= most_unconfirmed) && walker.damp()) {
+          const bool swings = end == StepEnd::not_converged && follower.has_slack();
+          if (swings && (follower.flickers || ++swinging >= most_unconfirmed) && follower.damp()) {
             swinging = 0;
             stride = std::max(stride, 0.5 * tried);
           }
@@ -266,31 +267,31 @@ Path solve(const Model& model, const Options& options) {
             held = most_held;
           }
           locating = end == StepEnd::event_inside;
-          ahead = walker.event_share * tried;
-          foresaw = foresaw || (locating && !walker.slip_is_unstable);
+          ahead = follower.event_share * tried;
+          foresaw = foresaw || (locating && !follower.slip_is_unstable);
         }
-        if (steps > most_steps_with_slack && walker.has_slack()) walker.flickers = true;
+        if (steps > most_steps_with_slack && follower.has_slack()) follower.flickers = true;
         if (++steps > options.most_steps) {
-          FailureFields fields = failure_at(FailureKind::too_many_steps, model, walker.time);
+          FailureFields fields = failure_at(FailureKind::too_many_steps, model, follower.time);
           fields.numbers = {{"steps", options.most_steps}, {"last_step_s", goal - from}};
           throw Failure(std::move(fields));
         }
         tracer.end_step(end);
-        now = walker.time;
-        walker.path.complete = walker.path.complete && going_on();
+        now = follower.time;
+        follower.path.complete = follower.path.complete && going_on();
       }
-      if (!walker.path.complete) break;
-      if (k > 0 && !options.cycle_ends_only) walker.path.states.push_back(walker.state);
+      if (!follower.path.complete) break;
+      if (k > 0 && !options.cycle_ends_only) follower.path.states.push_back(follower.state);
     }
-    if (walker.path.complete) walker.refuse_buckled(walker.time);
-    if (walker.path.complete && times[b + 1] >= cycle * model.programs.front().period) {
-      walker.path.cycle_ends.push_back(walker.state);
+    if (follower.path.complete) follower.refuse_buckled(follower.time);
+    if (follower.path.complete && times[b + 1] >= cycle * model.programs.front().period) {
+      follower.path.cycle_ends.push_back(follower.state);
       ++cycle;
     }
   }
-  walker.path.factorizations = walker.newton.factorizations();
-  if (options.cycle_ends_only) walker.path.states = walker.path.cycle_ends;
-  return std::move(walker.path);
+  follower.path.factorizations = follower.newton.factorizations();
+  if (options.cycle_ends_only) follower.path.states = follower.path.cycle_ends;
+  return std::move(follower.path);
 }
 
 }  // namespace statejump::truss

@@ -166,7 +166,7 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
     bool widened = false;
     for (const Group& group : groups) {
       all.push_back(motions_of(*of, group, asking));
-      for (const auto& [i, wanted] : all.back().wishes) {
+      for (const auto& [i, wanted] : all.back().requested) {
         widened = add(candidates[i], wanted) || widened;
       }
       if (all.back().singular) answer.singular = asking.statuses(*all.back().singular);

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "path_follower.hpp"
 #include "status_enumeration.hpp"
 #include "truss/elements/axial.hpp"
-#include "walker.hpp"
 
 namespace statejump::truss::detail {
 
@@ -64,7 +64,7 @@ double moved_by_rounding(const System& system, const VectorXd& z) {
 
 /// How far a node moves where a joint gives way within its play, in what that moves by: the
 /// shortest element is the lever of a structure as large.
-double Walker::lever() const {
+double PathFollower::lever() const {
   double shortest = system.size();
   for (const Bar& link : model.links) {
     const double length = drawn_length(model, link.first, link.second);
@@ -82,8 +82,8 @@ double Walker::lever() const {
 /// @param step takes one with dashpots of a level; it returns how far that moved [m], or nothing if
 /// there is no step, and then has changed nothing
 /// @param drift what a step moves by without any unstable motion [m]
-bool Walker::come_to_rest(const std::function<std::optional<double>(double level)>& step,
-                          double drift) {
+bool PathFollower::come_to_rest(const std::function<std::optional<double>(double level)>& step,
+                                double drift) {
   const double most_carried = system.slack_stiffness(0.0) * largest_play(model);
   double level = first_level;
   double without = 0.0;  // highest level that had no step
@@ -110,7 +110,7 @@ bool Walker::come_to_rest(const std::function<std::optional<double>(double level
     slower = level == 0.0 && *moved <= last ? slower + 1 : 0;
     if (slower >= most_slower) return true;
     last = *moved;
-    level = std::max(0.0, level - Walker::softer);
+    level = std::max(0.0, level - PathFollower::softer);
   }
   return false;
 }
@@ -122,7 +122,7 @@ bool Walker::come_to_rest(const std::function<std::optional<double>(double level
 /// temperature that hardly changes. What is unstable beyond the play remains a failure.
 /// @param until time that is not passed [s]
 /// @returns false: dashpots do not hold it, or no joint has play; nothing has happened then
-bool Walker::follow_snap(double until, double tolerance) {
+bool PathFollower::follow_snap(double until, double tolerance) {
   const double plays = sum_of_plays(model) * lever();
   if (plays == 0.0 || !options.locate_events) return false;
   const Position before = position();
@@ -184,11 +184,11 @@ bool Walker::follow_snap(double until, double tolerance) {
   return true;
 }
 
-Walker::Position Walker::position() const {
+PathFollower::Position PathFollower::position() const {
   return {z, origin, state, time, rate, slide_rate};
 }
 
-void Walker::return_to(const Position& to) {
+void PathFollower::return_to(const Position& to) {
   z = to.z;
   origin = to.origin;
   state = to.state;

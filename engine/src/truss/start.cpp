@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "path_follower.hpp"
 #include "status_enumeration.hpp"
-#include "walker.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -42,7 +42,8 @@ void fail_joint(FailureFields fields, FailureJoint joint) {
   throw Failure(std::move(fields));
 }
 
-void Walker::fail(const SolveReport& report, JointModel joints, double when, const char* sought) {
+void PathFollower::fail(const SolveReport& report, JointModel joints, double when,
+                        const char* sought) {
   refuse_mechanism(when, origin.statuses, joints);
   refuse_buckled(when);
   const FailureKind kind =
@@ -53,14 +54,14 @@ void Walker::fail(const SolveReport& report, JointModel joints, double when, con
   throw Failure(std::move(fields));
 }
 
-void Walker::note(const SolveReport& report) {
+void PathFollower::note(const SolveReport& report) {
   ++path.solves;
   path.largest_force_residual = std::max(path.largest_force_residual, report.force_residual);
   path.largest_closure_residual = std::max(path.largest_closure_residual, report.closure_residual);
 }
 
 /// Relaxes the drawn shape at ΔT = 0; see solve().
-void Walker::start() {
+void PathFollower::start() {
   origin.statuses = system.all_stick();
   z = VectorXd::Zero(system.unknowns());
   if (FoundModes modes = mechanism(system, z, 0.0, origin.statuses, JointModel::pins)) {
@@ -96,7 +97,8 @@ void Walker::start() {
 
 /// Throws if the truss has free modes with its joints as the statuses say, other than those of
 /// slack elements, which no load moves.
-void Walker::refuse_mechanism(double when, const Statuses& statuses, JointModel joints) const {
+void PathFollower::refuse_mechanism(double when, const Statuses& statuses,
+                                    JointModel joints) const {
   FoundModes modes = mechanism(system, z, when, statuses, joints);
   if (!modes || (any_open(statuses) && !are_loaded(modes.shapes))) return;
   FailureFields fields = failure_at(FailureKind::mechanism, model, when);
@@ -108,7 +110,7 @@ void Walker::refuse_mechanism(double when, const Statuses& statuses, JointModel 
   fail_modes(std::move(fields), std::move(modes));
 }
 
-std::vector<FailureJoint> Walker::slipping(const Statuses& statuses) const {
+std::vector<FailureJoint> PathFollower::slipping(const Statuses& statuses) const {
   std::vector<FailureJoint> found;
   for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
     if (is_slip(statuses[index(i)])) found.push_back(named(model, i));
@@ -117,7 +119,7 @@ std::vector<FailureJoint> Walker::slipping(const Statuses& statuses) const {
 }
 
 /// Throws if the state is unstable whatever the joints do.
-void Walker::refuse_buckled(double when) {
+void PathFollower::refuse_buckled(double when) {
   // It takes as much memory as the factors of rates do.
   rates.release();
   for (;;) {
@@ -131,7 +133,7 @@ void Walker::refuse_buckled(double when) {
 }
 
 /// Adds a note about those of the joints that no note of its kind has named.
-void Walker::note(NoteKind kind, double when, const std::vector<int>& joints, double value) {
+void PathFollower::note(NoteKind kind, double when, const std::vector<int>& joints, double value) {
   Note made{kind, when, model.temperature_change(0, 1.0, when), {}, value};
   for (const int i : joints) {
     if (noted[kind].insert(i).second) made.joints.push_back(named(model, i));
@@ -141,7 +143,7 @@ void Walker::note(NoteKind kind, double when, const std::vector<int>& joints, do
 }
 
 /// Notes the joints without contact whose elements nothing holds. True: there are such.
-bool Walker::note_slack(double when, const VectorXd& at, const Statuses& statuses) {
+bool PathFollower::note_slack(double when, const VectorXd& at, const Statuses& statuses) {
   std::vector<int> open;
   for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
     if (statuses[index(i)] == JointStatus::open) open.push_back(i);
@@ -152,7 +154,7 @@ bool Walker::note_slack(double when, const VectorXd& at, const Statuses& statuse
 }
 
 /// Makes the dashpots of slack joints stiffer; false: there are none, or none stiffer.
-bool Walker::stiffen_slack(const Statuses& statuses) {
+bool PathFollower::stiffen_slack(const Statuses& statuses) {
   if (!any_open(statuses) || slack_level >= System::most_slack_level) return false;
   slack_level = std::min(slack_level + 1.0, System::most_slack_level);
   is_slack = true;
@@ -161,7 +163,7 @@ bool Walker::stiffen_slack(const Statuses& statuses) {
 
 /// Lets dashpots hold all joints with play, or makes them stiffer, where elements are slack and
 /// steps have no solution; false: nothing is slack, or they are as stiff as may be.
-bool Walker::damp() {
+bool PathFollower::damp() {
   if (!has_slack() || slack_level >= System::stiffest_level) return false;
   softest_level = slack_level + 2.0 * softer;
   slack_level = std::min(slack_level + 1.0, System::stiffest_level);
@@ -171,12 +173,12 @@ bool Walker::damp() {
 }
 
 /// Notes joints that stick and share a constraint, if the last solve met such.
-void Walker::note_not_unique(double when) {
+void PathFollower::note_not_unique(double when) {
   if (newton.regularisation() != Regularisation::reactions) return;
   note(NoteKind::not_unique, when, newton.dependent_joints());
 }
 
-void Walker::open_clearances() {
+void PathFollower::open_clearances() {
   std::vector<int> with_play;
   for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
     if (joint(i, [](const auto& one) { return one.has_play(); })) with_play.push_back(i);
@@ -215,7 +217,7 @@ void Walker::open_clearances() {
 
 /// Lets every journal touch where its pin force pushes. One that nothing pushes stays in the
 /// middle, if something else than its contact holds it there.
-void Walker::seat(const std::vector<int>& with_play, JointModel contact) {
+void PathFollower::seat(const std::vector<int>& with_play, JointModel contact) {
   for (const int i : with_play) {
     const Trial trial = system.trial(i, z, 0.0, origin, JointModel::pins, 0.0);
     const bool touches = joint(
@@ -230,7 +232,7 @@ void Walker::seat(const std::vector<int>& with_play, JointModel contact) {
 /// Opens the clearances little by little, each time from the last equilibrium, because the links
 /// turn as they open; farther where that goes well.
 /// @returns how that ended: `z` and the statuses are those of the whole clearances if it converged
-SolveReport Walker::open_seated(const std::vector<int>& with_play, JointModel contact) {
+SolveReport PathFollower::open_seated(const std::vector<int>& with_play, JointModel contact) {
   SolveReport report;
   double opened = 0.0;
   double share = first_opening;
@@ -277,8 +279,8 @@ SolveReport Walker::open_seated(const std::vector<int>& with_play, JointModel co
 /// Lets journals that find no place by themselves move to one, held by dashpots, with clearances
 /// that are partly open.
 /// @returns false: they do not come to rest; nothing has happened then
-bool Walker::come_to_rest_at(double opening, JointModel contact, const std::vector<int>& with_play,
-                             double opened) {
+bool PathFollower::come_to_rest_at(double opening, JointModel contact,
+                                   const std::vector<int>& with_play, double opened) {
   const Statuses statuses_before = origin.statuses;
   VectorXd seated = z;
   seat_at(opened, opening, with_play, seated);
@@ -309,8 +311,8 @@ bool Walker::come_to_rest_at(double opening, JointModel contact, const std::vect
 }
 
 /// Moves journals that touch to where their force pushes them with clearances that are more open.
-void Walker::seat_at(double opened, double opening, const std::vector<int>& with_play,
-                     VectorXd& there) const {
+void PathFollower::seat_at(double opened, double opening, const std::vector<int>& with_play,
+                           VectorXd& there) const {
   for (const int i : with_play) {
     if (origin.statuses[index(i)] == JointStatus::open) continue;
     const Trial at = system.trial(i, z, 0.0, origin, JointModel::pins, opened);

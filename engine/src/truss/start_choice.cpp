@@ -83,42 +83,43 @@ void begin(const Type& joint, const Trial& trial, JointStatus status, double* no
 
 }  // namespace
 
-void start_as_chosen(Walker& walker) {
-  const System& system = walker.system;
-  if (walker.options.start_friction == StartFriction::stuck) {
-    walker.start();
-    walker.origin = system.begin(walker.z, 0.0, walker.origin.statuses, 1.0);
+void start_as_chosen(PathFollower& follower) {
+  const System& system = follower.system;
+  if (follower.options.start_friction == StartFriction::stuck) {
+    follower.start();
+    follower.origin = system.begin(follower.z, 0.0, follower.origin.statuses, 1.0);
     return;
   }
-  const Model loose = without_friction(walker.model);
+  const Model loose = without_friction(follower.model);
   const System loose_system(loose);
-  const auto going_on = [&walker] {
-    return !walker.options.progress || walker.options.progress(0.0);
+  const auto going_on = [&follower] {
+    return !follower.options.progress || follower.options.progress(0.0);
   };
-  Walker found{.model = loose,
-               .system = loose_system,
-               .options = walker.options,
-               .newton = Newton(loose_system, walker.options.locate_events, going_on),
-               .rates = RateProblem(loose_system)};
-  found.slide_rate = VectorXd::Zero(walker.slide_rate.size());
-  found.state.joint_dissipation = VectorXd::Zero(walker.slide_rate.size());
+  PathFollower found{.model = loose,
+                     .system = loose_system,
+                     .options = follower.options,
+                     .newton = Newton(loose_system, follower.options.locate_events, going_on),
+                     .rates = RateProblem(loose_system)};
+  found.slide_rate = VectorXd::Zero(follower.slide_rate.size());
+  found.state.joint_dissipation = VectorXd::Zero(follower.slide_rate.size());
   found.start();
-  walker.path.solves += found.path.solves;
-  walker.path.notes = std::move(found.path.notes);
-  walker.path.complete = found.path.complete;
-  walker.z = std::move(found.z);
+  follower.path.solves += found.path.solves;
+  follower.path.notes = std::move(found.path.notes);
+  follower.path.complete = found.path.complete;
+  follower.z = std::move(found.z);
   Statuses statuses = std::move(found.origin.statuses);
   for (std::size_t i = 0; i < statuses.size(); ++i) {
-    statuses[i] = begins(walker.model.joints[i], statuses[i]);
+    statuses[i] = begins(follower.model.joints[i], statuses[i]);
   }
-  walker.origin = system.begin(walker.z, 0.0, statuses, 1.0);
-  for (int i = 0; i < static_cast<int>(walker.model.joints.size()); ++i) {
-    const Trial at = system.trial(i, walker.z, 0.0, walker.origin, JointModel::frictionless, 1.0);
+  follower.origin = system.begin(follower.z, 0.0, statuses, 1.0);
+  for (int i = 0; i < static_cast<int>(follower.model.joints.size()); ++i) {
+    const Trial at =
+        system.trial(i, follower.z, 0.0, follower.origin, JointModel::frictionless, 1.0);
     std::visit(
         [&](const auto& one) {
-          begin(one, at, statuses[index(i)], system.history(i, walker.origin));
+          begin(one, at, statuses[index(i)], system.history(i, follower.origin));
         },
-        walker.model.joints[index(i)]);
+        follower.model.joints[index(i)]);
   }
 }
 

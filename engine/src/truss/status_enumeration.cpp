@@ -140,9 +140,9 @@ std::size_t sets_of(const Branches& of, const Group& group) {
 }
 
 /// Candidates of a group that are not on the branch that they want.
-std::vector<Wish> violations(const Branches& of, const Group& group, const Asking& asking,
-                             const Motion& motion) {
-  std::vector<Wish> found;
+std::vector<RequestedStatus> violations(const Branches& of, const Group& group,
+                                        const Asking& asking, const Motion& motion) {
+  std::vector<RequestedStatus> found;
   for (const std::size_t i : group) {
     const Candidate& one = of.candidates[i];
     const JointStatus status = one.branches[motion.choice[i]];
@@ -156,7 +156,7 @@ Found try_all(const Branches& of, const Group& group, const Asking& asking) {
   Found found;
   Choice choice(of.candidates.size(), 0);
   const std::size_t sets = sets_of(of, group);
-  for (std::size_t set = 0; set < sets && found.wishes.empty(); ++set) {
+  for (std::size_t set = 0; set < sets && found.requested.empty(); ++set) {
     std::size_t left = set;
     for (const std::size_t i : group) {
       choice[i] = left % of.candidates[i].branches.size();
@@ -165,9 +165,9 @@ Found try_all(const Branches& of, const Group& group, const Asking& asking) {
     const auto motion = motion_on(of, group, choice);
     if (!motion) found.singular = choice;
     if (!motion || !asking.is_short(*motion)) continue;
-    const std::vector<Wish> off = violations(of, group, asking, *motion);
-    for (const Wish& wish : off) {
-      if (!of.candidates[wish.first].has(wish.second)) found.wishes.push_back(wish);
+    const std::vector<RequestedStatus> off = violations(of, group, asking, *motion);
+    for (const RequestedStatus& request : off) {
+      if (!of.candidates[request.first].has(request.second)) found.requested.push_back(request);
     }
     if (!off.empty()) continue;
     const auto known =
@@ -199,8 +199,8 @@ class GroupPivots {
   }
 
   const Choice& key() const { return choice_; }
-  const std::vector<Wish>& violated() const { return violated_; }
-  bool change(const std::vector<Wish>& changes, const std::set<Choice>& tried, Pivot) {
+  const std::vector<RequestedStatus>& violated() const { return violated_; }
+  bool change(const std::vector<RequestedStatus>& changes, const std::set<Choice>& tried, Pivot) {
     for (const auto& [i, wanted] : changes) choice_[i] = branch_of(i, wanted);
     if (tried.count(choice_) > 0) slide_instead(changes.front().first, tried);
     return true;
@@ -214,10 +214,10 @@ class GroupPivots {
       return false;
     }
     violated_ = violations(of_, group_, asking_, *motion_);
-    for (const Wish& wish : violated_) {
-      if (!of_.candidates[wish.first].has(wish.second)) found_.wishes.push_back(wish);
+    for (const RequestedStatus& request : violated_) {
+      if (!of_.candidates[request.first].has(request.second)) found_.requested.push_back(request);
     }
-    return found_.wishes.empty();
+    return found_.requested.empty();
   }
 
  private:
@@ -247,7 +247,7 @@ class GroupPivots {
   const Asking& asking_;
   Choice choice_;
   std::optional<Motion> motion_;
-  std::vector<Wish> violated_;
+  std::vector<RequestedStatus> violated_;
   Found found_;
 };
 

@@ -119,14 +119,14 @@ class Asking {
 };
 
 /// A branch that a candidate wants and is not known to have.
-using Wish = std::pair<std::size_t, JointStatus>;
+using RequestedStatus = std::pair<std::size_t, JointStatus>;
 
 /// Motions of a group that hold, those that agree counted once.
 struct Found {
   std::vector<Motion> motions;
-  std::vector<Wish> wishes;        ///< Anything here: the rest is not known yet.
-  bool examined = true;            ///< Whether all sets were tried.
-  std::optional<Choice> singular;  ///< A set that leaves the equations singular.
+  std::vector<RequestedStatus> requested;  ///< Anything here: the rest is not known yet.
+  bool examined = true;                    ///< Whether all sets were tried.
+  std::optional<Choice> singular;          ///< A set that leaves the equations singular.
 };
 
 /// Motions of a group: all of them where it is small, else the one that pivots find.

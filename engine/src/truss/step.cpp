@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "walker.hpp"
+#include "path_follower.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,8 +26,8 @@ constexpr int most_held_steps = 10;
 /// Whether a joint that stopped sliding before `target` may have slid by more than rounding until
 /// it did: slides of a step are lost when it ends in a stick. One that comes to rest smoothly
 /// slides so little at last that no shorter step would tell.
-bool Walker::slide_at_stake(int i, JointStatus before, double target,
-                            const Rounding& rounding) const {
+bool PathFollower::slide_at_stake(int i, JointStatus before, double target,
+                                  const Rounding& rounding) const {
   if (before == JointStatus::open) return true;
   double least = 10.0 * system.slide_rounding(i, z, time, origin, rounding);
   if (!options.locate_events) {
@@ -38,8 +38,8 @@ bool Walker::slide_at_stake(int i, JointStatus before, double target,
 
 /// Share of a step to `to` after which a stiffness jumps; 1: none does. A step across such an edge
 /// ends where its straight line crosses it.
-double Walker::first_edge(double target, const VectorXd& to, const StepStart& begin,
-                          const Rounding& rounding) const {
+double PathFollower::first_edge(double target, const VectorXd& to, const StepStart& begin,
+                                const Rounding& rounding) const {
   const VectorXd before = system.beyond_edges(z, time, origin);
   const VectorXd after = system.beyond_edges(to, target, begin);
   double share = 1.0;
@@ -55,7 +55,7 @@ double Walker::first_edge(double target, const VectorXd& to, const StepStart& be
 /// which then is rounding. What the dashpots of slack joints take is not lost. Half of what a path
 /// may lose is every step's by its share of the time; of the other half each may take a little, so
 /// that single events ask for no short steps.
-bool Walker::balances(const State& next, const VectorXd& to, double step, double taken) {
+bool PathFollower::balances(const State& next, const VectorXd& to, double step, double taken) {
   const double duration = model.programs.front().duration();
   const double heat = next.joint_dissipation.sum();
   const double work = next.thermal_work - state.thermal_work;
@@ -100,7 +100,7 @@ bool Walker::balances(const State& next, const VectorXd& to, double step, double
 }
 
 /// One step, if it is converged and exact or no longer than `tolerance`; else nothing happens.
-StepEnd Walker::step_to(double target, double tolerance) {
+StepEnd PathFollower::step_to(double target, double tolerance) {
   slip_is_unstable = false;
   // The sum time + tolerance is rounded.
   const bool is_short = target - time <= 1.5 * tolerance;
@@ -112,15 +112,15 @@ StepEnd Walker::step_to(double target, double tolerance) {
       is_short && !changed_at_start.empty() ? changed_at_start : origin.statuses;
   const StepStart& begin = origin;
   // The first change ahead: passed where it need not be located, or no location is asked.
-  std::optional<Ahead> ahead;
+  std::optional<EventSearch> search;
   if (!is_short) {
-    ahead = Ahead{time, tolerance / (target - time), options.locate_events && locates,
-                  rate.size() == 0 ? z : VectorXd(z + (target - time) * rate)};
+    search = EventSearch{time, tolerance / (target - time), options.locate_events && locates,
+                         rate.size() == 0 ? z : VectorXd(z + (target - time) * rate)};
   }
   SolveReport report = newton.solve(
       target, begin, JointModel::friction, 1.0, options.most_iterations, trial, trial_statuses,
-      ahead, origin.damps_contact ? Newton::Effort::brief : Newton::Effort::whole);
-  ahead.reset();  // as long as all unknowns
+      search, origin.damps_contact ? Newton::Effort::brief : Newton::Effort::whole);
+  search.reset();  // as long as all unknowns
   const bool hinted = is_short && !std::exchange(changed_at_start, {}).empty();
   if (hinted && report.end != SolveEnd::stopped) {
     looks_at_start = report.end == SolveEnd::converged && trial_statuses != origin.statuses;
@@ -328,7 +328,7 @@ StepEnd Walker::step_to(double target, double tolerance) {
 /// A step; where there is none, with stiffer dashpots in the joints that are slack, or become so;
 /// at last through a snap.
 /// @param until corner of the programs that no snap passes [s]
-StepEnd Walker::step_with_slack(double target, double until, double tolerance) {
+StepEnd PathFollower::step_with_slack(double target, double until, double tolerance) {
   const Statuses before = origin.statuses;
   for (;;) {
     try {

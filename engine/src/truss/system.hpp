@@ -54,7 +54,8 @@ struct StepStart {
   double last_step = 0.0;  ///< Its duration [s].
   /// Of joints that are open [N/m], see System::slack_stiffness(); kept from step to step.
   double slack_stiffness = 0.0;
-  /// Whether joints with play are held so as well while they touch, see Walker::follow_snap().
+  /// Whether joints with play are held so as well while they touch, see
+  /// PathFollower::follow_snap().
   bool damps_contact = false;
   bool is_loose = false;       ///< Whether elements are slack, held by nothing but dashpots.
   double dashpot_force = 0.0;  ///< Of all dashpots of joints in the last step, added up [N].
@@ -254,9 +255,9 @@ class System {
   /// open or slipping does not hold there.
   /// @param held stiffness of a direction that a joint holds, in that of the stiffest part
   /// @param slack stiffness of a joint that is open [N/m]
-  Eigen::SparseMatrix<double> joined_stiffness(const VectorXd& z, double time,
-                                               const Statuses& statuses, JointModel joints,
-                                               double held, double slack) const;
+  Eigen::SparseMatrix<double> penalty_stiffness(const VectorXd& z, double time,
+                                                const Statuses& statuses, JointModel joints,
+                                                double held, double slack) const;
   /// Displacement by which rounding at z is measured [m]: the largest one, but not below
   /// path_scale() nor above the size of the truss. Both bounds matter: a truss that comes back to
   /// its reference configuration has no displacement and no force, but the rounding of the path

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "walker.hpp"
+#include "path_follower.hpp"
 
 namespace statejump::truss {
 

@@ -4,14 +4,14 @@
 #include <optional>
 
 #include "hermite.hpp"
-#include "walker.hpp"
+#include "path_follower.hpp"
 
 namespace statejump::truss::detail {
 
 /// Share of a step after which the first joint turns round within it: one that slips the other way
 /// for a while, or one that leaves its branch and comes back. 1: none does. The unknowns and the
 /// slides are cubics through both ends of the step and their rates.
-double Walker::first_turn(const Ends& ends) const {
+double PathFollower::first_turn(const Ends& ends) const {
   const Rounding rounding = system.rounding(ends.to);
   VectorXd turn = VectorXd::Ones(static_cast<Eigen::Index>(model.joints.size()));
   system.each_joint([&](int i) {
@@ -25,7 +25,7 @@ double Walker::first_turn(const Ends& ends) const {
   return turn.size() == 0 ? 1.0 : std::min(1.0, turn.minCoeff());
 }
 
-double Walker::turn_of_slip(int i, const Ends& ends, const Rounding& by) const {
+double PathFollower::turn_of_slip(int i, const Ends& ends, const Rounding& by) const {
   const JointStatus status = ends.statuses[index(i)];
   const bool matters =
       joint(i, [&](const auto& one) { return one.remembers_when(status, JointStatus::stick); });
@@ -44,7 +44,7 @@ double Walker::turn_of_slip(int i, const Ends& ends, const Rounding& by) const {
   return 1.0;
 }
 
-double Walker::turn_of_stick(int i, const Ends& ends, const Rounding& rounding) const {
+double PathFollower::turn_of_stick(int i, const Ends& ends, const Rounding& rounding) const {
   const JointStatus status = ends.statuses[index(i)];
   const double step = ends.to_time - ends.from_time;
   const JointFrame& frame = system.frame(i);

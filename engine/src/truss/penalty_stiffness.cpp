@@ -48,9 +48,9 @@ class Column {
 
 }  // namespace
 
-Eigen::SparseMatrix<double> System::joined_stiffness(const VectorXd& z, double time,
-                                                     const Statuses& statuses, JointModel joints,
-                                                     double held, double slack) const {
+Eigen::SparseMatrix<double> System::penalty_stiffness(const VectorXd& z, double time,
+                                                      const Statuses& statuses, JointModel joints,
+                                                      double held, double slack) const {
   Assembly at = assembly();
   StepStart start = begin(z, time, statuses, 1.0);
   start.slack_stiffness = slack;

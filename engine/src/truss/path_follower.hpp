@@ -54,7 +54,7 @@ struct Stall {
 };
 
 /// Equilibrium being followed.
-struct Walker {
+struct PathFollower {
   const Model& model;
   const System& system;
   const Options& options;
@@ -111,7 +111,7 @@ struct Walker {
   /// How fast every joint that slips slides at `time` [m/s].
   VectorXd slide_rate = {};
 
-  /// Where the walk is.
+  /// Where the path has been followed to.
   struct Position {
     VectorXd z;
     StepStart origin;
