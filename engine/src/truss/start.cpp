@@ -243,8 +243,7 @@ SolveReport PathFollower::open_seated(const std::vector<int>& with_play, JointMo
     seat_at(opened, next, with_play, trial);
     StepStart begin = system.begin(trial, 0.0, statuses, next);
     begin.slack_stiffness = system.slack_stiffness(slack_level);
-    report = newton.solve(0.0, begin, contact, next, options.most_iterations, trial, statuses, {},
-                          Newton::Effort::brief);
+    report = newton.solve(0.0, begin, contact, next, options.most_iterations, trial, statuses);
     if (next < 1.0) {
       ++path.solves;  // none of the path's states
     } else {

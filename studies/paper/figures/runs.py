@@ -98,14 +98,14 @@ def run_variants(case: UmbrellaCase, study: Study, known: dict[str, Variant], pa
     cases = [variant_case(case, study.key, value) for value in study.values]
     new = [variant for variant in cases if _key(variant) not in known]
     with part(f"{study.figure}, reduced", len(new) * (case.ensemble.reduced_runs + 1)) as step:
-        ensembles = [ensembles.ensemble(variant, progress=step) for variant in new]
+        spread = [ensembles.ensemble(variant, progress=step) for variant in new]
         singles = []
         for variant in new:
             singles.append(model.run(variant))
             step()
     with part(f"{study.figure}, DEM", len(new)) as step:
         dem_runs = ensembles.execute_all(new, step)
-    for variant, ensemble, single, dem_run in zip(new, ensembles, singles, dem_runs):
+    for variant, ensemble, single, dem_run in zip(new, spread, singles, dem_runs):
         known[_key(variant)] = Variant(0.0, variant, single, ensemble, dem_run)
     return [
         Variant(value, variant, *(getattr(known[_key(variant)], name) for name in ("reduced", "ensemble", "dem")))

@@ -301,9 +301,11 @@ JointStatus BallJoint::decide(const Trial& trial, JointStatus status) const {
   const BallBend<double> bend = bend_of(*this, trial, now);
   const double rounding = slide_rounding(trial, trial.length_rounding, trial.force_rounding);
   // A step of Newton's method along one direction that leads back beyond where it began.
-  if (now.normal_force > slack + trial.force_rounding &&
-      bend.pull.dot(now.friction) < -rounding * now.friction.norm())
+  const double carried = now.friction.norm();
+  if (now.normal_force > slack + trial.force_rounding && carried > trial.force_rounding &&
+      bend.pull.dot(now.friction) < -rounding * carried) {
     return JointStatus::stick;
+  }
   return bend.pull.norm() - bend.compliance * bound < -rounding ? JointStatus::stick : status;
 }
 
