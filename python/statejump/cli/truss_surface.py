@@ -36,7 +36,7 @@ OPTIONS = {"axis": "--axis", "focal_length_m": "--focal-length", "direction": "-
 @click.option("--measure", default="normal", show_default=True, metavar="HOW",
               help="What RMS is of: normal, half_path (of Ruze's formula), axial.")
 @click.option("--direction", type=float, nargs=3, default=None, metavar="X Y Z",
-              help="Direction whose pointing error is told.  [default: the axis]")
+              help="Direction whose pointing error is reported.  [default: the axis]")
 @click.option("--zernike", "terms", type=int, default=None, metavar="N",
               help="Zernike terms, 1 to 36.  [default: as many whole orders as the nodes determine]")
 @click.option("--axis", type=float, nargs=3, default=None, metavar="X Y Z",
@@ -44,13 +44,13 @@ OPTIONS = {"axis": "--axis", "focal_length_m": "--focal-length", "direction": "-
 @click.option("--focal-length", type=float, default=None, metavar="M",
               help="Focal length of NODES.csv [m].  [default: best fit]")
 @click.option("--samples", type=click.Path(path_type=Path), default=None, metavar="SAMPLES.csv",
-              help="Campaign whose repeatability is told, with --column.")
+              help="Campaign whose repeatability is reported, with --column.")
 @click.option("--column", default=None, metavar="NAME",
               help="Change of a length in SAMPLES.csv, as repeat:displacement_m[NODE].")
 @click.option("--share", type=float, default=0.99, show_default=True, metavar="P",
               help="Of the samples that stay below.")
 @click.option("--length", type=float, default=None, metavar="M",
-              help="Length that it is told over [m].  [default: diameter of the aperture]")
+              help="Length to which the repeatability refers [m].  [default: diameter of the aperture]")
 @RESULTS
 @QUIET
 def surface_command(

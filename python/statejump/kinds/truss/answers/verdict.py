@@ -92,7 +92,7 @@ def verdict(coarse: TrussPath, finer: TrussPath, increments: int, output: Output
     if last <= 2 * left[-1]:
         return made("not resolved", f"cycle {len(each)} adds {shown(last)} with {increments} increments a branch, and "
                     f"with half of them a motion that differs by {shown(float(left[-1]))}: whether the jump settles is "
-                    "not told, more reduced.increments_per_branch are needed")
+                    "not known, more reduced.increments_per_branch are needed")
     if len(each) > 2 and abs(last - each[-2]) <= STEADY * last:
         return made("ratcheting", f"the jump grows by {shown(last)} per cycle (cycle {len(each)}; first "
                     f"cycle {shown(float(each[0]))})")
