@@ -12,7 +12,7 @@ from failures import failing, failure
 import statejump as sj
 from statejump import _engine
 from statejump.kinds.loading import load_case, parse_case
-from statejump.kinds.truss import generate, solve, words
+from statejump.kinds.truss import generate, solve, summary
 from statejump.kinds.umbrella import reduced as umbrella
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -81,7 +81,7 @@ def test_trusses_converge_and_keep_to_coulomb(document: dict[str, Any]) -> None:
 
 def test_it_is_said_in_words() -> None:
     case = parse_case(generate.ring(3, sticking="partial_slip"))
-    assert any("slide at the rim" in sentence for sentence in words.describe(case))
+    assert any("slide at the rim" in sentence for sentence in summary.describe(case))
 
 
 def test_rigid_contacts_have_no_part_that_slips() -> None:
