@@ -159,7 +159,7 @@ SolveReport PathFollower::slide_on(double target, bool is_short, VectorXd& to, S
   note(first);
   const auto solve_on = [&](Statuses& branches) {
     return newton.solve(target, origin, JointModel::friction, 1.0, options.most_iterations, to,
-                        branches, {}, Newton::Effort::held);
+                        branches, {}, true);
   };
   const VectorXd found = to;
   SolveReport second = solve_on(sliding);
@@ -194,7 +194,7 @@ bool PathFollower::follows_its_rates(const Ends& ends) const {
   // What dashpots hold comes to rest at its own pace.
   const double slack =
       ends.start.slack_stiffness > 0.0
-          ? lever() * system.dashpot_force(ends.to, ends.to_time, ends.start, ends.statuses) /
+          ? lever * system.dashpot_force(ends.to, ends.to_time, ends.start, ends.statuses) /
                 ends.start.slack_stiffness
           : 0.0;
   return apart <= std::max(before.lpNorm<Eigen::Infinity>(), after.lpNorm<Eigen::Infinity>()) +

@@ -163,7 +163,7 @@ Newton::Violation Newton::first_violation(const std::vector<int>& joints, const 
 
 SolveReport Newton::solve(double time, const StepStart& start, JointModel joints, double opening,
                           int most_iterations, VectorXd& z, Statuses& statuses,
-                          const std::optional<EventSearch>& search, Effort effort) {
+                          const std::optional<EventSearch>& search, bool held) {
   SolveReport report;
   current_ = false;
   regularisation_ = Regularisation::none;
@@ -174,7 +174,6 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   bool stale = true;  // no factors have been made yet
   bool pivoted = false;
   bool looking = search.has_value();
-  const bool gives_up = search || effort == Effort::brief;
   const int displacements = system_->displacements();
   const auto length = [displacements](const VectorXd& of) {
     return displacements == 0 ? 0.0 : of.head(displacements).lpNorm<Eigen::Infinity>();
@@ -187,7 +186,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   const auto violations = [&] {
     const Rounding slack = system_->rounding(z);
     Violations found{{}, statuses};
-    if (effort == Effort::held) return found;
+    if (held) return found;
     system_->displacements(z, at_.moved);
     system_->each_joint([&](int i) {
       JointStatus& status = found.corrected[index(i)];
@@ -495,9 +494,10 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
       return taken >= steps && next_length > 0.5 * lengths[taken - steps];
     };
     if (stalls(tuned.swing_steps)) next *= 0.5;
-    // Where a shorter step is the answer, one that shrinks no more is given up.
-    if ((pivoted ? gives_up : effort == Effort::brief) && stalls(2 * tuned.swing_steps))
-      return report;
+    // Where a shorter step or stiffer dashpots are the answer, one that shrinks no more is given
+    // up.
+    const bool gives_up = (search && pivoted) || start.damps_contact;
+    if (gives_up && stalls(2 * tuned.swing_steps)) return report;
     step = next;
     z += next;
     settled = false;

@@ -94,8 +94,6 @@ struct EventSearch {
 /// [5] M. R. Hestenes, J. Optim. Theory Appl. 4 (1969) 303-320.
 class Newton {
  public:
-  enum class Effort : unsigned char { whole, brief, held };
-
   /// @param locates whether changes are located in time, which asks for states as exact as only new
   /// factors make them
   /// @param going_on asked now and then; false stops the solve
@@ -108,12 +106,10 @@ class Newton {
   /// Solves for z and statuses at `time`, from the guess in them. On failure they are unspecified.
   /// @param most_iterations on one set of branches
   /// @param search whether and from where changes are looked for; else they are not
-  /// @param effort `held`: the joints stay on these branches, whatever their inequalities say;
-  /// `brief`: one that does not converge soon is given up, because the caller has another way, as
-  /// with `search`
+  /// @param held whether the joints stay on these branches, whatever their inequalities say
   SolveReport solve(double time, const StepStart& start, JointModel joints, double opening,
                     int most_iterations, VectorXd& z, Statuses& statuses,
-                    const std::optional<EventSearch>& search = {}, Effort effort = Effort::whole);
+                    const std::optional<EventSearch>& search = {}, bool held = false);
 
   /// Whether the last solve needed the regularisation of regularise(), and why.
   Regularisation regularisation() const { return regularisation_; }

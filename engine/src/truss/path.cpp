@@ -240,8 +240,8 @@ Path solve(const Model& model, const Options& options) {
         } else if (end == StepEnd::imprecise) {
           stride = std::max(balanced(), tolerance);
         } else {
-          // To where the change is foreseen, half of what it is located to before it; where nothing
-          // is, or a change comes before the end of whatever step is tried, to an eighth.
+          // To where the change is foreseen, half of what it is located to before it; half as far
+          // where that comes no nearer from here. Where nothing is foreseen, to an eighth.
           const bool foreseen = end == StepEnd::event_inside && follower.event_share < 1.0;
           const double tried = goal - from;
           // Where one stands that is real, foresight comes nearer by more than half each time.
@@ -249,9 +249,11 @@ Path solve(const Model& model, const Options& options) {
           foreseen_from_here = short_by > 0.5 * short_by_before ? foreseen_from_here + 1 : 0;
           short_by_before = short_by;
           const bool moves = foreseen && foreseen_from_here > most_foreseen;
-          stride = foreseen ? follower.event_share * tried : 0.125 * tried;
-          if (foreseen) stride = moves ? 0.5 * stride : stride - 0.5 * tolerance;
-          stride = std::max(stride, tolerance);
+          const double change_in = follower.event_share * tried;
+          const double shorter = !foreseen ? 0.125 * tried
+                                 : moves   ? 0.5 * change_in
+                                           : change_in - 0.5 * tolerance;
+          stride = std::max(shorter, tolerance);
           if (follower.slip_is_unstable && ++unstable >= most_unconfirmed) {
             unstable = 0;
             follower.follow_snap(times[b + 1], std::max(tolerance, shortest));

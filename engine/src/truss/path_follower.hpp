@@ -53,6 +53,10 @@ struct Stall {
   VectorXd z;
 };
 
+/// How far a node moves where a joint gives way within its play, over what that moves by: the
+/// shortest element is the lever of a structure of this size.
+double lever_of(const Model& model, double size);
+
 /// Equilibrium being followed.
 struct PathFollower {
   const Model& model;
@@ -60,6 +64,7 @@ struct PathFollower {
   const Options& options;
   Newton newton;
   RateProblem rates;
+  double lever = lever_of(model, system.size());
   Path path = {};
   /// Joints that a note of each kind has named.
   std::map<NoteKind, std::set<int>> noted = {};
@@ -149,7 +154,6 @@ struct PathFollower {
   bool has_slack() const { return is_slack || is_loose || noted.count(NoteKind::slack) > 0; }
   bool stiffen_slack(const Statuses& statuses);
   bool damp();
-  double lever() const;
   StepEnd step_to(double target, double tolerance);
   StepEnd step_with_slack(double target, double until, double tolerance);
   bool come_to_rest(const std::function<std::optional<double>(double level)>& step, double drift);

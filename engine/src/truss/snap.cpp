@@ -62,15 +62,13 @@ double moved_by_rounding(const System& system, const VectorXd& z) {
 
 }  // namespace
 
-/// How far a node moves where a joint gives way within its play, in what that moves by: the
-/// shortest element is the lever of a structure as large.
-double PathFollower::lever() const {
-  double shortest = system.size();
+double lever_of(const Model& model, double size) {
+  double shortest = size;
   for (const Bar& link : model.links) {
     const double length = drawn_length(model, link.first, link.second);
     if (length > 0.0) shortest = std::min(shortest, length);
   }
-  return shortest > 0.0 ? system.size() / shortest : 1.0;
+  return shortest > 0.0 ? size / shortest : 1.0;
 }
 
 /// Lets journals move within their play, held by dashpots while they slip, until they are at rest.
@@ -123,7 +121,7 @@ bool PathFollower::come_to_rest(const std::function<std::optional<double>(double
 /// @param until time that is not passed [s]
 /// @returns false: dashpots do not hold it, or no joint has play; nothing has happened then
 bool PathFollower::follow_snap(double until, double tolerance) {
-  const double plays = sum_of_plays(model) * lever();
+  const double plays = sum_of_plays(model) * lever;
   if (plays == 0.0 || !options.locate_events) return false;
   const Position before = position();
   const auto events = static_cast<std::ptrdiff_t>(path.events.size());

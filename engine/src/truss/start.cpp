@@ -292,8 +292,7 @@ bool PathFollower::come_to_rest_at(double opening, JointModel contact,
         VectorXd trial = z;
         Statuses statuses = origin.statuses;
         const SolveReport report =
-            newton.solve(0.0, begin, contact, opening, options.most_iterations, trial, statuses, {},
-                         Newton::Effort::brief);
+            newton.solve(0.0, begin, contact, opening, options.most_iterations, trial, statuses);
         ++path.solves;
         if (report.end == SolveEnd::stopped) path.complete = false;
         if (report.end != SolveEnd::converged) return std::nullopt;

@@ -117,9 +117,8 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
     search = EventSearch{time, tolerance / (target - time), options.locate_events && locates,
                          rate.size() == 0 ? z : VectorXd(z + (target - time) * rate)};
   }
-  SolveReport report = newton.solve(
-      target, begin, JointModel::friction, 1.0, options.most_iterations, trial, trial_statuses,
-      search, origin.damps_contact ? Newton::Effort::brief : Newton::Effort::whole);
+  SolveReport report = newton.solve(target, begin, JointModel::friction, 1.0,
+                                    options.most_iterations, trial, trial_statuses, search);
   search.reset();  // as long as all unknowns
   const bool hinted = is_short && !std::exchange(changed_at_start, {}).empty();
   if (hinted && report.end != SolveEnd::stopped) {

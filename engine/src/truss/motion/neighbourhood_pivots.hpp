@@ -16,8 +16,8 @@ namespace statejump::truss::detail {
 /// Where slip spreads from one joint to the next, a step in which it passes many would be as many
 /// systems of the whole truss: every one shows the next joint only. Impulses act as far as sound
 /// travels in a step. So these systems have only the bodies and contacts within some layers around
-/// a contact, and grow while a correction reaches their edge. What they find is a guess, which
-/// is solved and checked as any other.
+/// a contact, and grow while a correction reaches their edge. The statuses found here are a guess:
+/// the whole truss is then solved on them, and its inequalities are checked.
 class NeighbourhoodPivots {
  public:
   using Index = Eigen::Index;
