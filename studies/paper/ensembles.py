@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
@@ -14,10 +15,12 @@ from statejump.kinds.umbrella import dem, reduced, result
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.schema.paths import with_values
 
+T, R = TypeVar("T"), TypeVar("R")
+
 
 def start_offsets(case: UmbrellaCase, count: int) -> Iterator[np.ndarray]:
-    """Yield places of the journal near the start (2) [m], evenly spread over a disc; the same for
-    the same seed, each independent of how many are asked for."""
+    """Yield positions of the journal near the start (2) [m], evenly spread over a disc. They depend on the seed alone,
+    and each is independent of their number."""
     for index in range(count):
         generator = np.random.default_rng([case.ensemble.seed, index])
         radius = case.ensemble.start_spread_m * np.sqrt(generator.random())
@@ -46,7 +49,7 @@ class EnsembleOfRuns:
 
     @property
     def jump_rad(self) -> np.ndarray:
-        """θ2 at the end less at the start of every run (runs)."""
+        """θ2 at the end minus θ2 at the start of every run (runs)."""
         return self.deflection_rad[:, -1]
 
 
@@ -72,48 +75,52 @@ def gather(runs: Sequence[Columns | Run]) -> EnsembleOfRuns:
     )
 
 
+def _at_once(items: Iterable[T], run: Callable[[T], R], progress: Callable[[], None]) -> list[R]:
+    """Run each item, as many at a time as there are cores; results in the given order, whatever ends first.
+
+    :param progress: called after each
+    """
+
+    def one(item: T) -> R:
+        done = run(item)
+        progress()
+        return done
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(one, items))
+
+
 def ensemble(
     case: UmbrellaCase, runs: int | None = None, progress: Callable[[], None] = lambda: None
 ) -> EnsembleOfRuns:
-    """Run the reduced model from ``runs`` starts (default: as the case says), on all cores.
+    """Run the reduced model from ``runs`` starts (default: the number in the case), on all cores.
 
     The result does not depend on the number of cores.
     """
-    offsets = list(start_offsets(case, runs or case.ensemble.reduced_runs))
-    case = for_ensemble(case)
+    offsets = start_offsets(case, runs or case.ensemble.reduced_runs)
+    fine = for_ensemble(case)
 
-    def one(offset: np.ndarray) -> Columns:
-        columns: Columns = reduced.integrate(case, offset).columns()
-        progress()
+    def run(offset: np.ndarray) -> Columns:
+        columns: Columns = reduced.integrate(fine, offset).columns()
         return columns
 
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return gather(list(pool.map(one, offsets)))
+    return gather(_at_once(offsets, run, progress))
 
 
 def execute_all(cases: Sequence[UmbrellaCase], progress: Callable[[], None] = lambda: None) -> list[Run]:
-    """Run several cases, as many at a time as there are cores; results in the order given."""
+    """Run several cases in YADE, on all cores; results in the given order."""
 
-    def one(case: UmbrellaCase) -> Run:
+    def run(case: UmbrellaCase) -> Run:
         done = dem.execute(case)
-        progress()
         return result.dem_run(case, done.columns, done.about)
 
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return list(pool.map(one, cases))
+    return _at_once(cases, run, progress)
 
 
 def dem_ensemble(
     case: UmbrellaCase, runs: int | None = None, progress: Callable[[], None] = lambda: None
 ) -> EnsembleOfRuns:
-    """Run the case from ``runs`` starts (default: as the case says), as many as cores at a time."""
-    offsets = list(start_offsets(case, runs or case.ensemble.dem_runs))
-    case = for_ensemble(case)
-
-    def one(offset: np.ndarray) -> Columns:
-        done = dem.execute(case, offset)
-        progress()
-        return done.columns
-
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return gather(list(pool.map(one, offsets)))
+    """Run the case in YADE from ``runs`` starts (default: the number in the case), on all cores."""
+    offsets = start_offsets(case, runs or case.ensemble.dem_runs)
+    fine = for_ensemble(case)
+    return gather(_at_once(offsets, lambda offset: dem.execute(fine, offset).columns, progress))
