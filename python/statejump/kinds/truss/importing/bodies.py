@@ -44,6 +44,11 @@ def carriers(deck: Deck) -> set[str]:
     return found | {end for spring in deck.springs for end in (spring.first, spring.second) if end}
 
 
+def named_nodes(deck: Deck) -> set[str]:
+    """Return the nodes that bars, springs or equations name."""
+    return carriers(deck) | {node for equation in deck.equations for node, _, _ in equation.terms}
+
+
 class _Bodies:
     """Processes the rigid bodies of a deck; bodies that share nodes are one body."""
 
@@ -148,7 +153,7 @@ def _move(deck: Deck, kept: str, gone: str) -> None:
 
 def _take_followers(deck: Deck) -> None:
     """Convert means of other nodes to equations. Omit those on which nothing acts."""
-    used = carriers(deck) | deck.equation_directions().keys()
+    used = named_nodes(deck)
     turned = {moment.node for moment in deck.moments}
     for one in deck.followers:
         node = one.node

@@ -10,7 +10,7 @@ import numpy as np
 from statejump.core.errors import MissingKey, StatejumpError
 from statejump.kinds.truss.generate.document import Document, finished
 from statejump.kinds.truss.importing import expansions
-from statejump.kinds.truss.importing.bodies import carriers
+from statejump.kinds.truss.importing.bodies import named_nodes
 from statejump.kinds.truss.importing.joints import matching, put_in
 from statejump.kinds.truss.importing.model import Bar, Deck, Equation, Spring
 from statejump.kinds.truss.importing.supports import supports
@@ -51,7 +51,7 @@ def case_document(
     :param check_ignored: whether to refuse an item of ``Options.ignored`` that the deck does not have
     :raises StatejumpError: a link lacks a number, or a node does not exist
     """
-    used = carriers(deck) | deck.equation_directions().keys()
+    used = named_nodes(deck)
     _check_unused(deck, used)
     dimension = _dimension(deck, used)
     more = dict(sections or {})
