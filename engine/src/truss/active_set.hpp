@@ -10,22 +10,23 @@
 
 namespace statejump::truss::detail {
 
-/// A change of all violated contacts, or of the one with the lowest number.
+/// A change of all violated contacts (block), or of the violated contact with the lowest number
+/// (single).
 enum class Pivot : unsigned char { block, single };
 
 /// When find_active_set() stops changing all violated contacts at once.
 enum class Blocks : unsigned char {
-  while_fewer,     ///< At the first block that does not leave fewer violations than ever before.
-  until_repeated,  ///< At the first block that leads to statuses that were tried: fewest solves.
+  while_fewer,     ///< At the first block that brings no new minimum of violations.
+  until_repeated,  ///< At the first block that repeats earlier statuses: needs the fewest solves.
 };
 
 /// Finds statuses on which all inequalities hold, by block principal pivoting [1].
 ///
-/// All violated contacts change their status at once, until such blocks stop to help (Blocks).
-/// Then only the contact with the lowest number changes [2], until fewer contacts are violated than
-/// ever before. For a P-matrix the search ends after finitely many pivots. Friction that follows a
-/// normal force can make another matrix. Statuses can then recur, and the search ends without a
-/// result.
+/// All violated contacts change their status at once (block) until the rule `Blocks` ends this
+/// phase. Then only the violated contact with the lowest number changes [2], until the number of
+/// violations falls below its previous minimum. For a P-matrix the search ends after finitely many
+/// pivots. If friction depends on an unknown normal force, the matrix need not be a P-matrix.
+/// Statuses can then recur, and the search ends without a result.
 ///
 /// The caller owns the linear system, and has solved it on its statuses when the search begins:
 ///
@@ -34,10 +35,10 @@ enum class Blocks : unsigned char {
 ///   bool change(changes, tried, pivot)    changes statuses of the last solve; false: is singular
 ///   bool solve()                          solves on the present statuses; false: gives up
 ///
-/// `tried` holds the keys of the present search; statuses among them end it.
+/// `tried` holds the keys visited in this search. The search ends if a key recurs.
 ///
-/// @param most_single single pivots in a row
-/// @returns whether statuses were found; if not, the system is where the search ended
+/// @param most_single limit on consecutive single pivots
+/// @returns whether statuses were found; otherwise the system keeps its last statuses
 ///
 /// [1] J. J. Júdice, F. M. Pires, Comput. Oper. Res. 21 (1994) 587-596.
 /// [2] K. G. Murty, Linear Algebra Appl. 9 (1974) 65-108.

@@ -66,7 +66,7 @@ void Assembly::record() {
   }
   runs_ = std::vector<Run>();
   slots_ = std::make_shared<const Slots>(std::move(made));
-  moved.resize(3, 0);  // of which copies have no use
+  moved.resize(3, 0);  // copies do not use it
 }
 
 namespace detail {
@@ -91,7 +91,7 @@ template <class Write>
 void System::write_regions(Assembly& to, Write&& write) const {
   const std::size_t regions = regions_.apart.size();
   if (to.records()) {
-    // Places are written down one after the other.
+    // The sparsity pattern is recorded sequentially.
     for (std::size_t k = 0; k <= regions; ++k) {
       AssemblyStrand strand(to, k);
       write(k < regions ? regions_.apart[k] : regions_.between, strand);
@@ -174,7 +174,7 @@ VectorXd System::slide_rates(const VectorXd& z, double time, const StepStart& st
   VectorXd rates = VectorXd::Zero(static_cast<Eigen::Index>(model.joints.size()));
   each_joint([&](int i) {
     if (!is_slip(statuses[index(i)])) return;
-    // The joint alone: the unknowns of its nodes, then its forces.
+    // Local dofs: 3 per node, then the forces of the joint.
     constexpr int forces_from = 3 * most_joint_nodes;
     const JointFrame& frame = frames_[index(i)];
     std::array<NodeDofs, most_joint_nodes> places;
@@ -194,7 +194,7 @@ VectorXd System::slide_rates(const VectorXd& z, double time, const StepStart& st
     JointWriter to_heated(of_heated);
     to_moving.places = to_heated.places = places;
     to_moving.first_force = to_heated.first_force = forces_from;
-    // For a joint that slips, this evaluates the rate of the closure that would hold if it stuck.
+    // Evaluates the slide row of the sticking contact: its rate is the slip rate.
     Trial at = trial(i, z, time, start, JointModel::friction, 1.0);
     at.unslipped = true;
     const double warming =

@@ -12,19 +12,19 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Joints that a failure names, of those that slide unstably the fastest.
+/// Most joints that a failure names; those that slide fastest come first.
 constexpr std::size_t most_named = 3;
-/// Share of the truss' size below which a jump is not told from what Newton's method leaves of its
-/// equations: the mean, in decades, of rounding and the size itself.
+/// Displacement over the size of the truss below which a jump cannot be distinguished from the
+/// error of Newton's method: the geometric mean of rounding and 1.
 const double jump_share = std::sqrt(std::numeric_limits<double>::epsilon());
-/// Along its tangent a path is past a limit point as far away as the step is long after twice the
-/// tangent's step, if it turns there like a parabola; where it turns less, a little later.
+/// Multiples of the tangent step at which the index is checked after a failed step. If the path
+/// reverses at a limit point like a parabola, a point beyond the fold lies within these multiples.
 constexpr double tangent_steps[] = {1.0, 2.0, 4.0};
 
 }  // namespace
 
-/// Whether a joint slips. Where none does, an index below zero is buckling, which corners of the
-/// programs look for.
+/// Whether a joint slips, also partially. If none does, a negative index means buckling, which is
+/// checked at the corners of the programs.
 bool PathFollower::any_slips(const Statuses& statuses) const {
   return system.slips_smoothly() || std::any_of(statuses.begin(), statuses.end(), is_slip);
 }
@@ -44,22 +44,23 @@ void PathFollower::fail_continuation(FailureKind kind, double when, std::vector<
   throw Failure(std::move(fields));
 }
 
-/// Decides a step within which something happens and which is as short as they get.
-/// @param first how the solve over it ended, @param to, statuses where
-/// @returns how it ended at last, with `to` and `statuses`
-/// @throws Failure if the path ends or parts there
+/// Decides a step of the shortest length in which an event occurs.
+/// @param first how the first solve over the step ended
+/// @param to, statuses its unknowns and statuses
+/// @returns how the last solve ended, with updated `to` and `statuses`
+/// @throws Failure if the path ends here or has several continuations
 SolveReport PathFollower::continue_from_event(double target, VectorXd& to, Statuses& statuses,
                                               SolveReport first) {
   if (first.end == SolveEnd::stopped) return first;
   const bool converged = first.end == SolveEnd::converged;
-  // Dashpots in all contacts decide where a step leads.
+  // With dashpots in all contacts the step has a continuation.
   if (converged && (statuses == origin.statuses || origin.damps_contact)) {
     if (any_slips(statuses) && newton.stability_index() < 0) {
       fail_continuation(FailureKind::no_continuation, target, {});
     }
     return first;
   }
-  // Rates of a law that slips smoothly depend on the way: no set of branches is linear there.
+  // Rates of partial slip depend on the path, so the equations are not linear on fixed statuses.
   if (system.slips_smoothly()) {
     if (converged && newton.stability_index() < 0) {
       fail_continuation(FailureKind::no_continuation, target, {});
@@ -70,17 +71,17 @@ SolveReport PathFollower::continue_from_event(double target, VectorXd& to, Statu
       rates.solve(z, target, origin, converged ? statuses : Statuses(), first.joints);
   const bool undecided =
       answer.count == Continuation::none || answer.count == Continuation::several;
-  // A contact that opens may leave a mechanism or jump across its play: the step itself says so.
+  // An opening contact may leave a mechanism or jump across its play. The step itself detects that.
   if (undecided && answer.opens) return first;
   if (undecided && !answer.singular.empty()) {
     refuse_mechanism(target, answer.singular, JointModel::friction);
   }
-  // Constraints that depend on each other spoil the signs of all sets, not a solution that is near.
+  // Dependent constraints falsify the signs of all sets, but not a solution nearby.
   const double moved = converged ? length_of(to - z, system.displacements())
                                  : std::numeric_limits<double>::infinity();
   const bool near = moved <= jump_share * system.size();
-  // Where a program turns smoothly nothing moves by more than two solutions are undecided by, and
-  // no way parts from others.
+  // At a smooth extremum of a program, displacements are within the tolerance in which two
+  // solutions coincide; continuations do not differ.
   const bool rests = moved <= 2.0 * system.rounding(z).length;
   const bool is_solution =
       answer.count == Continuation::several ? rests : answer.count == Continuation::none && near;
@@ -116,7 +117,7 @@ SolveReport PathFollower::continue_from_event(double target, VectorXd& to, Statu
   return first;
 }
 
-/// Rates of the programs on this side of a corner that may be at `target` [K/s].
+/// Rates of the programs just before `target`, which may be a corner [K/s].
 std::vector<double> PathFollower::program_rates_before(double target) const {
   std::vector<double> rates_before;
   for (const thermal::Program& program : model.programs) {
@@ -126,11 +127,11 @@ std::vector<double> PathFollower::program_rates_before(double target) const {
   return rates_before;
 }
 
-/// Lets joints slide on that were found to stop, where their rates say so. Slides of a short step
-/// may be lost in what Newton's method leaves of the equations, which a slender truss is moved
-/// farther by: then their signs say nothing.
-/// @param to, statuses where a step has converged, and where it does in the end
-/// @param first how it ended
+/// Lets joints continue to slide that the solve found sticking, if their rates require it. Slides
+/// of a short step may be below the error of Newton's method, which is larger in a slender truss.
+/// The signs of such slides are not reliable.
+/// @param to, statuses converged solution, replaced by the final one
+/// @param first how the first solve ended
 SolveReport PathFollower::slide_on(double target, bool is_short, VectorXd& to, Statuses& statuses,
                                    SolveReport first) {
   std::vector<int> stopped;
@@ -144,7 +145,7 @@ SolveReport PathFollower::slide_on(double target, bool is_short, VectorXd& to, S
   Statuses sliding = statuses;
   for (const int i : stopped) {
     const JointStatus before = origin.statuses[index(i)];
-    // The step is to be divided.
+    // The caller shortens this step.
     if (!is_short && slide_at_stake(i, before, target, rounding)) return first;
     sliding[index(i)] = before;
   }
@@ -171,8 +172,8 @@ SolveReport PathFollower::slide_on(double target, bool is_short, VectorXd& to, S
   return solve_on(statuses);
 }
 
-/// Whether a step that has converged passes an instability by slip: what slips at its end is
-/// unstable there, or would be at its start.
+/// Whether a converged step passes an instability by slip: at its end with the final statuses, or
+/// at its start with these statuses.
 bool PathFollower::passes_instability(const Statuses& statuses) {
   if (!any_slips(statuses)) return false;
   if (newton.stability_index() < 0) return true;
@@ -180,9 +181,9 @@ bool PathFollower::passes_instability(const Statuses& statuses) {
   return newton.stability_index(rates.equations(z, time, origin, statuses), statuses) < 0;
 }
 
-/// Whether the rates at the ends of a step without events explain where it leads. A path that jumps
-/// from a limit point to another equilibrium goes farther; a step that is bent as much as that is
-/// too long to tell.
+/// Whether the rates at both ends of a step without events explain the displacement. A path that
+/// jumps from a limit point to another equilibrium moves farther. A step with a similarly large
+/// curvature is too long to decide.
 bool PathFollower::follows_its_rates(const Ends& ends) const {
   if (ends.start.statuses != ends.statuses) return true;
   const Eigen::Index n = system.displacements();
@@ -191,7 +192,7 @@ bool PathFollower::follows_its_rates(const Ends& ends) const {
   const auto after = half * ends.to_rate.head(n);
   const double apart =
       (ends.to.head(n) - ends.from.head(n) - before - after).lpNorm<Eigen::Infinity>();
-  // What dashpots hold comes to rest at its own pace.
+  // Elements held by dashpots move independently of these rates.
   const double slack =
       ends.start.slack_stiffness > 0.0
           ? lever * system.dashpot_force(ends.to, ends.to_time, ends.start, ends.statuses) /

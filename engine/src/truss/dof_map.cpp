@@ -17,10 +17,10 @@ namespace {
 
 /// Copying this many displacements takes about ten times as long as starting a thread.
 constexpr std::size_t nodes_at_once = 50000;
-/// Motion of a node by a dof below which it counts as zero, as in moves_along().
+/// Motion of a node by a dof below which it counts as zero, as in moves_along() [-].
 constexpr double least_motion = 1e-9;
 
-/// Whether an element at a node has 6 dofs per node, for every node.
+/// For every node, whether an element at it has 6 dofs per node.
 std::vector<bool> rotating_nodes(const Model& model) {
   std::vector<bool> rotates(model.nodes.size(), false);
   const auto ask = [&]<class Type>(const std::vector<Type>& elements) {

@@ -11,7 +11,7 @@ namespace statejump::truss {
 
 struct Model;
 
-/// Part of a sum of dofs.
+/// A term factor · dof[row] of a sum.
 struct DofTerm {
   int row;
   double factor;
@@ -19,18 +19,18 @@ struct DofTerm {
 /// The translations of a node along its free directions, each as a sum of dofs.
 using DofSums = std::array<std::vector<DofTerm>, 3>;
 
-/// Degrees of freedom of one node: translations in the first `freedoms` of its free directions,
-/// then its rotations. The default, none, is the ground.
+/// Degrees of freedom of one node: translations along the first `freedoms` of its free directions,
+/// then rotations. The default has none and represents the ground.
 struct NodeDofs {
-  int row = 0;       ///< Of its first own dof.
-  int freedoms = 0;  ///< Translations.
+  int row = 0;       ///< Index of its first own dof.
+  int freedoms = 0;  ///< Number of translations.
   const Eigen::Matrix3d* directions = nullptr;
   int rotations = 0;  ///< 3 where an element has 6 dofs per node, else 0.
-  /// For a node whose translations follow from constraints; null: all translations are its own
+  /// Translations as sums of dofs, for a node with constraints; null: all translations are its own
   /// dofs.
   const DofSums* sums = nullptr;
 
-  /// Whether a translation is itself a dof, and not a sum or a multiple of dofs.
+  /// Whether a translation is itself a dof, not a sum or a multiple of dofs.
   bool is_own(int direction, int dof) const {
     if (sums == nullptr) return true;
     const auto& terms = (*sums)[static_cast<std::size_t>(direction)];
@@ -52,16 +52,16 @@ namespace detail {
 struct Elimination;
 
 /// Numbering of the independent degrees of freedom of all nodes, node after node. Constraints
-/// determine the dependent ones, see Elimination.
+/// determine the dependent ones; see Elimination.
 class DofMap {
  public:
-  /// The model must outlive it.
+  /// @pre The model outlives this object.
   explicit DofMap(const Model& model);
   /// @param rotates whether a node has rotations
   DofMap(const Model& model, const std::vector<bool>& rotates);
 
   int dofs() const { return dofs_; }
-  /// Of a node; −1: the ground.
+  /// Dofs of a node; −1: the ground.
   const NodeDofs& at(int node) const {
     return node < 0 ? nodes_.back() : nodes_[static_cast<std::size_t>(node)];
   }
@@ -69,13 +69,13 @@ class DofMap {
   int node_of(int dof) const;
   /// Translation of a node at unknowns z [m].
   Eigen::Vector3d displacement(int node, const Eigen::VectorXd& z) const;
-  /// Those of all nodes.
+  /// Translations of all nodes at unknowns z [m].
   void displacements(const Eigen::VectorXd& z, Eigen::Matrix3Xd& moved) const;
   /// The dofs for displacements of all nodes that satisfy the constraints.
   Eigen::VectorXd dofs_at(const Eigen::Matrix3Xd& moved) const;
   /// Adds a force on a node to the forces on the dofs [N].
   void add_force(int node, const Eigen::Vector3d& force, Eigen::VectorXd& to) const;
-  /// Whether any motion changes the distance of two nodes along a direction.
+  /// Whether some motion of the dofs changes the distance of two nodes along a direction.
   bool moves_apart(int first, int second, const Eigen::Vector3d& direction) const;
   /// Translations of a node along its free directions at unknowns z.
   static Eigen::Vector3d along_directions(const NodeDofs& at, const Eigen::VectorXd& z);
@@ -83,7 +83,7 @@ class DofMap {
  private:
   void add_sums(const Elimination& eliminated);
 
-  std::vector<NodeDofs> nodes_;                         // then the ground
+  std::vector<NodeDofs> nodes_;                         // one per node, then the ground
   std::shared_ptr<const std::map<int, DofSums>> sums_;  // of constrained nodes
   int dofs_ = 0;
 };

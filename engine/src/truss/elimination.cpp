@@ -10,15 +10,15 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Remainder of two numbers that cancel, relative to the larger one: each is a sum of at most some
-/// thousand products with a rounding of 1e-16.
+/// A sum that cancels to less than this fraction of its larger term counts as zero. Each term is a
+/// sum of at most some thousand products with a rounding of 1e-16.
 constexpr double rounding_fraction = 1e-12;
-/// Factors whose difference is below rounding are equal.
+/// Factors equal up to rounding count as equally large pivots.
 constexpr double equal_fraction = 1.0 - rounding_fraction;
 
 using Sum = std::map<int, double>;
 
-/// Adds to a factor. @returns whether the displacement is still in the sum
+/// Adds a value to a factor. @returns whether the displacement is still in the sum
 bool add(Sum& sum, int place, double value) {
   const auto [at, is_new] = sum.try_emplace(place, value);
   if (is_new) return true;
@@ -109,7 +109,8 @@ class Eliminating {
 
   const Model* model_;
   Elimination made_;
-  std::map<int, std::set<int>> used_in_;  // dependent places by the places in their sums
+  std::map<int, std::set<int>>
+      used_in_;  // dependent displacements by the displacements in their sums
 };
 
 }  // namespace

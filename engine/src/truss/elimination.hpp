@@ -8,7 +8,7 @@
 
 namespace statejump::truss::detail {
 
-/// Index of a displacement of a node along one of its free directions, among those of all nodes.
+/// Index of a node's displacement along one of its free directions.
 inline int place_of(int node, int direction) {
   return 3 * node + direction;
 }
@@ -30,11 +30,12 @@ inline int place_of(int node, int direction) {
 struct Elimination {
   /// For the index of each dependent displacement: indices and factors of the independent ones.
   std::map<int, std::map<int, double>> sums;
-  std::vector<int> redundant;  ///< Constraints.
+  std::vector<int> redundant;  ///< Indices of constraints that follow from others.
 };
 
 /// Gauss–Jordan elimination, one constraint after another. The pivot is the largest factor, so that
-/// no factor grows. Among equal ones it is the one in the fewest sums, so that chains stay sparse.
+/// no factor grows. Among equal factors the pivot is the one used in the fewest sums, so that
+/// chains stay sparse.
 Elimination eliminate(const Model& model);
 
 }  // namespace statejump::truss::detail

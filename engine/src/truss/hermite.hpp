@@ -8,8 +8,8 @@
 
 namespace statejump::truss::detail {
 
-/// Cubic over a step from the values and rates at its ends (Hermite), as a function of the fraction
-/// of the step. Its error is fourth-order in the step.
+/// Cubic Hermite interpolation over a step, from the values and rates at its ends. The argument is
+/// the fraction of the step. The error is of fourth order in the step length.
 struct Cubic {
   double first;
   double last;
@@ -26,14 +26,14 @@ struct Cubic {
   double linear() const { return 6.0 * (last - first) - 4.0 * first_rate - 2.0 * last_rate; }
   double square() const { return 3.0 * (first_rate + last_rate) - 6.0 * (last - first); }
   double rate(double share) const { return first_rate + share * (linear() + share * square()); }
-  /// Fraction inside the step at which the rate is smallest; empty if that is at an end.
+  /// Fraction inside the step at which the rate is smallest; empty if the minimum is at an end.
   std::optional<double> slowest() const {
     if (!(square() > 0.0)) return std::nullopt;
     const double share = -0.5 * linear() / square();
     return share > 0.0 && share < 1.0 ? std::optional(share) : std::nullopt;
   }
-  /// First fraction in (0, end] at which a rate that starts above 0 becomes 0. Requires a rate <= 0
-  /// at `end`.
+  /// First fraction in (0, end] at which the rate becomes 0. Requires a positive rate at 0 and a
+  /// rate <= 0 at `end`.
   double turn(double end) const {
     double before = 0.0;
     for (int halving = 0; halving < 60; ++halving) {
@@ -44,12 +44,12 @@ struct Cubic {
   }
 };
 
-/// A joint within a step of a given duration, with nodes and forces from cubics. All other values
-/// are those at the end.
+/// State of a joint within a step: displacements and forces follow cubics, all other values are
+/// those at the end of the step.
 struct JointWay {
   Trial first;
   Trial last;
-  Trial first_rate;  ///< The same joint, asked with the rates of the unknowns.
+  Trial first_rate;  ///< The joint evaluated with rates in place of displacements and forces.
   Trial last_rate;
   double duration;
 

@@ -14,16 +14,16 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Displacement that counts as near, in the size of the truss: a deployed structure whose loads
-/// move it farther than that in one step is not the one that was drawn.
+/// Limit of a displacement over the size of the truss. A deployed structure whose loads move it
+/// farther in one step is not the modelled one.
 constexpr double near_share = 0.05;
-/// Smallest step of the load fraction: what holds up to it is known to six digits.
+/// Smallest step of the load fraction: the limit load is known to six digits.
 constexpr double least_step = 1e-6;
-/// Stiffness of a displacement that only friction at its bound resists, in that of the stiffest
-/// element: it decides how far one iteration goes, not where they end.
+/// Stiffness of displacements that only friction at its limit resists, over that of the stiffest
+/// element. It limits the step of an iteration, but does not affect the solution.
 constexpr double proximal_share = 1e-6;
 
-/// The truss with a fraction of its loads and misfits: with none it is free of stress as drawn.
+/// The truss with a fraction of its loads and misfits; 0: stress-free reference configuration.
 Model loaded(Model model, double fraction) {
   scale_misfits(model, fraction);
   for (Node& node : model.nodes) node.load *= fraction;
@@ -32,7 +32,7 @@ Model loaded(Model model, double fraction) {
 
 }  // namespace
 
-/// Whether loads and misfits work on one of these displacements of the drawn shape.
+/// Whether loads and misfits do work on one of these displacements of the reference configuration.
 bool PathFollower::are_loaded(const std::vector<VectorXd>& shapes) const {
   Assembly at = Assembly::without_jacobian(system.unknowns());
   const VectorXd drawn = VectorXd::Zero(system.unknowns());
@@ -47,16 +47,17 @@ bool PathFollower::are_loaded(const std::vector<VectorXd>& shapes) const {
   });
 }
 
-/// Whether displacements are small beside the truss.
+/// Whether displacements are small relative to the size of the truss.
 bool PathFollower::is_near(const VectorXd& moved) const {
   const double farthest = length_of(moved, system.displacements());
   return system.size() == 0.0 || farthest <= near_share * system.size();
 }
 
-/// Follows loads and misfits from none to the whole in steps that stay near, each from the last
-/// equilibrium. A joint whose friction is exhausted slides to the next equilibrium if that is near:
-/// to a stop, to where another element carries.
-/// @returns where no step leads on; nothing if the whole load is reached or the path was stopped
+/// Increases loads and misfits from zero to their full values in steps with small displacements,
+/// each from the last equilibrium. A joint at its friction limit slides to the next equilibrium if
+/// that is near: to a stop, or to a position in which another element takes the load.
+/// @returns the point at which the load increase stalled; empty at full load or if the caller
+/// stopped
 std::optional<Stall> PathFollower::follow_loads() {
   z = VectorXd::Zero(system.unknowns());
   origin.statuses = system.all_stick();
@@ -92,7 +93,7 @@ std::optional<Stall> PathFollower::follow_loads() {
     step = 0.5 * (next - reached);
     if (step < least_step) return Stall{reached, report, statuses, trial};
   }
-  // Leaves the factors of the whole load, which the path reuses.
+  // Computes the factors for the full load, which the path reuses.
   const SolveReport last =
       newton.solve(0.0, begin, JointModel::pins, 1.0, options.most_iterations, z, origin.statuses);
   note(last);
@@ -100,7 +101,7 @@ std::optional<Stall> PathFollower::follow_loads() {
   return Stall{1.0, last, origin.statuses, z};
 }
 
-/// Names what ends the way of the loads: buckling, or the joints that slip there or beyond.
+/// Throws the reason why the load increase stalled: buckling, or joints that slip at or beyond it.
 void PathFollower::refuse_overload(const Stall& at) {
   std::set<int> exhausted(at.report.joints.begin(), at.report.joints.end());
   Statuses beyond = at.statuses;

@@ -14,22 +14,21 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-/// Stiffness, as a fraction of that of the stiffest element, below which the truss without its
-/// contacts counts as a mechanism. W contains its inverse, so this bounds the accuracy with which
-/// forces determine motions.
+/// Smallest stiffness of the truss without its contacts, over that of the stiffest element. Below
+/// it the truss counts as a mechanism. W contains the inverse stiffness, so this bounds its error.
 constexpr double soft_share = 1e-9;
 /// Initial fraction of the proximal term: the softest generated trusses have 1e-4.
 constexpr double proximal_share = 1e-3;
 
 /// The unknowns in two groups: contacts, and all others (the structure).
 struct Groups {
-  std::vector<int> place;  ///< Of an unknown in its group.
+  std::vector<int> place;  ///< Index of an unknown within its group.
   std::vector<bool> contact;
   int contacts = 0;
   int others = 0;
 };
 
-/// Block of the Jacobian: rows and columns of a group each.
+/// Block of the Jacobian for one group of rows and one group of columns.
 Sparse block(const Sparse& jacobian, const Groups& of, bool contact_rows, bool contact_columns) {
   Triplets entries;
   for (int column = 0; column < jacobian.outerSize(); ++column) {
@@ -81,7 +80,7 @@ LocalProblem local_problem(const System& system, const VectorXd& z, double time,
         std::visit([&](const auto& one) { return one.contact(at, statuses[index(i)]); },
                    model.joints[index(i)]);
     if (!contact) continue;
-    branches[index(i)] = JointStatus::stick;  // whose rows are gap and slide
+    branches[index(i)] = JointStatus::stick;  // its rows are gap and slide
     made.joints.push_back(i);
     contacts.push_back(*contact);
     for (const int row : {contact->normal, contact->tangential}) {
@@ -119,7 +118,7 @@ LocalProblem local_problem(const System& system, const VectorXd& z, double time,
     compliance.col(j) += rows * factor.solve(VectorXd(columns.col(j)));
   }
 
-  // Blocks of two: a given normal force has its own gap, which this force closes.
+  // Blocks of two. A given normal force has an artificial gap that this force closes.
   const auto count = static_cast<Eigen::Index>(contacts.size());
   std::vector<Eigen::Index> row_of;
   for (Eigen::Index k = 0; k < count; ++k) {

@@ -25,19 +25,19 @@ using numerics::raise;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr NewtonOptions tuned;
-/// Compliance of a closure whose reaction is not unique, in that of the stiffest element. Rounding
-/// of a closure then changes reactions by a thousand roundings of them, and what is regularised
-/// wrongly in unique directions shrinks by a thousand in every iteration.
+/// Compliance of closures with non-unique reactions, over that of the stiffest element. The
+/// rounding error of a closure changes reactions by a thousand of their roundings. The error of the
+/// regularisation in unique directions shrinks by a factor of a thousand per iteration.
 constexpr double reaction_compliance = 1e-3;
 
-/// Multiplying as many columns takes some ten times as long as starting a thread.
+/// Multiplying this many columns takes about ten times as long as starting a thread.
 constexpr Eigen::Index halved_columns = 50000;
 
-/// What is left of the equations, each kind in its own unit.
+/// Residuals of the equations, each in its own unit.
 struct Residuals {
-  double balance = 0.0;  ///< Of the nodes [N].
-  double closure = 0.0;  ///< Of joints that hold [m].
-  double force = 0.0;    ///< Of joints that slip or are open [N].
+  double balance = 0.0;  ///< Force balance of the nodes [N].
+  double closure = 0.0;  ///< Closures of stops, contacts and sticking joints [m].
+  double force = 0.0;    ///< Forces of slipping or open joints [N].
 };
 
 Residuals residuals(const Assembly& at) {
@@ -52,14 +52,14 @@ Residuals residuals(const Assembly& at) {
   return found;
 }
 
-/// What rates leave of the linear equations of an assembly.
+/// Residual of the linear rate equations.
 struct LeftOver {
   VectorXd residual;
-  /// The largest residual of a force over the largest sum of forces that are added up in a row, all
-  /// taken as positive, or that of a closure over the largest such sum, whatever is larger; nothing
-  /// moves in less than what these forces move the stiffest part by. No metres are compared with
-  /// newtons, and rounding alone leaves some 1e-16, however ill the condition (a backward error:
-  /// W. Oettli, W. Prager, Numer. Math. 6 (1964) 405-409).
+  /// Backward error (W. Oettli, W. Prager, Numer. Math. 6 (1964) 405-409). It is the larger of two
+  /// ratios: force residual over the largest absolute sum of force terms in a row, and closure
+  /// residual over the largest absolute sum of closure terms. The latter sum is at least the former
+  /// divided by the stiffness of the stiffest element. Metres and newtons are not compared, and
+  /// rounding alone gives about 1e-16 for any condition number.
   double share = 0.0;
 };
 
@@ -83,7 +83,7 @@ LeftOver left_over(const Assembly& of, const VectorXd& rate, const VectorXd& by_
   if (columns < halved_columns) {
     add_columns(0, columns, left.residual, added);
   } else {
-    // The same halves whatever threads there are.
+    // The division does not depend on the number of threads.
     VectorXd second = VectorXd::Zero(columns), second_added = second;
     in_parallel(2, [&](std::size_t k) {
       k == 0 ? add_columns(0, columns / 2, left.residual, added)
@@ -107,7 +107,7 @@ LeftOver left_over(const Assembly& of, const VectorXd& rate, const VectorXd& by_
   return left;
 }
 
-/// Whether steps that go on shrinking as the last two did leave nothing more to do.
+/// Whether the next step will be negligible if steps continue to shrink as the last two did.
 bool is_last(const std::deque<double>& lengths, double enough) {
   if (lengths.empty()) return false;
   const double last = lengths.back();
@@ -115,25 +115,25 @@ bool is_last(const std::deque<double>& lengths, double enough) {
   return last <= enough || last * last <= enough * before;
 }
 
-/// The joints that violate their inequalities, and where they belong.
+/// Joints that violate their inequalities, and their corrected statuses.
 struct Violations {
   std::vector<int> joints;
   Statuses corrected;
 };
 
-/// How the set of branches is changed.
+/// Which violated joints change their status: all (block), or the lowest (single).
 enum class Pivoting : unsigned char { block, single };
 
 }  // namespace
 
-/// Smallest share of the way at which one of the joints violates its inequality: each violates it
-/// at the end.
+/// Smallest fraction of the step at which one of the joints violates its inequality. @pre Each
+/// joint violates it at the end of the step.
 Newton::Violation Newton::first_violation(const std::vector<int>& joints, const VectorXd& from,
                                           const VectorXd& to, double from_time, double time,
                                           const StepStart& start, JointModel model,
                                           const Statuses& statuses) const {
   Violation first{1.0, joints.front()};
-  // Of one joint only: what it is asked about is linear between both states.
+  // The joint's displacements and forces are interpolated linearly between both ends.
   const auto violates = [&](int joint, double share) {
     Trial at = system_->trial(joint, from, from_time, start, model, 1.0);
     const Trial end = system_->trial(joint, to, time, start, model, 1.0);
@@ -149,7 +149,7 @@ Newton::Violation Newton::first_violation(const std::vector<int>& joints, const 
                       system_->model().joints[index(joint)]) != status;
   };
   for (const int joint : joints) {
-    // One that is later than the first so far need not be known.
+    // A later violation than the first one found so far is skipped.
     if (first.share < 1.0 && !violates(joint, first.share)) continue;
     first.joint = joint;
     double before = 0.0;
@@ -167,8 +167,8 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
   SolveReport report;
   current_ = false;
   regularisation_ = Regularisation::none;
-  // Laws of several pieces have other equations on each; located changes ask for states that
-  // only new factors make as exact.
+  // Piecewise laws change their equations within a solve, and located changes need the accuracy of
+  // new factors.
   const bool may_keep = !locates_ && !system_->slips_smoothly();
   bool kept = std::exchange(quiet_, false) && may_keep;
   bool stale = true;  // no factors have been made yet
@@ -197,36 +197,38 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     }
     return found;
   };
-  // Steps on this set of branches, the last of them from `from` by `step`.
+  // Lengths of the steps on the present statuses [m]; the last step leads from `from` by `step`.
   std::deque<double> lengths;
   VectorXd from;
   VectorXd step;
   int halvings = 0;
   TracedSolve traced(tracer_,
                      {time, joints, opening, report, statuses, lengths, halvings, factorizations_});
-  double merit_before = 0.0;  // what was left of the equations at `from` [N]
+  double merit_before = 0.0;  // scaled residual at `from` [N]
   int iterations = 0;
   std::size_t pieces = 0;
-  double first_largest = 0.0;  // force where the solve begins [N]
-  bool settled = false;        // whether no joint violates its inequality where z is
-  // Pivots of all joints since there were ever fewer violations, and the joints that had any since.
+  double first_largest = 0.0;  // largest force at the start of the solve [N]
+  bool settled = false;        // whether no joint violates its inequality at z
+  // Cycling test: block pivots since the last new minimum of violations, and the joints changed
+  // since.
   int idle = 0;
   std::set<int> wandering;
-  VectorXd closing_z;  // where the last contact that was open closed
-  // Pivots that wander lead far away, where the equations are others: they begin anew from here.
+  VectorXd closing_z;  // unknowns at which an open contact closed last
+  // Cycling pivots lead to other linearised equations. Restarts begin from these values.
   const VectorXd first_z = z;
   const Statuses first_statuses = statuses;
-  // Where a change is to be located it is sought along the tangent at the start.
+  // Starts from the predictor unless changes are located: these are searched along the tangent.
   const bool is_foreseen = search && !search->stop;
-  // The tension of elements that are not yet as long as their temperature makes them would turn
-  // slack ones.
+  // With slack elements the solve also starts from the predictor. At the old length, thermal strain
+  // of an element would appear as a tension that moves slack elements.
   const bool hangs = search && any_open(statuses);
   const VectorXd& begun_at = is_foreseen || hangs ? search->foreseen : first_z;
   if (is_foreseen || hangs || (search && kept && keeps(statuses, joints))) z = search->foreseen;
   bool condensed = false;
-  bool patient = false;  // whether joints change only where the equations of their branches hold
-  /// Takes the step from the start that pivots on its factors lead to; false: there is none. What
-  /// wanders is as it was at the start, everything else on the branches that were found.
+  bool patient = false;  // whether statuses change only once the equations hold
+  /// Takes the Newton step from the start of the solve with statuses from the Schur-complement
+  /// active set. Cycling joints begin in their first statuses, all others in the present ones.
+  /// False: no solution.
   const auto condense = [&] {
     condensed = true;
     idle = 0;
@@ -245,7 +247,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     z = first_z + answer->step;
     return true;
   };
-  /// False if the sets go round in a circle.
+  /// Changes statuses of violated joints. False: statuses cycle.
   /// @param stepped whether z is at the end of a full step on the present factors
   const auto pivot = [&](const Violations& found, bool stepped) {
     if (found.joints.empty()) return true;
@@ -270,13 +272,13 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
       }
     }
     wandering.insert(found.joints.begin(), found.joints.end());
-    // Laws of several pieces change them without a pivot: they are not condensed.
+    // Piecewise laws change their branch without a pivot, so they are not condensed.
     const double paid = idle * factor_.solutions_per_factorization();
     const bool wanders = at_.pieces == 0 && pivoting == Pivoting::block && stepped && idle > 0 &&
                          paid >= static_cast<double>(wandering.size());
     if (wanders && !condensed && condense()) return begin_anew();
     if (wanders && search) {
-      // Steps that have not converged may ask for branches that the solution does not.
+      // Iterates that have not converged may request statuses that the solution does not.
       if (std::exchange(patient, true)) return false;
       statuses = found.corrected;
       return begin_anew();
@@ -288,7 +290,8 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
       return one;
     };
     if (statuses[index(found.joints.front())] == JointStatus::open) closing_z = z;
-    // A contact that pulls while it sticks and closes while it is open may slide, where it closes.
+    // A contact in tension while it sticks and in penetration while it is open may slip where it
+    // closes.
     const auto slides = [&](const Violations& of) {
       const std::size_t first = index(of.joints.front());
       if (statuses[first] != JointStatus::open && of.corrected[first] != JointStatus::open) {
@@ -307,7 +310,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     Statuses next = take();
     while (!seen.insert(fingerprint(next)).second) {
       if (pivoting == Pivoting::single) {
-        // Over a step that is the question of the rate problem.
+        // In a step of the path the rate problem decides this.
         const bool is_path = time != start.time && !start.damps_contact;
         if (is_path || !slides(found)) return false;
         return begin_anew();
@@ -320,8 +323,8 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     return begin_anew();
   };
 
-  // Looks once where on the way from the start the first of these joints leaves its branch. True:
-  // the solve ends there.
+  // Event detection, once per solve: finds the first of these joints that changes its status after
+  // the start of the step. True: the solve ends at this event.
   const auto leaves_ahead = [&](const Violations& found) {
     if (!looking) return false;
     std::vector<int> leaving;
@@ -345,10 +348,10 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     return true;
   };
 
-  // Every joint once on each of the other branches that it has, at most five.
+  // Every joint may change once to each of its other statuses, at most five.
   const long most_pivots = most_iterations + 5 * static_cast<long>(statuses.size());
   for (long total = 0; iterations < most_iterations && total < most_pivots; ++total, ++iterations) {
-    // By factors that are there the residual is enough.
+    // With old factors only the residual is needed.
     bool old = kept && at_.pieces == 0 && halvings == 0 && keeps(statuses, joints);
     kept = may_keep;
     bool differentiated = false;
@@ -357,7 +360,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
       system_->evaluate(z, time, start, statuses, joints, opening, at_);
       differentiated = jacobian;
     };
-    // Where the solve is likely to end, the Jacobian is wanted: for the rates.
+    // If the solve is likely to end here, the Jacobian is evaluated too: the rates need it.
     evaluate(!old || is_last(lengths, closure_tolerance * system_->reach(z)));
     const auto start_anew = [&] {
       z = begun_at;
@@ -369,9 +372,9 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     const double rounding = system_->force_rounding(z);
     const Residuals left = residuals(at_);
     traced.iteration(left.balance, left.closure, left.force);
-    // Farther than the truss is large no equation of its start says where to go.
+    // Beyond the size of the truss the linearised equations have no meaning.
     if (pivoted && system_->size() > 0.0 && length(z - begun_at) > system_->size()) return report;
-    // Steps on other pieces of the branches say nothing of those on these.
+    // Step lengths on another branch of a piecewise law are not comparable.
     if (std::exchange(pieces, at_.pieces) != at_.pieces) {
       lengths.clear();
       halvings = 0;
@@ -383,14 +386,14 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
       start_anew();
       continue;
     }
-    // Branches were asked for by equations that do not hold where they led to: of many joints that
-    // change at once, forces lack half of the largest one. A shorter step changes fewer. Where
-    // changes are located none are passed together.
+    // The new statuses were requested by linearised equations that are inaccurate if the force
+    // residual exceeds half of the largest force, because many joints changed at once. A shorter
+    // step changes fewer. Located changes are never passed together.
     if (total == 0) first_largest = largest;
     const bool astray = left.balance > 0.5 * std::max(largest, first_largest) + rounding;
     if (pivoted && is_foreseen && astray) return report;
-    // Where steps no longer shrink, what rounding of the forces bends a contact by that hardly
-    // touches is no gap.
+    // If steps no longer shrink, a closure residual within the elastic deflection that rounding of
+    // the forces causes in a lightly loaded contact is accepted.
     const auto closes = [&](double largest_gap) {
       if (largest_gap <= closure_tolerance * reach) return true;
       const std::size_t n = lengths.size();
@@ -408,8 +411,8 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
         return false;
       }) < 0;
     };
-    // Where rounding is larger than foreseen the iteration stands still: that is the end as well,
-    // if forces balance at all.
+    // If rounding is larger than estimated, steps stagnate. This also counts as convergence,
+    // provided that forces balance.
     const bool closed = left.balance <= tuned.force_tolerance * largest + rounding &&
                         closes(left.closure) && left.force <= 16.0 * epsilon * largest + rounding;
     const bool still = !lengths.empty() && lengths.back() <= closure_tolerance * reach &&
@@ -449,7 +452,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
         }
         old = shrinks && keeping_pays(std::log(enough / next_length) / std::log(share));
       } else if (!lengths.empty() && lengths.back() <= enough) {
-        old = false;  // it stands still
+        old = false;  // stagnates
       }
       old = old && next.allFinite();
       if (!old && !differentiated) evaluate(true);
@@ -473,7 +476,7 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
         next_length = most;
       }
     }
-    // Steps may grow along directions that only dashpots hold, if equations are met the better.
+    // Steps may grow along directions held by dashpots only, if the residual at least halves.
     const bool improves = start.slack_stiffness > 0.0 && merit <= 0.5 * merit_before;
     const bool too_long = !improves && !lengths.empty() &&
                           next_length > closure_tolerance * reach &&
@@ -488,14 +491,13 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     halvings = 0;
     from = z;
     merit_before = merit;
-    // Steps to and fro between the same two places meet in the middle.
+    // Iterates that alternate between two states are replaced by their mean.
     const std::size_t taken = lengths.size();
     const auto stalls = [&](std::size_t steps) {
       return taken >= steps && next_length > 0.5 * lengths[taken - steps];
     };
     if (stalls(tuned.swing_steps)) next *= 0.5;
-    // Where a shorter step or stiffer dashpots are the answer, one that shrinks no more is given
-    // up.
+    // If the caller can shorten the step or stiffen dashpots, a stagnating solve ends early.
     const bool gives_up = (search && pivoted) || start.damps_contact;
     if (gives_up && stalls(2 * tuned.swing_steps)) return report;
     step = next;
@@ -504,9 +506,9 @@ SolveReport Newton::solve(double time, const StepStart& start, JointModel joints
     lengths.push_back(next_length);
     traced.step(next_length);
     if (lengths.size() > tuned.remembered_steps) lengths.pop_front();
-    // Of a law with several pieces a step on the tangent of another piece says nothing: elements
-    // that slip stand at their bound at the start of a step, where their tangent is that of
-    // sticking.
+    // The first step on a piecewise law may use the tangent of another branch: elements that slip
+    // are at their limit at the start of a step, with the tangent of sticking. Statuses are not
+    // checked then.
     const bool on_piece = at_.pieces == 0 || lengths.size() > 1;
     if (!damped && on_piece && !patient && pivoting != Pivoting::single) {
       const Violations found = violations();
@@ -544,7 +546,7 @@ bool Newton::factorize(const Statuses& statuses, JointModel joints, double most_
 }
 
 std::vector<int> Newton::dependent_joints() const {
-  // Reactions that balance each other outgrow all others by a thousand in a solution.
+  // Self-equilibrated reactions grow a thousand times more than all others in a solution.
   VectorXd reactions = VectorXd::Zero(system_->unknowns());
   for (Eigen::Index row = system_->displacements(); row < reactions.size(); ++row) {
     reactions[row] = std::sin(1.0 + 1.7 * static_cast<double>(row));
@@ -585,9 +587,9 @@ Regularisation factor_regularised(const System& system, const Assembly& at,
 }
 
 bool Newton::keeping_pays(double decades) const {
-  // By old factors each step is one decade, by new ones the first is two and every one twice that
-  // of the last. An iteration passes the entries of the factors, as many in L and U as the cost of
-  // a factorization tells, and those of the Jacobian.
+  // With old factors each step gains one decade. With new factors the first gains two, and every
+  // further one twice as many as the last. One iteration reads the entries of L and U, estimated
+  // from the cost of a factorization, and those of the Jacobian.
   const double saved = factor_.solutions_per_factorization();
   const double factors = 4.0 * saved * system_->unknowns();
   const auto jacobian = static_cast<double>(at_.entries_of_jacobian());
@@ -614,7 +616,7 @@ int Newton::stability_index(const Assembly& at, const Statuses& statuses) {
 int Newton::checked_index(const Assembly& at) {
   const int found = index_of(factor_.determinant_sign(), at);
   if (found >= 0) return found;
-  // Constraints that depend on each other may leave a pivot of rounding, whose sign means nothing.
+  // Dependent constraints may leave a pivot of the size of rounding, whose sign is arbitrary.
   const Regularisation needed = factor_regularised(*system_, at, 0.0, factor_);
   factored_ = needed != Regularisation::none;
   if (!factored_) return found;
@@ -624,8 +626,8 @@ int Newton::checked_index(const Assembly& at) {
 }
 
 std::optional<VectorXd> Newton::rate(const VectorXd& by_time, const VectorXd& guess) {
-  // The factors are those of the state before the last step, or of its start: what that leaves is
-  // refined away, and where it is not (the branches have changed since), there are new factors.
+  // The factors belong to an earlier iterate, so the rates are refined iteratively. If refinement
+  // fails, for example after a change of statuses, new factors are computed.
   const double rounding = 16.0 * epsilon;  // of a row, which has some fifteen entries
   for (const bool fresh : {false, true}) {
     if (!fresh && !factored_) continue;
@@ -638,7 +640,7 @@ std::optional<VectorXd> Newton::rate(const VectorXd& by_time, const VectorXd& gu
     for (;;) {
       const LeftOver left = left_over(at_, found, by_time, system_->stiffness_scale());
       if (left.share <= rounding) return found;
-      // Refinement that no longer halves what is left is at rounding, or leads nowhere.
+      // Refinement has reached rounding or diverges if the residual no longer halves.
       if (!(left.share <= 0.5 * last)) break;
       last = left.share;
       found -= factor_.solve(left.residual);

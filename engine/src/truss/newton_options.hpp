@@ -8,24 +8,23 @@ namespace statejump::truss::detail {
 /// Tolerances and limits of Newton::solve(). `closure_tolerance` is in system.hpp, because the path
 /// uses it too.
 struct NewtonOptions {
-  /// Forces balance to this fraction of the largest one. A sum of some fifteen entries in a row
-  /// leaves 1e-15 by rounding, and the condition of a structure of many elements takes two to three
-  /// decades.
+  /// Tolerated force residual over the largest force. Rounding leaves 1e-15 in a row of about
+  /// fifteen entries, and the condition number of a large structure costs two to three decades.
   double force_tolerance = 1e-12;
-  /// Steps that a step is compared with: M = 10 of Grippo, Lampariello and Lucidi [2].
+  /// Number of earlier steps in the monotonicity test: M = 10 of Grippo, Lampariello and Lucidi
+  /// [2].
   std::size_t remembered_steps = 10;
-  /// Steps after which Newton's method goes to and fro if they have not even halved.
+  /// Newton's method counts as oscillating if the step length has not halved after this many steps.
   std::size_t swing_steps = 4;
-  /// Halvings of a step after which it is below a thousandth: Newton's direction leads nowhere.
+  /// Largest number of halvings of a step. After ten the step is below a thousandth: no descent.
   int most_halvings = 10;
-  /// Halvings of the fraction of a step at which a joint changes its status: to rounding of the
-  /// step, 2^-50.
+  /// Bisections for the fraction of a step at which a joint changes its status: accurate to 2^-50.
   int fraction_halvings = 50;
-  /// Length of a step along a displacement that only the regularisation resists, in the size of the
-  /// truss. Beyond it the lengths and directions of the elements differ from those of the equations
-  /// by more than a twentieth.
+  /// Limit of a step along a displacement that only the regularisation resists, over the size of
+  /// the truss. Longer steps change lengths and directions of the elements by more than a
+  /// twentieth, so that the linearised equations no longer hold.
   double proximal_fraction = 0.05;
-  /// Interval of progress callbacks [s]: short enough for a progress bar and for Ctrl-C.
+  /// Progress callback interval [s]: short enough for a progress bar and for Ctrl-C.
   double progress_interval_s = 0.1;
 };
 

@@ -27,8 +27,8 @@ inline std::size_t index(int i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Vector drawn + moved, its length, and the growth of that length, computed without the difference
-/// of two lengths.
+/// Vector drawn + moved, its length, and the growth of its length. The growth is computed without
+/// the difference of two lengths.
 struct Lengths {
   Vector3d along;
   double drawn;
@@ -49,15 +49,15 @@ struct AngleDerivatives {
   Matrix3d hessian;
 };
 
-/// The same along the two directions of the plane.
+/// Gradient and Hessian in the two coordinates of the plane.
 struct PlanarAngle {
   Vector2d gradient;
   Eigen::Matrix2d hessian;
 };
 
-/// Angle by which a direction rotates if its end moves [rad]. For a tangent t below a thousandth,
-/// three terms of the series of the arc tangent have an error of t⁶/7 < 1.5e-19 of it, and take a
-/// tenth of the time of atan2.
+/// Angle by which a direction rotates if its end moves [rad]. If its tangent t is below 1e-3, three
+/// terms of the series of the arc tangent are used. Their relative error is t⁶/7 < 1.5e-19, and
+/// they take a tenth of the time of atan2.
 inline double turn_by(const Vector2d& direction, const Vector2d& moved) {
   const double across = cross(direction, moved);
   const double along = direction.dot(direction + moved);
@@ -78,7 +78,7 @@ inline AngleDerivatives angle_derivatives(const Vector2d& v, const Matrix32& pla
   return {plane * flat.gradient, plane * flat.hessian * plane.transpose()};
 }
 
-/// Two directions that form a right-handed frame with the axis; x and y for the z axis.
+/// Two unit vectors that form a right-handed frame with the axis; x and y for the z axis.
 inline Matrix32 plane_of(const Vector3d& axis) {
   Matrix32 plane;
   const Vector3d a = axis.normalized();

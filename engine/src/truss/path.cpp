@@ -67,28 +67,28 @@ Eigen::VectorXd output(const Model& model, const State& state, int joint, std::s
 
 namespace {
 
-/// Steps in a row that ended before a foreseen change and came no nearer to it.
+/// Consecutive steps that ended before a predicted change without approaching it.
 constexpr int most_unconfirmed = 8;
-/// Steps from one place that end before a foreseen change which does not come nearer.
+/// Steps from one state that end before a predicted change without approaching it.
 constexpr int most_foreseen = 4;
-/// Changes of one joint in an increment that the solver locates. After more the energy balance
-/// alone limits the steps.
+/// Located status changes of one joint per increment. After more of them only the energy balance
+/// limits the steps.
 constexpr int most_located = 32;
-/// The same of all joints while elements are slack: what hangs on dashpots touches and slides again
-/// and again, and carries nothing.
+/// Located status changes of all joints per increment while elements are slack: elements on
+/// dashpots make and lose contact repeatedly, without significant forces.
 constexpr int most_located_with_slack = 8;
-/// Steps since the last change after which none is located any more while elements are slack.
+/// Steps since the last change after which changes are no longer located while elements are slack.
 constexpr int most_steps_with_slack = 256;
-/// Steps after one that did not converge before a longer one is tried.
+/// Steps after a failed one before a longer step is attempted.
 constexpr int most_held = 4;
-/// Steps of an eighth of one that passes a change come nearer to it by an eighth or more.
+/// If repeated steps pass a change, the distance to it must shrink by this factor.
 constexpr double nearer = 0.95;
 
-/// Corners of all programs [s]. Those closer than Model::same_time of the duration are one: 3 times
-/// 0.1 s are not 0.3 s to the last bit, nor 8 times 0.15 s 4 times 0.3 s.
+/// Corners of all programs [s]. Corners closer than Model::same_time of the duration are merged,
+/// because times such as 3 · 0.1 s and 0.3 s differ by rounding.
 std::vector<double> corners(const Model& model) {
-  // The first program's own times go before those of others, so that its cycles end exactly; the
-  // very last is where every program has ended.
+  // Corners of the first program take precedence, so that its cycles end exactly. The last corner
+  // is the latest end of all programs.
   std::vector<double> own{0.0};
   std::set<double> others;
   for (std::size_t i = 0; i < model.programs.size(); ++i) {
@@ -123,7 +123,7 @@ Path solve(const Model& model, const Options& options) {
   model.validate();
   for (const Joint& joint : model.joints) {
     const auto* ball = std::get_if<BallJoint>(&joint);
-    // Its rows are slides of what bends.
+    // Its rows are slides of the deflected contact.
     if (ball == nullptr || std::isfinite(ball->mindlin_stiffness)) continue;
     throw kernel::OutOfRange("ball_joint '" + ball->name + "'", "mindlin_stiffness",
                              ball->mindlin_stiffness, "finite but in motion");
@@ -167,37 +167,38 @@ Path solve(const Model& model, const Options& options) {
         length / (PathFollower::most_parts * static_cast<double>(options.increments_per_branch));
     follower.slack_level = 0;
     follower.snap_travel = 0.0;
-    double convergent = length;  // longest step that Newton is trusted with
+    double convergent =
+        length;  // longest step for which Newton's method is expected to converge [s]
     for (int k = 0; k <= options.increments_per_branch; ++k) {
-      // k = 0: the short first step, within which slips turn into sticks after the corner.
+      // k = 0: short first step, in which slips turn into sticks after the corner.
       const double target = k == 0 ? times[b] + tolerance
                             : k == options.increments_per_branch
                                 ? times[b + 1]
                                 : times[b] + length * k / options.increments_per_branch;
       std::size_t counted = follower.path.events.size();
       std::fill(changes.begin(), changes.end(), 0);
-      // In equal parts of what is left, none longer than energies balance over.
+      // Divides the rest of the increment equally, with steps not longer than balanced_step.
       const auto balanced = [&] {
         const double left = target - follower.time;
         return left / std::ceil(std::max(1.0, left / follower.balanced_step));
       };
       double stride = std::min(balanced(), convergent);
       bool locating = false;
-      // Steps in a row from one place that end before a foreseen change which does not come nearer.
+      // Consecutive steps from one state that end before a predicted change without approaching it.
       int foreseen_from_here = 0;
-      double short_by_before = 1.0;  // share of the last step beyond the foreseen change
+      double short_by_before = 1.0;  // fraction of the last step beyond the predicted change
       int steps = 0;                 // since the last change
-      // How far ahead the next change is foreseen, and was at least since the last one [s].
+      // Predicted time until the next change, and its minimum since the last change [s].
       double ahead = length, least_ahead = length;
       bool foresaw = false;
       int unconfirmed = 0;
-      int swinging = 0;  // steps that did not converge while elements were slack
+      int swinging = 0;  // failed steps while elements were slack
       follower.locates = true;
       follower.flickers = false;
-      int located = 0;  // changes while elements are slack
-      int held = 0;     // steps before a longer one is tried
+      int located = 0;  // changes while elements were slack
+      int held = 0;     // remaining steps before a longer one is attempted
       follower.softest_level = 0.0;
-      int unstable = 0;  // steps since the last change whose slip would be unstable
+      int unstable = 0;  // steps with unstable slip since the last change
       while (follower.time < target && follower.path.complete) {
         tracer.begin_step(static_cast<int>(b) + 1, k);
         const double goal = std::max(std::nextafter(follower.time, target),
@@ -211,9 +212,9 @@ Path solve(const Model& model, const Options& options) {
           held = std::max(0, held - 1);
           foreseen_from_here = 0;
           short_by_before = 1.0;
-          // While a change is being located, the next one may be near, and to pass it costs a pivot
-          // for every joint that it moves. Where the one that was foreseen did not come, the
-          // tangent of a long step does not tell what is near: steps grow little by little.
+          // While a change is located, the next one may be near, and passing it costs a pivot for
+          // every joint that it affects. If a predicted change did not occur, the tangent of a long
+          // step is not reliable. In both cases steps grow gradually.
           const bool unchanged =
               follower.path.events.size() - counted == follower.idle_changes.size();
           const bool creeps = locating && (!options.locate_events || unchanged);
@@ -221,7 +222,7 @@ Path solve(const Model& model, const Options& options) {
           if (foresaw) unconfirmed = ahead >= nearer * least_ahead ? unconfirmed + 1 : 0;
           if (foresaw) least_ahead = std::min(least_ahead, ahead);
           foresaw = false;
-          // Those of a joint that flickers end no count of steps.
+          // Changes of a joint whose status alternates do not reset the counters.
           if (!unchanged && !follower.flickers) {
             steps = unconfirmed = unstable = swinging = 0;
             least_ahead = length;
@@ -233,18 +234,19 @@ Path solve(const Model& model, const Options& options) {
             const bool are_many = follower.has_slack() && ++located > most_located_with_slack;
             follower.flickers = follower.flickers || is_often || are_many;
           }
-          // A change that recedes before the steps is passed, and those of a joint that flickers.
+          // Changes that recede with every step, or of joints whose status alternates, are not
+          // located.
           follower.locates = !follower.flickers && unconfirmed < most_unconfirmed;
         } else if (end == StepEnd::stopped) {
           follower.path.complete = false;
         } else if (end == StepEnd::imprecise) {
           stride = std::max(balanced(), tolerance);
         } else {
-          // To where the change is foreseen, half of what it is located to before it; half as far
-          // where that comes no nearer from here. Where nothing is foreseen, to an eighth.
+          // Next step: to half a tolerance before the predicted change. If predictions from this
+          // state do not approach, half the distance; without a prediction, an eighth of the step.
           const bool foreseen = end == StepEnd::event_inside && follower.event_share < 1.0;
           const double tried = goal - from;
-          // Where one stands that is real, foresight comes nearer by more than half each time.
+          // At a true change, the predicted distance more than halves with every step.
           const double short_by = 1.0 - follower.event_share;
           foreseen_from_here = short_by > 0.5 * short_by_before ? foreseen_from_here + 1 : 0;
           short_by_before = short_by;
@@ -258,7 +260,7 @@ Path solve(const Model& model, const Options& options) {
             unstable = 0;
             follower.follow_snap(times[b + 1], std::max(tolerance, shortest));
           }
-          // Elements that hang on soft dashpots swing: stiffer ones carry them over longer steps.
+          // Slack elements on soft dashpots oscillate. Stiffer dashpots allow longer steps.
           const bool swings = end == StepEnd::not_converged && follower.has_slack();
           if (swings && (follower.flickers || ++swinging >= most_unconfirmed) && follower.damp()) {
             swinging = 0;

@@ -27,15 +27,15 @@ FailureFields failure_at(FailureKind kind, const Model& model, double time);
 [[noreturn]] void fail_modes(FailureFields fields, FoundModes found);
 [[noreturn]] void fail_joint(FailureFields fields, FailureJoint joint);
 
-/// How a step ended: with the state moved on, or back at its start.
+/// How a step ended. Only `done` changes the state; otherwise the state is that before the step.
 enum class StepEnd : unsigned char { done, event_inside, not_converged, imprecise, stopped };
 
-/// Both ends of a step that has converged.
+/// Both ends of a converged step.
 struct Ends {
   double from_time;
   double to_time;
   const StepStart& start;
-  const Statuses& statuses;  ///< At its end.
+  const Statuses& statuses;  ///< At the end of the step.
   const VectorXd& from;
   const VectorXd& to;
   const VectorXd& from_rate;
@@ -45,19 +45,19 @@ struct Ends {
   const VectorXd& slips;
 };
 
-/// Where loads that are followed from none lead on no farther.
+/// Point at which the load increase stalled.
 struct Stall {
-  double fraction;     ///< Of the loads that is carried.
-  SolveReport report;  ///< Of the last try beyond, and where it ended:
+  double fraction;     ///< Fraction of the loads in equilibrium.
+  SolveReport report;  ///< Last failed attempt beyond it, and its final statuses and unknowns:
   Statuses statuses;
   VectorXd z;
 };
 
-/// How far a node moves where a joint gives way within its play, over what that moves by: the
-/// shortest element is the lever of a structure of this size.
+/// Amplification of a motion within the play of a joint: largest displacement of a node over that
+/// motion. Estimated as size of the structure over length of its shortest bar.
 double lever_of(const Model& model, double size);
 
-/// Equilibrium being followed.
+/// State of a path while solve() follows it.
 struct PathFollower {
   const Model& model;
   const System& system;
@@ -66,57 +66,58 @@ struct PathFollower {
   RateProblem rates;
   double lever = lever_of(model, system.size());
   Path path = {};
-  /// Joints that a note of each kind has named.
+  /// Joints already named in a note of each kind.
   std::map<NoteKind, std::set<int>> noted = {};
   VectorXd z = {};
-  StepStart origin = {};  ///< The state as the start of the next step.
+  StepStart origin = {};  ///< The present state as the start of the next step.
   State state = {};
   double time = 0.0;
-  /// Share of the last step that was tried after which its first event comes; 1: unknown.
+  /// Fraction of the last attempted step at which its first event occurs; 1: unknown.
   double event_share = 1.0;
-  /// Whether long steps hold open joints by dashpots: nothing else determines their positions.
+  /// Whether dashpots hold open joints also in long steps, because nothing else determines their
+  /// positions.
   bool is_slack = false;
-  /// Whether the last answer of note_slack() was that there are slack elements.
+  /// Result of the last note_slack(): whether elements are slack.
   bool is_loose = false;
-  /// Level below which dashpots do not soften until the next increment: steps had no solution
-  /// there.
+  /// Dashpots soften no further than to this level in the present increment, because steps with
+  /// softer ones had no solution.
   double softest_level = 0.0;
-  bool flickers = false;     ///< Whether changes in this increment are no longer located.
-  double slack_level = 0.0;  ///< Of these dashpots, see System::slack_stiffness().
-  /// Levels by which dashpots become softer after a step.
+  bool flickers = false;     ///< Whether changes of status in this increment are no longer located.
+  double slack_level = 0.0;  ///< Level of the dashpots, see System::slack_stiffness().
+  /// Decrease of the dashpot level after a step.
   static constexpr double softer = 0.25;
-  /// Joints that changed in the last step and carry no more than dashpots do, see
-  /// System::is_idle().
+  /// Joints that changed their status in the last step with contact forces not above dashpot
+  /// forces, see System::is_idle().
   std::set<int> idle_changes = {};
-  double snap_travel = 0.0;  ///< Of all snaps since the last corner [m].
-  /// Statuses that a longer step found from the present state on; empty: none.
+  double snap_travel = 0.0;  ///< Sum of all snaps since the last corner [m].
+  /// Statuses at the present state that a longer step predicted; empty: none.
   Statuses changed_at_start = {};
-  /// Whether such are looked for; not again where a short step did not confirm them, until the next
-  /// event.
+  /// Whether longer steps predict statuses at the start. Disabled until the next event if a short
+  /// step did not confirm a prediction.
   bool looks_at_start = true;
-  /// Whether the tangents of a longer step saw one at its start.
+  /// Whether the tangent of a longer step predicted a change at its start.
   bool expects_at_start = false;
-  /// Whether the last step was refused because what slips at its end is unstable.
+  /// Whether the last step was rejected because slip at its end is unstable.
   bool slip_is_unstable = false;
-  /// Whether steps end at foreseen changes; else they pass them, see most_unconfirmed.
+  /// Whether steps end at predicted events; otherwise they pass them, see most_unconfirmed.
   bool locates = true;
-  /// Steps at most into which an increment is cut for its energies.
+  /// Largest number of steps per increment for the energy balance.
   static constexpr double most_parts = 64.0;
-  /// Longest step that energies are likely to balance over [s]; none known: as long as may be.
+  /// Longest step for which the energy balance is expected to hold [s]; infinity: unknown.
   double balanced_step = std::numeric_limits<double>::infinity();
-  double shortest_balanced = 0.0;  ///< No shorter step is asked for [s].
-  int steps_to_hold = 0;           ///< Before a longer step is tried.
-  double largest_work = 0.0;       ///< Of the temperature so far [J].
-  double energy_gained = 0.0;      ///< What does not balance so far [J].
-  double slack_work = 0.0;         ///< Of the dashpots in the last step [J].
-  /// What the last step lost, if it was refused for that [J].
+  double shortest_balanced = 0.0;  ///< Lower limit of steps shortened for the energy balance [s].
+  int steps_to_hold = 0;           ///< Steps before a longer one is attempted.
+  double largest_work = 0.0;       ///< Largest work of the temperature so far [J].
+  double energy_gained = 0.0;      ///< Accumulated error of the energy balance [J].
+  double slack_work = 0.0;         ///< Work of the dashpots in the last step [J].
+  /// Energy error of the last step if it was rejected for it [J].
   double refused_loss = std::numeric_limits<double>::infinity();
-  /// Rates of the unknowns at `time`; empty where they are not known.
+  /// Rates of the unknowns at `time`; empty: unknown.
   VectorXd rate = {};
-  /// How fast every joint that slips slides at `time` [m/s].
+  /// Slip rate of every slipping joint at `time` [m/s].
   VectorXd slide_rate = {};
 
-  /// Where the path has been followed to.
+  /// State of the path at a time, to return to.
   struct Position {
     VectorXd z;
     StepStart origin;
@@ -143,14 +144,14 @@ struct PathFollower {
   void seat_at(double opened, double opening, const std::vector<int>& with_play,
                VectorXd& there) const;
   SolveReport open_seated(const std::vector<int>& with_play, JointModel contact);
-  /// Below this a pin force is rounding of what the stiffest part would carry [N].
+  /// Pin forces below this are rounding of the force in the stiffest element [N].
   double seat_rounding() const { return 1e-14 * system.stiffness_scale() * system.size(); }
   void note(NoteKind kind, double when, const std::vector<int>& joints, double value = 0.0);
   bool note_slack(double when, const VectorXd& at, const Statuses& statuses);
   void note_not_unique(double when);
   void refuse_mechanism(double when, const Statuses& statuses, JointModel joints) const;
   void refuse_buckled(double when);
-  /// Whether elements are slack, or were.
+  /// Whether elements are slack now or were earlier.
   bool has_slack() const { return is_slack || is_loose || noted.count(NoteKind::slack) > 0; }
   bool stiffen_slack(const Statuses& statuses);
   bool damp();
@@ -175,7 +176,7 @@ struct PathFollower {
   double turn_of_slip(int joint, const Ends& ends, const Rounding& rounding) const;
   double turn_of_stick(int joint, const Ends& ends, const Rounding& rounding) const;
 
-  /// What the type of a joint says.
+  /// Calls `ask` with the joint as its own type.
   template <class Ask>
   auto joint(int i, Ask&& ask) const {
     return std::visit(ask, model.joints[index(i)]);

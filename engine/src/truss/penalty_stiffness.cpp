@@ -11,7 +11,7 @@ namespace {
 
 using ByRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-/// Adds up the entries of a column that is mostly empty.
+/// Sums the entries of a sparse column.
 class Column {
  public:
   explicit Column(Eigen::Index size) : value_(VectorXd::Zero(size)), met_(index(size), false) {}
@@ -22,7 +22,7 @@ class Column {
     value_[row] += value;
   }
   std::size_t entries() const { return rows_.size(); }
-  /// Writes rows and values behind each other, rows ascending.
+  /// Writes rows and values, rows ascending.
   void write(int* rows, double* values) {
     std::sort(rows_.begin(), rows_.end());
     for (const int row : rows_) {
@@ -58,9 +58,9 @@ Eigen::SparseMatrix<double> System::penalty_stiffness(const VectorXd& z, double 
   const linear::SparseView jacobian = at.jacobian();
   const Eigen::Index n = displacements_;
   const ByRows above = jacobian.block(0, 0, n, n).triangularView<Eigen::StrictlyUpper>();
-  // The forces of the joints are condensed: a direction that a joint holds becomes a stiff spring.
-  // Rows that hold nothing drop out; those in metres have gradients of order one, whatever lever
-  // arms they have.
+  // Joint forces are condensed: a constrained direction becomes a penalty spring. Rows without a
+  // constraint have no entries. Gradients of closures in metres are of order one, for any lever
+  // arm.
   const ByRows holds = jacobian.block(n, 0, unknowns_ - n, n);
   const double stiffness = held * stiffness_scale_;
   Column column(n);
@@ -72,7 +72,7 @@ Eigen::SparseMatrix<double> System::penalty_stiffness(const VectorXd& z, double 
           if (of.col() >= j) column.add(of.col(), stiffness * it.value() * of.value());
         }
       } else if (it.row() >= j) {
-        // Half of it and half of its transpose.
+        // Half of the entry and half of its transpose.
         column.add(it.row(), it.row() == j ? it.value() : 0.5 * it.value());
       }
     }

@@ -17,9 +17,9 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Joints at a bound beside which a step that was found is not examined further.
+/// Most joints at a limit for which a converged step is checked for other continuations.
 constexpr std::size_t most_joints = 8;
-/// Numbers of a dense matrix that is made to decide: 1 GiB of them.
+/// Largest number of entries of the dense response matrix: 1 GiB.
 constexpr std::size_t most_numbers = std::size_t{1} << 27;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
@@ -35,7 +35,8 @@ double farthest(const System& system, const VectorXd& z, const VectorXd& step) {
   return std::sqrt(share) * system.size();
 }
 
-/// Whether only stick and slip one way are asked, each a row of its own kind.
+/// The complementarity matrix if every candidate has two statuses, stick and slip in one direction,
+/// that differ in one row.
 std::optional<Eigen::MatrixXd> complementarity_matrix(const Branches& of) {
   const auto n = static_cast<Eigen::Index>(of.candidates.size());
   std::vector<Eigen::Index> row(static_cast<std::size_t>(n));
@@ -58,7 +59,8 @@ std::optional<Eigen::MatrixXd> complementarity_matrix(const Branches& of) {
     if (differs < 0) return std::nullopt;
     row[static_cast<std::size_t>(i)] = differs;
   }
-  // Sliding the slip's way and what friction has left of its bound are both to be >= 0.
+  // Complementary variables, both >= 0: slide in the slip direction, and friction limit less
+  // friction.
   Eigen::MatrixXd matrix(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j < n; ++j) {
@@ -71,8 +73,8 @@ std::optional<Eigen::MatrixXd> complementarity_matrix(const Branches& of) {
 }
 
 bool has_positive_symmetric_part(Eigen::MatrixXd matrix) {
-  if (matrix.size() == 0) return true;  // nothing to decide
-  // Rows and columns in units of their own, for a rounding that is the same everywhere.
+  if (matrix.size() == 0) return true;  // no candidates
+  // Scaling to a unit diagonal makes the rounding tolerance uniform.
   if (!(matrix.diagonal().array() > 0.0).all()) return false;
   const VectorXd unit = matrix.diagonal().cwiseSqrt().cwiseInverse();
   matrix = unit.asDiagonal() * matrix * unit.asDiagonal();
@@ -116,7 +118,8 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
         {joint, {start.statuses[index(joint)]}, system_->force_row(joint), rows, 0});
     return candidates.back();
   };
-  // Whether something was added. An open joint has no normal: its rows are no base for the others.
+  // Returns whether the status is new. An open joint has no normal, so the base uses a closed
+  // status.
   const auto add = [](Candidate& to, JointStatus status) {
     if (to.has(status)) return false;
     to.branches.push_back(status);
@@ -133,7 +136,7 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
     if (!found.empty() && candidates.size() > most_joints) return answer;
   }
   for (const int joint : changing) candidate(joint);
-  // Every round knows one more branch of one of at most so many joints.
+  // Every round adds at least one status of one of the joints.
   for (;;) {
     std::size_t numbers = 0;
     for (const Candidate& one : candidates) numbers += index(one.rows);
@@ -157,7 +160,7 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
     const Asking asking(*system_, z, target, start, *of, farthest(*system_, z, of->step));
     std::vector<Group> groups = groups_of(*of);
     if (of->index < 0) {
-      // Which group makes the base unstable is not known.
+      // It is unknown which group makes the base unstable.
       Group all(candidates.size());
       std::iota(all.begin(), all.end(), 0);
       groups = {all};
@@ -171,7 +174,7 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
       }
       if (all.back().singular) answer.singular = asking.statuses(*all.back().singular);
     }
-    // A contact that pulls while it sticks and closes while it is open may slide.
+    // A contact in tension while it sticks and in penetration while it is open may slip.
     for (std::size_t g = 0; g < groups.size() && !widened; ++g) {
       if (!all[g].motions.empty()) continue;
       for (const std::size_t i : groups[g]) {
@@ -183,7 +186,7 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
     }
     if (widened) continue;
 
-    // The ways on of one group, the others on the first of theirs: does any joint beside object?
+    // Continuations of one group with the first one of all others, to check the remaining joints.
     const auto together = [&](std::size_t special, const Motion& with) {
       Motion whole{Choice(of->candidates.size(), 0), with.step, with.index};
       for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -207,7 +210,8 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
     }
     if (widened) continue;
 
-    // Groups in which no way goes on, or several do, decide for all; and name their joints.
+    // Groups with no continuation, or with several, determine the result; their joints are
+    // reported.
     std::vector<int> stopped, parting;
     bool parts_only = true;
     bool examined = true;
@@ -217,8 +221,9 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
       const auto count = std::count_if(motions.begin(), motions.end(),
                                        [](const Motion& one) { return one.index >= 0; });
       if (count == 0 && !all[g].examined) examined = false;
-      // The indices of all motions add up to one (the degree of the equations): stable motions are
-      // one to rounding if none is unstable and no set leaves a mechanism.
+      // The indices of all solutions add up to one (degree of the equations). Several stable
+      // solutions are therefore one up to rounding, if none is unstable and no set leaves a
+      // mechanism.
       const bool is_one =
           count == 1 || (count > 1 && count == std::ssize(motions) && !all[g].singular);
       if (is_one) {

@@ -17,11 +17,10 @@ using numerics::Lists;
 /// Smallest number of items of a region: assembling them takes about ten times as long as starting
 /// a thread.
 constexpr std::size_t least_parts = 2000;
-/// Largest number of regions: enough for an even distribution, few enough to have few items between
-/// them.
+/// Largest number of regions: even distribution, and few items between regions.
 constexpr std::size_t most_regions = 64;
 
-/// The nodes whose dofs move a constrained node.
+/// The nodes whose dofs determine the motion of a constrained node.
 std::set<int> moving_with(const DofMap& dofs, const NodeDofs& at) {
   std::set<int> found;
   for (int i = 0; i < at.freedoms; ++i) {
@@ -30,7 +29,7 @@ std::set<int> moving_with(const DofMap& dofs, const NodeDofs& at) {
   return found;
 }
 
-/// The free nodes of every item: of the elements type by type, then of the joints.
+/// The free nodes of every item: elements type by type, then joints.
 Lists moving_nodes(const DofMap& dofs, const ElementFrames& elements,
                    const std::vector<JointFrame>& joints) {
   Lists made;
@@ -42,7 +41,7 @@ Lists moving_nodes(const DofMap& dofs, const ElementFrames& elements,
           if (at.freedoms + at.rotations > 0) made.push_back(node);
           continue;
         }
-        // Entries there belong to the nodes whose dofs move it.
+        // Its entries belong to the nodes whose dofs determine its motion.
         for (const int other : moving_with(dofs, at)) made.push_back(other);
       }
       made.end_list();
@@ -53,8 +52,8 @@ Lists moving_nodes(const DofMap& dofs, const ElementFrames& elements,
   return made;
 }
 
-/// Region of every node: parts of the order in which a breadth-first search visits the nodes, with
-/// equally many items each. Fixed nodes are in none.
+/// Region of every node; −1: fixed node. A breadth-first search orders the nodes, and the order is
+/// divided into parts with equal numbers of items.
 std::vector<int> cut(const Lists& nodes_of, std::size_t nodes, std::size_t regions) {
   const Lists parts_of = nodes_of.inverted(nodes);
   std::vector<int> region(nodes, -1);

@@ -17,12 +17,11 @@ struct Region {
   std::vector<int> joints;
 };
 
-/// A truss divided into regions without common free nodes, which can be assembled at the same time,
-/// and the items between them, which are assembled afterwards. The order of sums in a row depends
-/// on the division, and the division depends on the truss alone. Results therefore do not depend on
-/// the number of threads.
+/// Division of a truss for parallel assembly: regions without common free nodes, and the items
+/// between them, which are assembled afterwards. The division, and with it the order of sums in a
+/// row, depends on the truss alone. Results therefore do not depend on the number of threads.
 struct Regions {
-  std::vector<Region> apart;  ///< None of a small truss.
+  std::vector<Region> apart;  ///< Regions; a small truss has none.
   Region between;
 };
 

@@ -17,18 +17,18 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// A row of the equations on one branch.
+/// A row of the equations on one status.
 struct Row {
-  std::vector<std::pair<int, double>> gradient;  ///< Unknown and derivative.
+  std::vector<std::pair<int, double>> gradient;  ///< Unknowns and derivatives.
   double value = 0.0;
 
   bool operator==(const Row&) const = default;
 };
 
-/// Rows of a joint's forces on one of its branches.
+/// Rows of a joint's forces on one status.
 using Rows = std::vector<Row>;
 
-/// The equations of a step, condensed to the rows that change.
+/// The equations of a step, condensed to the rows that change with the statuses.
 class Condensed {
  public:
   Condensed(const System& system, const Linearized& of, const std::vector<int>& joints)
@@ -41,7 +41,7 @@ class Condensed {
     for (const int joint : joints) {
       if (of.statuses[index(joint)] == JointStatus::open) continue;
       joints_.push_back(joint);
-      // Its rows name all unknowns that it is asked about.
+      // Its rows contain all unknowns on which it depends.
       for (const Row& row : rows(joint, of.statuses[index(joint)])) {
         for (const auto& entry : row.gradient) see(entry.first);
       }
@@ -72,7 +72,7 @@ class Condensed {
     return std::all_of(changes.begin(), changes.end(),
                        [&](const auto& one) { return change(one.first, one.second); });
   }
-  /// Goes to the solution on the present statuses, as far as the joints see it.
+  /// Computes the solution on the present statuses, for the unknowns on which the joints depend.
   bool solve() {
     condensed_ = inverse_ * values_;
     VectorXd moved = VectorXd::Zero(static_cast<Index>(seen_.size()));
@@ -112,7 +112,7 @@ class Condensed {
     seen_.push_back(unknown);
   }
 
-  /// Puts a joint on another branch. False: that leaves the equations singular.
+  /// Changes the status of a joint. False: the equations become singular.
   bool change(int joint, JointStatus status) {
     const Rows& before = rows(joint, statuses_[index(joint)]);
     const Rows& after = rows(joint, status);
@@ -124,7 +124,7 @@ class Condensed {
     return true;
   }
 
-  /// Place of a row among the condensed ones, where it is on the branch of the base at first.
+  /// Index of a row among the condensed rows; a new row begins on the status of the base.
   Index place_of(int row) {
     const auto n = static_cast<Index>(responses_.size());
     const auto [found, is_new] = place_.try_emplace(row, n);
@@ -132,7 +132,8 @@ class Condensed {
     rows_condensed_.push_back(row);
     const VectorXd response = of_.factors.solve(VectorXd::Unit(system_.unknowns(), row));
     responses_.emplace_back(response(seen_));
-    // Its own row of the base is that of the identity; the others see it as they are now.
+    // On the base its row of the condensed matrix is an identity row; the other rows have their
+    // present status.
     VectorXd column(n);
     for (Index i = 0; i < n; ++i) column[i] = along(now_[static_cast<std::size_t>(i)], n);
     inverse_.conservativeResize(n + 1, n + 1);
@@ -186,14 +187,14 @@ class Condensed {
   Assembly listing_;
   std::vector<int> joints_;
   Statuses statuses_;
-  VectorXd end_;            ///< Of the step, as far as the joints see it.
-  std::vector<int> local_;  ///< Place of an unknown among those that the joints see, or −1.
-  std::vector<int> seen_;   ///< Those unknowns.
+  VectorXd end_;            ///< End of the step, for the unknowns in seen_.
+  std::vector<int> local_;  ///< Index of an unknown in seen_, or −1.
+  std::vector<int> seen_;   ///< Unknowns on which the joints depend.
   std::map<std::pair<int, JointStatus>, Rows> rows_;
-  std::unordered_map<int, Index> place_;  ///< Of a row of the equations.
+  std::unordered_map<int, Index> place_;  ///< Condensed index of a row of the equations.
   std::vector<int> rows_condensed_;
-  std::vector<Row> now_;             ///< Of every condensed row; empty: that of the base.
-  std::vector<VectorXd> responses_;  ///< Of the seen unknowns to a unit in each condensed row.
+  std::vector<Row> now_;  ///< Each condensed row on its present status; empty: that of the base.
+  std::vector<VectorXd> responses_;  ///< Response of seen_ to a unit in each condensed row.
   MatrixXd matrix_;
   MatrixXd inverse_;
   VectorXd values_;

@@ -9,34 +9,34 @@
 
 namespace statejump::truss::detail {
 
-/// Equations at a state, by what a Newton step from there knows of them.
+/// Equations linearised at a state.
 struct Linearized {
   const VectorXd& z;
   double time;
   const StepStart& start;
   JointModel model;
   double opening;
-  const Statuses& statuses;             ///< On which they were factored.
-  const linear::SparseFactor& factors;  ///< Of their Jacobian.
-  const VectorXd& step;                 ///< That solves them.
+  const Statuses& statuses;             ///< Statuses on which the Jacobian was factored.
+  const linear::SparseFactor& factors;  ///< Factors of the Jacobian.
+  const VectorXd& step;                 ///< Newton step that solves the linearised equations.
 };
 
-/// The statuses of many joints, found on one factorization.
+/// Statuses of many joints, found with one factorization.
 ///
-/// A joint that changes from one status with contact to another changes a few rows of the
-/// equations. Linear in all else, they are condensed to those rows, their Schur complement: one
-/// solution for each of them. Statuses then cost a dense system, a change of one status a rank-one
-/// update of its inverse (Sherman and Morrison). There pivots are cheap, so that one joint at a
-/// time may change where all at once do not settle; see find_active_set().
+/// If a joint changes from one closed status to another, only a few rows of the linear equations
+/// change. The equations are condensed to these rows (Schur complement), with one solution per row.
+/// A set of statuses then costs one dense system, and a change of one status a rank-one update of
+/// its inverse (Sherman and Morrison). Pivots are cheap, so single pivots are affordable if block
+/// pivots fail; see find_active_set().
 ///
-/// Joints that are open, or request to be, keep that.
+/// Joints that are open, or request to open, keep their status.
 struct SchurActiveSet {
   Statuses statuses;
-  VectorXd step;  ///< That solves the linear equations on them.
+  VectorXd step;  ///< Solution of the linear equations on these statuses.
 };
 
 /// @param joints that may change their status
-/// @returns nothing where the statuses cycle or leave the equations singular
+/// @returns nothing if the statuses cycle or the equations become singular
 std::optional<SchurActiveSet> schur_active_set(const System& system, const Linearized& of,
                                                const std::vector<int>& joints);
 

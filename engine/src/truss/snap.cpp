@@ -13,22 +13,21 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Steps in which a snap comes to rest, or is none.
+/// Most steps of a snap; a longer motion counts as unstable.
 constexpr int most_snap_steps = 200;
-/// Levels by which dashpots become stiffer where there is no step: the steps become as long as
-/// those of a path along which the stiffness is negative can be.
+/// Increase of the dashpot level after a step without solution. Stiffer dashpots allow steps on a
+/// path with negative stiffness.
 constexpr double stiffer = 0.5;
-/// Level of dashpots as stiff as the stiffest element, and one at which hardly anything moves.
+/// Initial level: as stiff as the stiffest element. Highest level: motion is negligible.
 constexpr double first_level = 4.0;
 constexpr double stiffest = 6.0;
-/// A snap is at rest where a step moves by this share of it.
+/// A snap has ended if a step contributes less than this fraction of it.
 constexpr double at_rest = 1e-6;
-/// Steps that were not there, after which the softest dashpots that had one count as the softest.
+/// Failed steps after which the softest convergent dashpots are not softened further.
 constexpr int most_refused = 3;
-/// Steps with the softest dashpots, each shorter than the last, after which a motion counts as
-/// slow.
+/// Steps at level 0 with decreasing motion after which the motion counts as slow.
 constexpr int most_slower = 16;
-/// Joints that a note of a snap names.
+/// Most joints that a snap note names.
 constexpr std::size_t most_named = 3;
 
 /// Diameter of a joint's play [m]; 0: it has none.
@@ -41,7 +40,7 @@ double play_of(const Joint& joint) {
       joint);
 }
 
-/// The diameters of all plays, one behind the other [m].
+/// Sum of the diameters of all plays [m].
 double sum_of_plays(const Model& model) {
   double sum = 0.0;
   for (const Joint& joint : model.joints) sum += play_of(joint);
@@ -55,7 +54,7 @@ double largest_play(const Model& model) {
   return largest;
 }
 
-/// What rounding of the forces moves by against dashpots that hardly hold [m].
+/// Motion of a softly held element due to rounding of the forces [m].
 double moved_by_rounding(const System& system, const VectorXd& z) {
   return 8.0 * system.force_rounding(z) / system.slack_stiffness(0.0);
 }
@@ -71,20 +70,20 @@ double lever_of(const Model& model, double size) {
   return shortest > 0.0 ? size / shortest : 1.0;
 }
 
-/// Lets journals move within their play, held by dashpots while they slip, until they are at rest.
+/// Moves journals within their play, damped by dashpots while they slip, until they are at rest.
 ///
-/// Every step is a proximal point step of the potential on the present cones of friction. Dashpots
-/// are as stiff as the stiffest element at first, then softer as long as steps converge, stiffer
-/// where they do not, and in the end carry nothing. What is unstable beyond the play they do not
-/// hold.
-/// @param step takes one with dashpots of a level; it returns how far that moved [m], or nothing if
-/// there is no step, and then has changed nothing
-/// @param drift what a step moves by without any unstable motion [m]
+/// Every step is a proximal point step of the potential with the present friction cones. Dashpots
+/// are at first as stiff as the stiffest element. They become softer while steps converge and
+/// stiffer if they do not; at the end their forces are negligible. They do not stabilise an
+/// instability beyond the play.
+/// @param step takes one step with dashpots of a level; returns its motion [m], or nothing if it
+/// has no solution and the state is unchanged
+/// @param drift motion of a step without any instability [m]
 bool PathFollower::come_to_rest(const std::function<std::optional<double>(double level)>& step,
                                 double drift) {
   const double most_carried = system.slack_stiffness(0.0) * largest_play(model);
   double level = first_level;
-  double without = 0.0;  // highest level that had no step
+  double without = 0.0;  // highest level without a solution
   int refused = 0;
   double whole = 0.0, last = 0.0;
   int slower = 0;
@@ -104,7 +103,7 @@ bool PathFollower::come_to_rest(const std::function<std::optional<double>(double
     const bool is_softest = refused >= most_refused && level <= without + stiffer;
     if (is_softest && carried <= most_carried) return true;
     if (level == 0.0 && *moved <= at_rest * whole + ordinary) return true;
-    // Elements that are slack swing on against dashpots that hardly hold, ever slower.
+    // Slack elements on soft dashpots continue to move, slower and slower.
     slower = level == 0.0 && *moved <= last ? slower + 1 : 0;
     if (slower >= most_slower) return true;
     last = *moved;
@@ -113,13 +112,13 @@ bool PathFollower::come_to_rest(const std::function<std::optional<double>(double
   return false;
 }
 
-/// Follows slip that runs away within the play of the joints, to where it comes to rest.
+/// Follows unstable slip within the play of the joints until it comes to rest.
 ///
-/// A journal that slips out of an unstable position snaps to a stable one within its play. Statics
-/// does not describe how; dashpots in the joints with play do, as for slack elements, at a
-/// temperature that hardly changes. What is unstable beyond the play remains a failure.
-/// @param until time that is not passed [s]
-/// @returns false: dashpots do not hold it, or no joint has play; nothing has happened then
+/// A journal that slips from an unstable position snaps to a stable one within its play. Statics
+/// does not describe this motion. Dashpots in joints with play do, as for slack elements, at a
+/// nearly constant temperature. An instability beyond the play remains a failure.
+/// @param until the snap ends before this time [s]
+/// @returns false if dashpots do not stabilise it or no joint has play; the state is then unchanged
 bool PathFollower::follow_snap(double until, double tolerance) {
   const double plays = sum_of_plays(model) * lever;
   if (plays == 0.0 || !options.locate_events) return false;
@@ -162,7 +161,7 @@ bool PathFollower::follow_snap(double until, double tolerance) {
     return false;
   }
   if (level_after > level_before) {
-    // Where softer dashpots had no step, those that had go on.
+    // The stiffer dashpots with which steps converged stay in use.
     slack_level = std::min(level_after, System::most_slack_level);
     origin.damps_contact = true;
     is_slack = true;

@@ -10,9 +10,9 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Smallest part of a clearance that opens at once.
+/// Smallest step of the opened fraction of the clearances.
 constexpr double least_opening = 1e-4;
-/// Part that is opened first, and again after a part that was hard to open.
+/// First step of that fraction, and the step after a difficult one.
 constexpr double first_opening = 0.125;
 
 }  // namespace
@@ -60,12 +60,12 @@ void PathFollower::note(const SolveReport& report) {
   path.largest_closure_residual = std::max(path.largest_closure_residual, report.closure_residual);
 }
 
-/// Relaxes the drawn shape at ΔT = 0; see solve().
+/// Relaxes the reference configuration at ΔT = 0; see solve().
 void PathFollower::start() {
   origin.statuses = system.all_stick();
   z = VectorXd::Zero(system.unknowns());
   if (FoundModes modes = mechanism(system, z, 0.0, origin.statuses, JointModel::pins)) {
-    // A load across elements in line stiffens them as they give way.
+    // A load across collinear elements stiffens them as they deflect.
     const bool is_mechanism = !are_loaded(modes.shapes) || follow_loads() ||
                               mechanism(system, z, 0.0, origin.statuses, JointModel::pins);
     if (is_mechanism) {
@@ -95,14 +95,14 @@ void PathFollower::start() {
   note(NoteKind::large_start, 0.0, {}, length_of(z, system.displacements()));
 }
 
-/// Throws if the truss has free modes with its joints as the statuses say, other than those of
-/// slack elements, which no load moves.
+/// Throws if the truss has free modes with these statuses. Free modes of slack elements that no
+/// load moves are permitted.
 void PathFollower::refuse_mechanism(double when, const Statuses& statuses,
                                     JointModel joints) const {
   FoundModes modes = mechanism(system, z, when, statuses, joints);
   if (!modes || (any_open(statuses) && !are_loaded(modes.shapes))) return;
   FailureFields fields = failure_at(FailureKind::mechanism, model, when);
-  // With its joints held it is none: their friction is at its bound everywhere.
+  // If the truss is no mechanism with all joints fixed, friction is at its limit everywhere.
   if (!mechanism(system, z, when, held_but_open(statuses), JointModel::pins)) {
     fields.kind = FailureKind::friction_exhausted;
     fields.joints = slipping(statuses);
@@ -118,21 +118,21 @@ std::vector<FailureJoint> PathFollower::slipping(const Statuses& statuses) const
   return found;
 }
 
-/// Throws if the state is unstable whatever the joints do.
+/// Throws if the state is unstable even with all closed joints fixed.
 void PathFollower::refuse_buckled(double when) {
-  // It takes as much memory as the factors of rates do.
+  // The factors below need as much memory as those of the rates.
   rates.release();
   for (;;) {
     const double slack = system.slack_stiffness(slack_level);
     FoundModes modes = buckling(system, z, when, origin.statuses, slack);
     if (!modes) return;
-    // Elements that hang slack under compression are bounded by their play.
+    // Slack elements under compression are bounded by their play.
     if (stiffen_slack(origin.statuses)) continue;
     fail_modes(failure_at(FailureKind::buckled, model, when), std::move(modes));
   }
 }
 
-/// Adds a note about those of the joints that no note of its kind has named.
+/// Adds a note about the joints that no note of this kind has named so far.
 void PathFollower::note(NoteKind kind, double when, const std::vector<int>& joints, double value) {
   Note made{kind, when, model.temperature_change(0, 1.0, when), {}, value};
   for (const int i : joints) {
@@ -142,7 +142,7 @@ void PathFollower::note(NoteKind kind, double when, const std::vector<int>& join
   path.notes.push_back(std::move(made));
 }
 
-/// Notes the joints without contact whose elements nothing holds. True: there are such.
+/// Notes open joints if their elements are slack. @returns whether they are
 bool PathFollower::note_slack(double when, const VectorXd& at, const Statuses& statuses) {
   std::vector<int> open;
   for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
@@ -153,7 +153,8 @@ bool PathFollower::note_slack(double when, const VectorXd& at, const Statuses& s
   return is_loose;
 }
 
-/// Makes the dashpots of slack joints stiffer; false: there are none, or none stiffer.
+/// Raises the level of the dashpots of slack joints; false: no joint is open, or the level is
+/// highest.
 bool PathFollower::stiffen_slack(const Statuses& statuses) {
   if (!any_open(statuses) || slack_level >= System::most_slack_level) return false;
   slack_level = std::min(slack_level + 1.0, System::most_slack_level);
@@ -161,8 +162,8 @@ bool PathFollower::stiffen_slack(const Statuses& statuses) {
   return true;
 }
 
-/// Lets dashpots hold all joints with play, or makes them stiffer, where elements are slack and
-/// steps have no solution; false: nothing is slack, or they are as stiff as may be.
+/// Lets dashpots hold all joints with play, or stiffens them, if elements are slack and steps have
+/// no solution; false: no element is slack, or the level is highest.
 bool PathFollower::damp() {
   if (!has_slack() || slack_level >= System::stiffest_level) return false;
   softest_level = slack_level + 2.0 * softer;
@@ -172,7 +173,7 @@ bool PathFollower::damp() {
   return true;
 }
 
-/// Notes joints that stick and share a constraint, if the last solve met such.
+/// Notes sticking joints with dependent constraints, if the last solve found any.
 void PathFollower::note_not_unique(double when) {
   if (newton.regularisation() != Regularisation::reactions) return;
   note(NoteKind::not_unique, when, newton.dependent_joints());
@@ -187,8 +188,8 @@ void PathFollower::open_clearances() {
   const VectorXd pinned_z = z;
   const Statuses pinned = origin.statuses;
   SolveReport last;
-  // Journals find the place where they need no friction, or stay where their force pushes them:
-  // many light ones have no such place nearby.
+  // Journals first move without friction to where their contact force balances. Many lightly loaded
+  // journals have no such position nearby; they then stay where their pin force pushes them.
   for (const JointModel contact : {JointModel::frictionless, JointModel::friction}) {
     z = pinned_z;
     origin = system.begin(z, 0.0, pinned, 1.0);
@@ -215,8 +216,8 @@ void PathFollower::open_clearances() {
   if (opens) refuse_buckled(0.0);
 }
 
-/// Lets every journal touch where its pin force pushes. One that nothing pushes stays in the
-/// middle, if something else than its contact holds it there.
+/// Brings every journal into contact in the direction of its pin force. A journal without pin force
+/// starts open in the middle of its play.
 void PathFollower::seat(const std::vector<int>& with_play, JointModel contact) {
   for (const int i : with_play) {
     const Trial trial = system.trial(i, z, 0.0, origin, JointModel::pins, 0.0);
@@ -229,9 +230,10 @@ void PathFollower::seat(const std::vector<int>& with_play, JointModel contact) {
   }
 }
 
-/// Opens the clearances little by little, each time from the last equilibrium, because the links
-/// turn as they open; farther where that goes well.
-/// @returns how that ended: `z` and the statuses are those of the whole clearances if it converged
+/// Opens the clearances in steps, each from the last equilibrium, because links rotate meanwhile.
+/// Steps grow while they converge.
+/// @returns how the last solve ended; if it converged, `z` and the statuses are those of the full
+/// clearances
 SolveReport PathFollower::open_seated(const std::vector<int>& with_play, JointModel contact) {
   SolveReport report;
   double opened = 0.0;
@@ -245,7 +247,7 @@ SolveReport PathFollower::open_seated(const std::vector<int>& with_play, JointMo
     begin.slack_stiffness = system.slack_stiffness(slack_level);
     report = newton.solve(0.0, begin, contact, next, options.most_iterations, trial, statuses);
     if (next < 1.0) {
-      ++path.solves;  // none of the path's states
+      ++path.solves;  // not a state of the path
     } else {
       note(report);
     }
@@ -275,9 +277,9 @@ SolveReport PathFollower::open_seated(const std::vector<int>& with_play, JointMo
   return report;
 }
 
-/// Lets journals that find no place by themselves move to one, held by dashpots, with clearances
-/// that are partly open.
-/// @returns false: they do not come to rest; nothing has happened then
+/// Moves journals without an equilibrium nearby to one, damped by dashpots, at partly open
+/// clearances.
+/// @returns false if they do not come to rest; the state is then unchanged
 bool PathFollower::come_to_rest_at(double opening, JointModel contact,
                                    const std::vector<int>& with_play, double opened) {
   const Statuses statuses_before = origin.statuses;
@@ -308,7 +310,7 @@ bool PathFollower::come_to_rest_at(double opening, JointModel contact,
   return false;
 }
 
-/// Moves journals that touch to where their force pushes them with clearances that are more open.
+/// Moves journals in contact as the clearances open, in the direction of their forces.
 void PathFollower::seat_at(double opened, double opening, const std::vector<int>& with_play,
                            VectorXd& there) const {
   for (const int i : with_play) {

@@ -32,7 +32,7 @@ Joint without_friction(const LatchHinge& joint) {
   return loose;
 }
 
-/// All its springs end in friction: what is left is the prismatic joint.
+/// All springs of the joint end in sliders: without friction it is a prismatic joint.
 Joint without_friction(const IwanJoint& joint) {
   Slider loose;
   loose.name = joint.name;
@@ -42,7 +42,7 @@ Joint without_friction(const IwanJoint& joint) {
   return loose;
 }
 
-/// Joints with play start without friction anyway.
+/// Joints with play start without friction in any case.
 template <class Type>
 Joint without_friction(const Type& joint) {
   return joint;
@@ -56,14 +56,14 @@ Model without_friction(const Model& model) {
   return loose;
 }
 
-/// Status with which friction begins: what slid sticks, what rests at a stop or is open stays.
+/// Status with which friction begins: a slipping joint sticks; a stop or an open joint stays so.
 JointStatus begins(const Joint& joint, JointStatus status) {
   if (status == JointStatus::open) return status;
   if (std::visit([](const auto& one) { return one.has_play(); }, joint)) return status;
   return is_slip(status) ? JointStatus::stick : status;
 }
 
-/// What a joint remembers where friction begins without force.
+/// Memory of a joint in which friction begins at zero force.
 void begin(const Slider& joint, const Trial& trial, JointStatus, double* now) {
   now[0] = joint.axis.dot(trial.moved[0] - trial.moved[1]);
   if (!joint.partial_slip) return;
@@ -75,7 +75,8 @@ void begin(const IwanJoint& joint, const Trial& trial, JointStatus, double* now)
   std::fill_n(now, joint.history(), joint.axis.dot(trial.moved[0] - trial.moved[1]));
 }
 
-/// It counts what has slipped, which is all without force; with play its own start is this one.
+/// Its memory is the accumulated slip, which is the whole slide at zero force. With play, the
+/// joint's own start applies.
 template <class Type>
 void begin(const Type& joint, const Trial& trial, JointStatus status, double* now) {
   joint.begin(trial, status, now);

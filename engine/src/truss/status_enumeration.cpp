@@ -14,7 +14,7 @@ namespace {
 
 using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-/// Joints of a group of which all sets are tried, as a rule with two branches each.
+/// Largest group whose sets are all tried; joints have two statuses as a rule.
 constexpr std::size_t most_joints = 8;
 constexpr std::size_t most_sets = std::size_t{1} << most_joints;
 
@@ -129,7 +129,7 @@ std::optional<Motion> motion_on(const Branches& of, const Group& group, const Ch
   return Motion{choice, of.step - of.response(Eigen::all, rows) * factors.solve(value), sign};
 }
 
-/// How many sets of branches a group has; more than most_sets are not counted.
+/// Number of status sets of a group; counting stops above most_sets.
 std::size_t sets_of(const Branches& of, const Group& group) {
   std::size_t sets = 1;
   for (const std::size_t i : group) {
@@ -139,7 +139,7 @@ std::size_t sets_of(const Branches& of, const Group& group) {
   return sets;
 }
 
-/// Candidates of a group that are not on the branch that they want.
+/// Candidates of a group that request another status.
 std::vector<RequestedStatus> violations(const Branches& of, const Group& group,
                                         const Asking& asking, const Motion& motion) {
   std::vector<RequestedStatus> found;
@@ -182,7 +182,7 @@ Found try_all(const Branches& of, const Group& group, const Asking& asking) {
   return found;
 }
 
-/// A group of candidates of which not all sets can be tried, for find_active_set().
+/// Pivoting in a group with too many sets to try, for find_active_set().
 class GroupPivots {
  public:
   GroupPivots(const Branches& of, const Group& group, const Asking& asking)
@@ -190,7 +190,7 @@ class GroupPivots {
     found_.examined = false;
   }
 
-  /// One motion. That there is another one is not excluded.
+  /// One solution; others are not excluded.
   Found find() {
     if (solve() && find_active_set(*this) && asking_.is_short(*motion_)) {
       found_.motions.push_back(*motion_);
@@ -205,8 +205,8 @@ class GroupPivots {
     if (tried.count(choice_) > 0) slide_instead(changes.front().first, tried);
     return true;
   }
-  /// False if the equations are singular, or a candidate requests a status that it is not known to
-  /// have.
+  /// False if the equations are singular, or if a candidate requests a status that is not among its
+  /// statuses.
   bool solve() {
     motion_ = motion_on(of_, group_, choice_);
     if (!motion_) {
@@ -227,8 +227,8 @@ class GroupPivots {
     return static_cast<std::size_t>(found - branches.begin());
   }
 
-  /// A contact that pulls while it sticks and closes while it is open may slide: leads to such a
-  /// choice, if there is one that was not tried.
+  /// A contact in tension while it sticks and in penetration while it is open may slip: selects
+  /// such a choice if one was not tried yet.
   void slide_instead(std::size_t candidate, const std::set<Choice>& tried) {
     const std::vector<JointStatus>& branches = of_.candidates[candidate].branches;
     if (!of_.candidates[candidate].has(JointStatus::open)) return;

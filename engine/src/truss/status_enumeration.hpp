@@ -14,65 +14,63 @@
 
 namespace statejump::truss::detail {
 
-// Sets of branches of the joints at a bound, all on the factors of one of them; see RateProblem.
+// Enumeration of the statuses of joints at a limit, with the factors of one set; see RateProblem.
 
-/// A joint at a bound and its branches there, the first of them with contact.
+/// A joint at a limit and its possible statuses; the first one is a closed status.
 struct Candidate {
   int joint;
   std::vector<JointStatus> branches;
   int first_row;
   int rows;
-  Eigen::Index place;  ///< Of its first row among those of all candidates.
+  Eigen::Index place;  ///< Index of its first row among the rows of all candidates.
 
   bool has(JointStatus status) const {
     return std::find(branches.begin(), branches.end(), status) != branches.end();
   }
 };
 
-/// Rows of all candidates on one branch each.
+/// Rows of all candidates, each on one of its statuses.
 struct Layer {
-  Eigen::MatrixXd influence;  ///< On these rows of a unit of each row of the base.
-  VectorXd value;             ///< Of the rows after the base's step.
+  Eigen::MatrixXd influence;  ///< Values of these rows for a unit in each row of the base.
+  VectorXd value;             ///< Values of these rows after the step of the base.
   std::vector<RowUnit> units;
 };
 
-/// The problem with the candidates' branches fixed.
+/// Rows of all candidates on all of their statuses.
 struct Branches {
   std::vector<Candidate> candidates;
   Statuses base;
-  std::vector<Layer>
-      layers;                ///< Layer k: every candidate on its branch k, the last if it has less.
-  Eigen::MatrixXd response;  ///< Of the unknowns to a unit in each row of the base.
-  VectorXd step;             ///< Of the unknowns on the base.
-  int index = 0;             ///< Of the base.
+  std::vector<Layer> layers;  ///< Layer k: every candidate on its status k, or on its last one.
+  Eigen::MatrixXd response;   ///< Response of the unknowns to a unit in each row of the base.
+  VectorXd step;              ///< Step of the unknowns on the base.
+  int index = 0;              ///< Index of the base.
 };
 
 /// Largest displacement [m].
 double length_of(const VectorXd& step, int displacements);
 
-/// Factors the base and evaluates the other branches; nothing if the base is singular.
+/// Factors the base and evaluates the other statuses; empty if the base is singular.
 std::optional<Branches> prepare(const System& system, const VectorXd& z, double target,
                                 const StepStart& start, std::vector<Candidate> candidates,
                                 Assembly& at, linear::SparseFactor& factor);
 
-/// One branch of every candidate.
+/// Index of a status for every candidate.
 using Choice = std::vector<std::size_t>;
-/// Some of the candidates.
+/// Indices of some candidates.
 using Group = std::vector<std::size_t>;
 
-/// The motion with the candidates of a group each on one of its branches, the others on those of
-/// the base, and the index of that set.
+/// Step for one choice of the statuses in a group, with the other candidates on the base, and the
+/// index of that choice.
 struct Motion {
   Choice choice;
   VectorXd step;
   int index = 0;
 };
 
-/// Candidates that move each other, directly or by way of others; those of different groups are
-/// problems of their own.
+/// Groups of candidates that influence each other, directly or through others.
 std::vector<Group> groups_of(const Branches& of);
 
-/// What is asked of a motion: where it leads, and which branches the joints want there.
+/// Evaluates a motion: its end, and the statuses that the joints request there.
 class Asking {
  public:
   Asking(const System& system, const VectorXd& z, double target, const StepStart& start,
@@ -114,22 +112,23 @@ class Asking {
   const StepStart& start_;
   const Branches& of_;
   Rounding rounding_;
-  double same_;  ///< What Newton's method leaves of a displacement [m].
+  double same_;  ///< Error of displacements after Newton's method [m].
   double near_;
 };
 
-/// A branch that a candidate wants and is not known to have.
+/// Candidate and the status that it requests, not yet among its statuses.
 using RequestedStatus = std::pair<std::size_t, JointStatus>;
 
-/// Motions of a group that hold, those that agree counted once.
+/// Admissible motions of a group; equal motions are listed once.
 struct Found {
   std::vector<Motion> motions;
-  std::vector<RequestedStatus> requested;  ///< Anything here: the rest is not known yet.
-  bool examined = true;                    ///< Whether all sets were tried.
-  std::optional<Choice> singular;          ///< A set that leaves the equations singular.
+  std::vector<RequestedStatus>
+      requested;         ///< If not empty, the search must be repeated with these statuses.
+  bool examined = true;  ///< Whether all sets were tried.
+  std::optional<Choice> singular;  ///< Statuses for which the equations are singular.
 };
 
-/// Motions of a group: all of them where it is small, else the one that pivots find.
+/// All motions of a small group, or the one that pivoting finds in a large group.
 Found motions_of(const Branches& of, const Group& group, const Asking& asking);
 
 }  // namespace statejump::truss::detail

@@ -16,16 +16,17 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Of what is left of the energy that a path may lose the share that a step may.
+/// Fraction of the remaining error allowance for events that one step may use.
 constexpr double share_of_an_event = 0.02;
-/// Steps before one is tried that is longer than those that balance: a tenth of the work at most.
+/// Steps before a longer one is attempted after an energy error. Failed attempts cost a tenth at
+/// most.
 constexpr int most_held_steps = 10;
 
 }  // namespace
 
-/// Whether a joint that stopped sliding before `target` may have slid by more than rounding until
-/// it did: slides of a step are lost when it ends in a stick. One that comes to rest smoothly
-/// slides so little at last that no shorter step would tell.
+/// Whether a joint that stopped sliding before `target` may have slid by more than rounding before
+/// it stopped. That slide is lost when a step ends in a stick. If a joint comes to rest smoothly,
+/// the lost slide is too small to justify a shorter step.
 bool PathFollower::slide_at_stake(int i, JointStatus before, double target,
                                   const Rounding& rounding) const {
   if (before == JointStatus::open) return true;
@@ -36,8 +37,8 @@ bool PathFollower::slide_at_stake(int i, JointStatus before, double target,
   return std::abs(slide_rate[i]) * (target - time) > least;
 }
 
-/// Share of a step to `to` after which a stiffness jumps; 1: none does. A step across such an edge
-/// ends where its straight line crosses it.
+/// Fraction of a step to `to` at which a stiffness first jumps; 1: none does. Linear interpolation
+/// of the step.
 double PathFollower::first_edge(double target, const VectorXd& to, const StepStart& begin,
                                 const Rounding& rounding) const {
   const VectorXd before = system.beyond_edges(z, time, origin);
@@ -51,10 +52,10 @@ double PathFollower::first_edge(double target, const VectorXd& to, const StepSta
   return share;
 }
 
-/// Whether energies balance over a step that leads to a state, or lose no less over shorter ones,
-/// which then is rounding. What the dashpots of slack joints take is not lost. Half of what a path
-/// may lose is every step's by its share of the time; of the other half each may take a little, so
-/// that single events ask for no short steps.
+/// Whether the energy balance of a step is accurate enough. A step is also accepted if shortening
+/// it did not halve the error, which is then rounding. Half of the allowed error is distributed
+/// over time; each step may use a small fraction of the other half, so that single events need no
+/// short steps. Work absorbed by the dashpots of slack joints is no error.
 bool PathFollower::balances(const State& next, const VectorXd& to, double step, double taken) {
   const double duration = model.programs.front().duration();
   const double heat = next.joint_dissipation.sum();
@@ -62,27 +63,27 @@ bool PathFollower::balances(const State& next, const VectorXd& to, double step, 
   const double unbalanced = work - (next.elastic_energy - state.elastic_energy) -
                             (next.load_potential - state.load_potential) -
                             (heat - state.joint_dissipation.sum());
-  // Forces of dashpots jump to none where a step begins. By the trapezoidal rule of the links' work
-  // they take up to the mean of both steps' forces times the motion.
+  // Dashpot forces jump to zero at the start of a step. The trapezoidal rule for the work of the
+  // bars attributes up to the mean dashpot force of both steps times the motion to the dashpots.
   const double by_dashpots = 0.5 * (taken + std::sqrt(taken * slack_work));
   const double gained = std::min(0.0, unbalanced) + std::max(0.0, unbalanced - by_dashpots);
   largest_work = std::max(largest_work, std::abs(next.thermal_work));
-  // At the start of a path its work is foreseen.
+  // At the start of a path its largest work is extrapolated.
   const double scale = std::max(largest_work, std::abs(work) * duration / step);
   const double half = 0.5 * options.energy_tolerance * scale;
   const double lost = std::abs(gained);
   const double stored = std::abs(next.elastic_energy) + std::abs(next.load_potential) + heat;
-  // Of the energies, and of the work that rounding of the links' forces does on this step's way.
+  // Rounding of the energies, and work of the rounding error of bar forces in this step.
   double rounding =
       4.0 * std::numeric_limits<double>::epsilon() * (stored + std::abs(next.thermal_work)) +
       system.force_rounding(to) * length_of(to - z, system.displacements()) *
           std::sqrt(static_cast<double>(model.links.size()));
-  // Where parts expand freely all work is such, or of the chords that the way is made of.
+  // If parts expand freely, all work is rounding, or the error of the chords of the path.
   if (stored < lost) rounding += system.force_rounding(to) * system.reach(to);
   const double by_time = half * step / duration;
   const double by_event = share_of_an_event * std::max(0.0, half - std::abs(energy_gained));
   const double allowed = std::max(by_time, by_event) + rounding;
-  // The rules of work and heat lose the fourth power of a step, or more.
+  // The error of work and heat is of fourth order in the step length, or higher.
   const double longer = step * std::sqrt(std::sqrt(0.5 * allowed / std::max(lost, rounding)));
   const bool controlled = options.locate_events && !system.slips_smoothly();
   if (controlled && step > shortest_balanced && lost > allowed && lost < 0.5 * refused_loss) {
@@ -99,19 +100,20 @@ bool PathFollower::balances(const State& next, const VectorXd& to, double step, 
   return true;
 }
 
-/// One step, if it is converged and exact or no longer than `tolerance`; else nothing happens.
+/// Attempts one step. Commits it if it converged and contains no event, or is not longer than
+/// `tolerance`; otherwise leaves the state unchanged.
 StepEnd PathFollower::step_to(double target, double tolerance) {
   slip_is_unstable = false;
   // The sum time + tolerance is rounded.
   const bool is_short = target - time <= 1.5 * tolerance;
-  // A joint that opens may leave a mechanism, which only a short step finds.
+  // A joint that opens may leave a mechanism, which only a short step detects.
   origin.slack_stiffness = is_short || is_slack ? system.slack_stiffness(slack_level) : 0.0;
   origin.is_loose = is_loose;
   VectorXd trial = z;
   Statuses trial_statuses =
       is_short && !changed_at_start.empty() ? changed_at_start : origin.statuses;
   const StepStart& begin = origin;
-  // The first change ahead: passed where it need not be located, or no location is asked.
+  // Event detection: the solve ends at the first change, or passes it if it is not to be located.
   std::optional<EventSearch> search;
   if (!is_short) {
     search = EventSearch{time, tolerance / (target - time), options.locate_events && locates,
@@ -119,7 +121,7 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
   }
   SolveReport report = newton.solve(target, begin, JointModel::friction, 1.0,
                                     options.most_iterations, trial, trial_statuses, search);
-  search.reset();  // as long as all unknowns
+  search.reset();  // frees a vector of all unknowns
   const bool hinted = is_short && !std::exchange(changed_at_start, {}).empty();
   if (hinted && report.end != SolveEnd::stopped) {
     looks_at_start = report.end == SolveEnd::converged && trial_statuses != origin.statuses;
@@ -134,7 +136,7 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
     try {
       report = continue_from_event(target, trial, trial_statuses, report);
     } catch (const Failure&) {
-      // From the present statuses there may be a way on that is the only one.
+      // There may be a unique continuation from the present statuses.
       if (!hinted) throw;
       looks_at_start = false;
       return step_to(target, tolerance);
@@ -147,7 +149,7 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
   if (report.end != SolveEnd::converged) {
     ++path.solves;
     if (!is_short) {
-      // Without dashpots the step says nothing of elements that become slack.
+      // Without dashpots a failed step with slack elements has no meaning.
       const bool is_free =
           any_open(trial_statuses) || any_open(origin.statuses) || report.end == SolveEnd::singular;
       if (!is_free || is_slack) return StepEnd::not_converged;
@@ -162,7 +164,7 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
   slip_is_unstable = !is_short && passes_instability(trial_statuses);
   if (slip_is_unstable) {
     ++path.solves;
-    // Elements that hang slack under compression are bounded by their play.
+    // Slack elements under compression are bounded by their play.
     if (stiffen_slack(trial_statuses)) return step_to(target, tolerance);
     return StepEnd::event_inside;
   }
@@ -173,7 +175,7 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
       return StepEnd::event_inside;
     }
   }
-  // One that begins to slip and is found on another branch has slid in between.
+  // A joint that was predicted to slip but ends in another status has slid in between.
   const auto slid_between = [&](const std::pair<int, JointStatus>& left) {
     return is_slip(left.second) && left.second != trial_statuses[index(left.first)] &&
            system.remembers_when(left.first, left.second, trial_statuses[index(left.first)]);
@@ -184,7 +186,7 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
   }
   const double idle_force = system.idle_force(trial, target, begin, trial_statuses);
   const auto is_idle = [&](int i) { return system.is_idle(i, z, trial, idle_force); };
-  // Whether it matters when in the step a joint changed its status.
+  // Whether the time of a joint's status change in the step affects the state.
   const auto matters = [&](int i) {
     const JointStatus before = origin.statuses[index(i)];
     const JointStatus after = trial_statuses[index(i)];
@@ -193,13 +195,13 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
                                                    : options.locate_events;
   };
   if (!is_short && locates && system.first_joint(matters) >= 0) {
-    // What a contact does after it closes says nothing of how it closes.
+    // The behaviour of a contact after it closes does not determine how it closes.
     const int closes = system.first_joint([&](int i) {
       return origin.statuses[index(i)] == JointStatus::open &&
              trial_statuses[index(i)] != JointStatus::open;
     });
     if (options.locate_events && looks_at_start && closes < 0 && !report.leaving) {
-      // All that changed seems to have done so at the start. In a short step rounding hides which.
+      // All changes seem to occur at the start. In a short step rounding hides which joints change.
       changed_at_start = trial_statuses;
       event_share = 0.0;
     }
@@ -234,8 +236,8 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
     ++path.solves;
     return StepEnd::event_inside;
   }
-  // A smooth law has no event: what has begun or ceased to slide as a whole is told where it is
-  // found, somewhere in the step.
+  // Partial slip has no located events. The start and end of full sliding are reported for the step
+  // in which they are found.
   const Statuses decided = trial_statuses;
   system.settle(trial, target, begin, trial_statuses);
   for (int i = 0; i < joints; ++i) {
@@ -247,7 +249,7 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
   const std::vector<double> program_rates = program_rates_before(target);
   VectorXd rate_after;
   VectorXd slide_rate_after = VectorXd::Zero(joints);
-  // On a smooth piece of the path they are nearly those of the parabola that leads here.
+  // On a smooth part of the path the rates are nearly those of the parabola through both ends.
   const bool follows = !is_short && rate.size() > 0 && trial_statuses == origin.statuses;
   const VectorXd guess =
       follows ? VectorXd(2.0 / (target - time) * (trial - z) - rate) : VectorXd();
@@ -261,8 +263,8 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
   const VectorXd slips = system.slips(trial, target, begin, after);
   const Ends ends{time, target,     begin,      trial_statuses,   z,    trial,
                   rate, rate_after, slide_rate, slide_rate_after, slips};
-  // The cubics through both ends know of a joint's own change at most, and without location there
-  // may be many.
+  // The cubics describe at most a joint's own change, and without location a step may contain many
+  // changes.
   const bool told = options.locate_events || events.size() <= 1;
   if (!is_short && told && rate.size() > 0 && rate_after.size() > 0) {
     event_share = locates ? first_turn(ends) : 1.0;
@@ -270,7 +272,7 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
     if (!follows_rates) {
       ++path.solves;
       if (event_share < 1.0 || is_slack || !any_open(origin.statuses)) return StepEnd::event_inside;
-      // What dashpots held so far nearly nothing else holds.
+      // An element that dashpots held until now is nearly free.
       is_slack = true;
       return step_to(target, tolerance);
     }
@@ -280,7 +282,7 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
   const std::optional<System::Halves> halves = system.halves_of(way, begin, trial_statuses);
   system.note_slides(way, halves, begin, after);
   if (halves && begin.last_step == 0.0 && !after.lost.isZero(0.0)) {
-    // The first step of a smooth piece of the path, of which nothing could be foreseen: again.
+    // The first step of a smooth part has no predicted quadrature error: repeat it with one.
     ++path.solves;
     origin.lost = after.lost;
     origin.last_step = way.step();
@@ -298,7 +300,7 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
     is_slack =
         (!opened && trial_statuses == origin.statuses) || note_slack(target, trial, trial_statuses);
   }
-  // Dashpots are no stiffer for long than steps need.
+  // Dashpots soften as soon as steps allow.
   slack_level = is_slack ? std::max(softest_level, slack_level - softer) : 0.0;
   if (slack_level == 0.0) after.damps_contact = false;
   note_not_unique(target);
@@ -324,9 +326,9 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
   return StepEnd::done;
 }
 
-/// A step; where there is none, with stiffer dashpots in the joints that are slack, or become so;
-/// at last through a snap.
-/// @param until corner of the programs that no snap passes [s]
+/// Takes a step. If it has no solution, the dashpots of slack or opening joints are stiffened, and
+/// finally a snap is followed.
+/// @param until corner of the programs that a snap does not pass [s]
 StepEnd PathFollower::step_with_slack(double target, double until, double tolerance) {
   const Statuses before = origin.statuses;
   for (;;) {

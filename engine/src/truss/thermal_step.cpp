@@ -7,7 +7,7 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Abscissae and weights on (0, 1) of the quadrature of order 8.
+/// Abscissae and weights of the Gauss–Legendre quadrature of order 8 on (0, 1).
 constexpr std::array<std::pair<double, double>, 4> gauss_legendre{
     {{0.069431844202973712, 0.17392742256872693},
      {0.33000947820757187, 0.32607257743127307},

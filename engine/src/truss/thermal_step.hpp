@@ -17,7 +17,7 @@ struct Quadrature {
   struct Point {
     double share;
     double temperature_change;  ///< [K]
-    double warmed;              ///< Weight, a change of the temperature [K].
+    double warmed;              ///< Weight: part of the temperature change [K].
   };
   std::array<Point, 4> points{};
   std::size_t count = 0;

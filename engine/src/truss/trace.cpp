@@ -84,10 +84,10 @@ Decision decision_of(SolveEnd end) {
 
 Tracer::~Tracer() {
   if (!held_) return;
-  held_->step_end = "failed";  // a step that has ended leaves none
+  held_->step_end = "failed";  // a step that ended normally has sent its record
   try {
     send();
-  } catch (...) {  // NOLINT(bugprone-empty-catch): the failure of the path is on its way
+  } catch (...) {  // the failure of the path is already propagating
   }
 }
 
@@ -153,7 +153,7 @@ void TracedSolve::close(bool ends) {
   } else if (halved) {
     record.decision = Decision::halved_step;
   } else {
-    // A step that was undone has no length.
+    // The step length was reset: the solve restarted.
     record.decision = stepped_ && !view_.lengths.empty() ? Decision::step : Decision::restart;
   }
 }

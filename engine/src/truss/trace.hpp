@@ -13,9 +13,8 @@ namespace statejump::truss::detail {
 
 enum class StepEnd : unsigned char;
 
-/// Sends the iterations of a path to the sink of its options, if there is one. A record is sent
-/// when the next one begins, because the end of the solve and of the step belong to the last
-/// record.
+/// Sends the iterations of a path to the trace sink of its options. A record is sent when the next
+/// one begins, because it also reports the end of the solve and of the step.
 class Tracer {
  public:
   Tracer(const Model& model, TraceSink sink) : model_(&model), sink_(std::move(sink)) {}

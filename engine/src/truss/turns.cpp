@@ -8,9 +8,9 @@
 
 namespace statejump::truss::detail {
 
-/// Share of a step after which the first joint turns round within it: one that slips the other way
-/// for a while, or one that leaves its branch and comes back. 1: none does. The unknowns and the
-/// slides are cubics through both ends of the step and their rates.
+/// Fraction of a step after which the first joint reverses within it; 1: none does. A joint
+/// reverses if it slips backwards for a while, or leaves its status and returns. Unknowns and
+/// slides are cubics through both ends of the step with their rates.
 double PathFollower::first_turn(const Ends& ends) const {
   const Rounding rounding = system.rounding(ends.to);
   VectorXd turn = VectorXd::Ones(static_cast<Eigen::Index>(model.joints.size()));
@@ -36,7 +36,7 @@ double PathFollower::turn_of_slip(int i, const Ends& ends, const Rounding& by) c
   const Cubic slide{0.0, sense * ends.slips[i],
                     slipped ? std::max(0.0, sense * step * ends.from_slide_rate[i]) : 0.0,
                     sense * step * ends.to_slide_rate[i]};
-  // What slides back by less is not told from rest, see slide_at_stake().
+  // A smaller backward slip cannot be distinguished from rest, see slide_at_stake().
   const double rounding = 10.0 * system.slide_rounding(i, ends.to, ends.to_time, ends.start, by);
   if (slide.last_rate < -rounding) return slipped ? slide.turn(1.0) : 0.5;
   const auto slowest = slide.slowest();
@@ -48,7 +48,7 @@ double PathFollower::turn_of_stick(int i, const Ends& ends, const Rounding& roun
   const JointStatus status = ends.statuses[index(i)];
   const double step = ends.to_time - ends.from_time;
   const JointFrame& frame = system.frame(i);
-  std::optional<JointWay> way;  // few joints go to and fro
+  std::optional<JointWay> way;  // constructed on demand: few joints reverse
   const auto leaves = [&](double share) {
     if (!way) {
       const auto at = [&](const VectorXd& unknowns, double then) {
@@ -67,7 +67,7 @@ double PathFollower::turn_of_stick(int i, const Ends& ends, const Rounding& roun
     }
     return joint(i, [&](const auto& one) { return one.decide(at, status); }) != status;
   };
-  // What goes to and fro is farthest where its rate is 0.
+  // A quantity that reverses is extreme where its rate is 0.
   double found = 1.0;
   const auto ask = [&](double from_rate, double to_rate, auto&& passed) {
     if (!(from_rate * to_rate < 0.0)) return;

@@ -5,13 +5,13 @@
 
 namespace statejump::truss::detail {
 
-/// Path of the unknowns in a step: straight, or a cubic if the rates at both ends are known.
+/// Course of the unknowns in a step: straight, or cubic if the rates at both ends are known.
 struct Way {
   const Eigen::VectorXd& from;
   double from_time;
   const Eigen::VectorXd& to;
   double to_time;
-  const Eigen::VectorXd* from_rate = nullptr;  ///< None or empty: not known.
+  const Eigen::VectorXd* from_rate = nullptr;  ///< Null or empty: unknown.
   const Eigen::VectorXd* to_rate = nullptr;
 
   bool is_straight() const {

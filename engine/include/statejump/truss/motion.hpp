@@ -85,16 +85,18 @@ struct MovingState {
   Eigen::Matrix3Xd velocity;  ///< Of each node [m/s].
   double kinetic_energy = 0.0;
   double damping_dissipation = 0.0;  ///< Heat of the dashpots since the start [J].
-  double impact_dissipation = 0.0;   ///< What contacts took across their surfaces since then [J].
-  double drive_work = 0.0;           ///< Of all drives since the start [J].
-  Eigen::VectorXd drive_moment;      ///< Of each drive on its link, mean of the last step [N m].
+  double impact_dissipation =
+      0.0;  ///< Work that contacts absorbed along their normals since the start [J].
+  double drive_work = 0.0;       ///< Of all drives since the start [J].
+  Eigen::VectorXd drive_moment;  ///< Of each drive on its link, mean of the last step [N m].
 };
 
 /// A step in which the laws of rigid contacts do not determine their reactions. The solver returns
 /// one of several solutions; all have the same velocities.
 struct Undetermined {
-  double time;              ///< [s]
-  std::vector<int> joints;  ///< Whose reactions may be traded for each other.
+  double time;  ///< Time of the step [s].
+  std::vector<int>
+      joints;  ///< Joints whose reactions can be exchanged without changing velocities.
 };
 
 /// What simulate() returns.
@@ -107,7 +109,8 @@ struct Motion {
   bool complete = true;               ///< False if MotionOptions::progress ended it.
   double time_step = 0.0;             ///< [s]; the shortest one.
   long steps = 0;
-  long rejected_steps = 0;  ///< Tried, and longer than the tolerance allows or without solution.
+  long rejected_steps =
+      0;  ///< Steps repeated because their error was too large or they had no solution.
   /// Number of inexact steps: with a tolerance, steps of the smallest length whose error exceeds
   /// it; with equal steps, steps or parts of steps by damped implicit Euler.
   long inexact_steps = 0;
@@ -119,7 +122,8 @@ struct Motion {
   /// The first step in which a rigid contact stops sliding because its normal force had no solution
   /// or several (Painlevé).
   std::optional<Undetermined> jammed;
-  double negative_dissipation = 0.0;  ///< Sum of what steps gave below zero [J], <= 0.
+  double negative_dissipation =
+      0.0;  ///< Sum of the negative friction heats of single steps [J], <= 0.
 };
 
 /// Motion of a truss through its temperature programs, after Moreau and Jean [1, 2].

@@ -6,7 +6,7 @@
 
 namespace statejump::truss {
 
-/// What a parameter may be.
+/// Allowed values of a parameter.
 enum class Allowed : unsigned char {
   finite,
   positive,              ///< Finite, > 0.
@@ -30,10 +30,10 @@ struct Parameter {
   const char* words;  ///< In messages.
   const char* unit;
   Allowed allowed;
-  const char* source;  ///< What gives it.
+  const char* source;  ///< Origin of the value, for example a data sheet.
   std::variant<double Type::*, int Type::*, bool Type::*, Eigen::Vector3d Type::*> member;
-  int part = 0;   ///< Index within the column,
-  int width = 1;  ///< of so many numbers for each item.
+  int part = 0;   ///< First index within the column.
+  int width = 1;  ///< Number of values per item.
 };
 
 /// An output of an element or a joint at every state: a number, or a vector of three.

@@ -17,17 +17,17 @@ namespace statejump::truss {
 struct Options {
   /// How the truss reaches its first equilibrium.
   StartFriction start_friction = StartFriction::stuck;
-  /// Points of a path per monotone branch of the programs, >= 1.
+  /// Increments per monotone branch of the programs, >= 1.
   int increments_per_branch = 50;
-  /// Whether every change of a joint's status is located in time, or only those that the state
-  /// depends on; see solve(). A located change costs about ten solves.
+  /// Whether every change of a joint's status is located in time. Otherwise only those changes are
+  /// located whose time affects the state; see solve(). Locating a change takes about ten solves.
   bool locate_events = true;
   /// Interval [1/branch] within which changes are located.
   double event_tolerance = 1e-9;
-  /// Allowed error of the energy balance if events are located: a fraction of the largest possible
-  /// work of the temperature. That is the work of a program that always works at its largest rate.
-  /// Increments with a larger error are divided, into at most 64 steps. Laws that slip gradually
-  /// follow chords and are not divided.
+  /// Allowed error of the energy balance if events are located, as a fraction of the largest
+  /// possible work of the temperature (a program that always works at its largest rate). Increments
+  /// with a larger error are divided into at most 64 steps. Laws with gradual slip follow chords;
+  /// their increments are not divided.
   double energy_tolerance = 2.5e-11;
   /// Store only the states at the ends of the cycles.
   bool cycle_ends_only = false;
@@ -37,8 +37,9 @@ struct Options {
   /// Largest number of Newton iterations after the last change of a status. The same limit applies
   /// to statuses that cycle.
   int most_iterations = 40;
-  /// Largest number of steps in an increment without a change of status, >= 1. Usually one step is
-  /// enough, and about ten locate a change. A path with this many does not progress.
+  /// Largest number of steps in an increment without a change of status, >= 1. One step is usually
+  /// enough, and about ten locate a change. Reaching the limit means that the path does not
+  /// progress.
   int most_steps = 10000;
   /// Called with the finished fraction of the program (0 to 1). If it returns false, the path ends
   /// there, with Path::complete false.
@@ -71,7 +72,7 @@ struct State {
   double load_potential = 0.0;        ///< −Σ load · displacement [J].
 };
 
-/// Results that the user has to know and that are no failures.
+/// Warnings about a result that is not a failure.
 enum class NoteKind : unsigned char {
   large_start,  ///< The first equilibrium is far from the reference configuration: `value` [m].
   slack,  ///< Joints without contact: statics does not determine the position of their elements.

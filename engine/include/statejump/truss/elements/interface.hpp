@@ -82,7 +82,7 @@ struct Dashpot {
 /// | `table` | name of its table in the case |
 /// | `dofs_per_node` | 3: translations; 6: translations and rotations |
 /// | `parameters()` | key, unit, range and source of each parameter |
-/// | `outputs()`, `describe()` | numbers that it has at every state |
+///  `outputs()`, `describe()` | numbers that are output at every state |
 /// | `Frame`, `frame()` | its nodes (−1: ground) and fixed directions, found once |
 /// | `validate()` | rules beyond the ranges of single parameters |
 /// | `scale()` | see ElementScale |

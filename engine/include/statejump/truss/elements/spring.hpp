@@ -15,7 +15,7 @@ struct Spring {
   int first = 0;             ///< Node.
   int second = 0;            ///< Node.
   double stiffness = 0.0;    ///< k [N/m], >= 0.
-  double free_length = 0.0;  ///< [m]; negative for a preload that no length of it relieves.
+  double free_length = 0.0;  ///< [m]; negative: in tension at every length.
   bool cable = false;
 
   static constexpr const char* kind = "spring";

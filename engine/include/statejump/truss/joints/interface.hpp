@@ -75,17 +75,19 @@ struct Trial {
   std::array<Eigen::Vector3d, most_joint_nodes> drawn;  ///< Positions of its nodes, ΔT = 0 [m].
   std::array<Eigen::Vector3d, most_joint_nodes> moved;  ///< Their displacements [m].
   std::array<double, most_joint_forces> force{};        ///< Its unknowns [N].
-  const double* history = nullptr;                      ///< Of the start of the step.
-  JointStatus before = JointStatus::stick;              ///< Status at the start of the step.
-  double temperature_change = 0.0;                      ///< [K]
+  const double* history = nullptr;          ///< Memory of the joint at the start of the step.
+  JointStatus before = JointStatus::stick;  ///< Status at the start of the step.
+  double temperature_change = 0.0;          ///< [K]
   JointModel model = JointModel::friction;
-  double opening = 1.0;  ///< Share of the clearances that is open (start).
-  /// True for rates: the row of the slide is then that of a contact in which nothing slips.
+  double opening =
+      1.0;  ///< Open fraction of the clearances; below 1 only while the start is sought.
+  /// True if the rate of the slide is evaluated: the slide row is then that of a sticking contact.
   bool unslipped = false;
-  /// True in motion: contacts there have the whole law of a play, so the joint omits its springs.
+  /// True in motion, where the contacts evaluate soft stops and play: the joint then omits its
+  /// springs.
   bool in_motion = false;
-  /// Accumulated error of the slide of a joint that rolls, from the earlier steps and this one [m],
-  /// and its rate [m/s]. Along the slide, or a vector in the tangent plane.
+  /// Slip error accumulated in earlier steps and expected in this one [m], and its rate [m/s], of a
+  /// joint that rolls. Scalar along the slide, or a vector in the tangent plane.
   Eigen::Vector3d owed = Eigen::Vector3d::Zero();
   Eigen::Vector3d owed_rate = Eigen::Vector3d::Zero();
   /// Stiffness of a joint without force against its motion since the start of the step [N/m], see
@@ -93,12 +95,12 @@ struct Trial {
   double slack_stiffness = 0.0;
   /// Whether this stiffness also acts on joints in contact.
   bool damps_contact = false;
-  /// Rounding error of a length [m] and of a force [N]; 0 where inequalities are strict.
+  /// Rounding errors of a length [m] and of a force [N]; 0: inequalities are checked exactly.
   double length_rounding = 0.0;
   double force_rounding = 0.0;
 
-  /// Stiffness that damps the motion of a contact in the step [N/m]: all of it without normal
-  /// force, less with more force, so that the total force is continuous.
+  /// Stiffness that damps the motion of a contact in the step [N/m]. It decreases with the normal
+  /// force to zero, so that the total force is continuous.
   double slack_held(double normal_force, double clearance) const {
     if (damps_contact || normal_force <= 0.0) return slack_stiffness;
     return std::max(0.0, slack_stiffness - normal_force / clearance);
@@ -114,7 +116,7 @@ struct Trial {
 struct Seat {
   Eigen::Vector3d moved = Eigen::Vector3d::Zero();  ///< Step of the first node [m].
   std::array<double, most_joint_forces> force{};    ///< New forces [N].
-  bool touches = true;                              ///< False: no force says where.
+  bool touches = true;  ///< False: no force determines the contact point.
 };
 
 /// A type of joint is a struct of parameters with a name and a law between its nodes, whose forces
@@ -129,7 +131,7 @@ struct Seat {
 /// | `validate()` | rules beyond the ranges of single parameters |
 /// | `frame()` | nodes, directions, number of unknown forces |
 /// | `evaluate()` | forces on nodes and rows of a status, with all derivatives |
-/// | `warm()` | rates of these forces and rows if only its temperature changes |
+///  `warm()` | rates of these forces and rows due to its temperature alone |
 /// | `slide_row` | row that closes the slide while the joint sticks |
 /// | `decide()` | status that the inequalities require, given the status whose rows hold |
 /// | `begin()` | writes its memory at the start of the path |
