@@ -12,8 +12,8 @@
 
 namespace statejump::truss::detail {
 
-// A ball in its socket at one state, and since the start of the step. Numbers are doubles, or dual
-// numbers that carry derivatives.
+// Kinematics of a ball in its socket: a state, and the changes since the start of the step. Numbers
+// are doubles, or dual numbers with derivatives.
 
 /// Variables: displacements of four nodes, three forces, the temperature.
 constexpr int ball_variables = 3 * most_joint_nodes + most_joint_forces + 1;
@@ -38,20 +38,22 @@ inline Dual chain(const Dual& number, const ByNormal& of) {
 /// Local nodes.
 constexpr std::size_t ball = 0;
 constexpr std::size_t socket = 1;
-constexpr std::size_t ball_far = 2;    ///< Far end of the link that turns the ball.
-constexpr std::size_t socket_far = 3;  ///< Likewise the socket.
+constexpr std::size_t ball_far = 2;    ///< Far end of the link that rotates the ball.
+constexpr std::size_t socket_far = 3;  ///< Far end of the link that rotates the socket.
 
 /// Memory of a ball joint; with partial slip the memory of the contact follows it.
 struct BallMemory {
-  Eigen::Vector3d offset;            ///< Ball minus socket [m].
-  Eigen::Vector3d ball_direction;    ///< Ball link, ball minus far node; zero without [m].
-  Eigen::Vector3d socket_direction;  ///< Socket link, likewise [m].
-  Eigen::Vector3d friction;          ///< t [N].
-  Eigen::Vector3d axis;              ///< Across the normal, of the contact's memory; or zero.
-  double ball_radius;                ///< At the contact [m].
-  double socket_radius;              ///< Likewise.
-  double normal_force;               ///< λ_n [N].
-  double compliance;                 ///< 1/k_t [m/N]; 0: open.
+  Eigen::Vector3d offset;  ///< Ball minus socket [m].
+  Eigen::Vector3d
+      ball_direction;  ///< Ball minus far node of the ball's link [m]; zero without link.
+  Eigen::Vector3d
+      socket_direction;      ///< Socket minus far node of the socket's link [m]; zero without link.
+  Eigen::Vector3d friction;  ///< t [N].
+  Eigen::Vector3d axis;  ///< Reference direction of the slip memory in the tangent plane; or zero.
+  double ball_radius;    ///< At the contact [m].
+  double socket_radius;  ///< Likewise.
+  double normal_force;   ///< λ_n [N].
+  double compliance;     ///< 1/k_t [m/N]; 0: open.
 
   static constexpr int size = 19;
   static BallMemory of(const double* from) {
@@ -88,7 +90,7 @@ struct BallState {
   Number normal_force;
 };
 
-/// @param place returns the vector from one of its nodes to another
+/// @param between returns the vector from one local node to another
 template <class Number, class Between>
 BallState<Number> ball_state(const BallJoint& joint, const Vector<Number>& force,
                              const Number& temperature_change, double opening, Between&& between) {
@@ -126,7 +128,7 @@ BallState<Number> ball_state(const BallJoint& joint, const Vector<Number>& force
 /// An angle divided by its sine, as a function of its cosine.
 inline ByNormal arc_over_sine(double cosine) {
   const double x = 1.0 - cosine;
-  // Four terms are exact to rounding there.
+  // The series with four terms is exact to rounding.
   if (x < 1e-4) {
     return {1.0 + x * (1.0 / 3.0 + x * (2.0 / 15.0 + x * (2.0 / 35.0))),
             -(1.0 / 3.0 + x * (4.0 / 15.0 + x * (6.0 / 35.0)))};
@@ -173,8 +175,8 @@ Vector<Number> spun(const Vector<Number>& tangential, const Vector<Number>& norm
 template <class Number>
 struct BallSlide {
   Vector<Number> slide;  ///< σ [m].
-  Vector<Number> kept;   ///< Friction of the start, carried along [N].
-  Vector<Number> axis;   ///< The memory's, likewise [-].
+  Vector<Number> kept;   ///< Friction at the start, rotated with the contact [N].
+  Vector<Number> axis;   ///< Reference direction of the slip memory, rotated likewise [-].
 };
 
 template <class Number>
@@ -206,13 +208,13 @@ BallSlide<Number> ball_slide(const BallState<Number>& now, const BallMemory& sta
   return found;
 }
 
-/// Deflection that the contact would have if it stuck: the elastic force times the compliance.
+/// Elastic predictor of a step: deflection of the contact if it sticks.
 template <class Number>
 struct BallBend {
   BallSlide<Number> moved;
-  Vector<Number> pull;  ///< [m]
-  Number compliance;    ///< [m/N]
-  Number mean;          ///< Compliance over the step [m/N].
+  Vector<Number> pull;  ///< Trial deflection [m].
+  Number compliance;    ///< Compliance of the sticking contact [m/N].
+  Number mean;          ///< Mean compliance of the step [m/N].
 };
 
 template <class Number>
@@ -239,13 +241,15 @@ BallBend<Number> ball_bend(const BallJoint& joint, const BallState<Number>& now,
   return bend;
 }
 
-/// Direction of friction at the end of a step in which the contact slips; `pull` is not zero.
+/// Direction of friction at the end of a step in which the contact slips.
 ///
 /// Friction t rotates towards a straight slide s by dϑ/ds = −(k_t/|t|) sin ϑ, with the angle ϑ
 /// between both. This is a tractrix: tan(ϑ/2) falls as E = exp(−∫ k_t ds/|t|). With the directions
 /// t and s, c = t·s and q = (1 − c)/(1 + c) = tan²(ϑ/2) at the start, t ends along (1 − E)(1 + q E)
 /// s + E (1 + q) t. If slip begins within the step, or nearly reverses, t is projected onto the
-/// cone. @param slipped whether it slipped at the start of the step
+/// cone.
+/// @param slipped whether the contact slipped at the start of the step
+/// @pre `bend.pull` is not zero
 template <class Number>
 Vector<Number> slip_direction(const BallJoint& joint, const BallState<Number>& now,
                               const BallMemory& start, const BallBend<Number>& bend, bool slipped) {

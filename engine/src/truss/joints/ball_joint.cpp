@@ -47,7 +47,7 @@ BallState<double> state_of(const BallJoint& joint, const Trial& trial) {
       [&](std::size_t from, std::size_t to) { return trial.between(from, to); });
 }
 
-/// The same with the derivatives by all unknowns.
+/// State with derivatives with respect to all unknowns.
 BallState<Dual> dual_state_of(const BallJoint& joint, const Trial& trial) {
   Vector<Dual> force = Vector<Dual>::Zero();
   for (int k = 0; k < 3; ++k) {
@@ -70,13 +70,13 @@ BallState<Dual> dual_state_of(const BallJoint& joint, const Trial& trial) {
                                   trial.opening, between);
 }
 
-/// What its slide lacks, across the normal [m].
+/// Slip correction, projected onto the tangent plane [m].
 template <class Number>
 Vector<Number> across(const Vector<Number>& owed, const BallState<Number>& now) {
   return owed - now.normal * Number(now.normal.dot(owed));
 }
 
-/// The elastic deflection of a sticking joint, with the accumulated error of its slide.
+/// Elastic predictor of the step, with the slip correction.
 template <class Number>
 BallBend<Number> bend_of(const BallJoint& joint, const Trial& trial, const BallState<Number>& now) {
   BallBend<Number> bend = ball_bend(joint, now, BallMemory::of(trial.history));
@@ -87,12 +87,12 @@ BallBend<Number> bend_of(const BallJoint& joint, const Trial& trial, const BallS
 /// Forces on the nodes, and the residual.
 struct Response {
   std::array<Vector<Dual>, most_joint_nodes> force;
-  Vector<Dual> row;  ///< Along the frame's axes.
+  Vector<Dual> row;  ///< Residual along the axes of the frame.
   std::array<bool, 3> is_balance{false, false, false};
   std::size_t piece = 0;
 };
 
-/// Adds the moment about the centre of a part, which its link carries as forces across its ends.
+/// Adds a moment on a part, as a couple of transverse forces on the ends of its link.
 void add_moment(const Vector<Dual>& moment, const Vector<Dual>& direction, Vector<Dual>& at,
                 Vector<Dual>& far) {
   const Vector<Dual> across = moment.cross(direction) / direction.squaredNorm();
@@ -104,7 +104,8 @@ kernel::PartialSlipMemory slip_memory(const double* history) {
   return detail::read_partial_slip(history + BallMemory::size, 2);
 }
 
-/// One step of the law with partial slip. @param memory at its start; out: at its end
+/// One step of the partial-slip law.
+/// @param memory at the start of the step; out: at its end
 kernel::PartialSlipResponse rub(const BallJoint& joint, const Trial& trial, bool open,
                                 kernel::PartialSlipMemory& memory) {
   const BallState<double> now = state_of(joint, trial);
@@ -126,11 +127,12 @@ Vector<Dual> tangential_row(const BallJoint& joint, const Trial& trial, const Ba
   if (trial.model != JointModel::friction || joint.friction_coefficient == 0.0) return -carries;
   if (!is_slip(status) || bend.pull.squaredNorm().value() == 0.0) return bend.pull - carries;
   const Dual bound = joint.friction_coefficient * now.normal_force * bend.compliance;
-  // A pull so deep inside the cone sticks. Where rounding hides this, a tiny pull has no definite
-  // direction, and friction along it would reverse in every iteration.
+  // A trial force below half of the friction limit is doubled instead of scaled to the limit.
+  // Rounding dominates the direction of a tiny slide, and friction at its limit along this
+  // direction would reverse in every iteration.
   if (bend.pull.squaredNorm() < 0.25 * bound * bound) return bend.pull * Dual(2.0) - carries;
-  // If dashpots hold the contact, its direction rotates little in a step and must be a smooth
-  // function of it.
+  // With dashpots the trial force is only projected onto the cone: the direction rotates little in
+  // a step and must be a smooth function of it.
   const bool turns = is_slip(trial.before) && !trial.damps_contact;
   return detail::slip_direction(joint, now, start, bend, turns) * bound - carries;
 }
@@ -143,8 +145,7 @@ Response respond(const BallJoint& joint, const Trial& trial, JointStatus status)
   made.force[socket] = -now.force;
   const bool open = status == JointStatus::open;
   if (open || trial.model == JointModel::pins) {
-    // An open joint has no force. The ball may be exactly in the middle, where no normal is
-    // defined.
+    // An open joint has no force. A ball exactly in the middle has no normal.
     for (int k = 0; k < 3; ++k) {
       const Vector<Dual> along = Vector3d(trial.frame.axes.col(k)).cast<Dual>();
       made.is_balance[index(k)] = open || !trial.frame.holds[index(k)];
@@ -163,12 +164,12 @@ Response respond(const BallJoint& joint, const Trial& trial, JointStatus status)
   }
   const Dual depth =
       detail::chain(now.normal_force, contact_of(joint).depth(now.normal_force.value()));
-  // The contact yields in proportion to the opening of the clearance: from pins to contacts in
-  // small steps.
+  // The depth is scaled with the opened fraction of the clearance, so that the start proceeds from
+  // pins to contacts in small steps.
   const Dual gap = now.distance - now.clearance - trial.opening * depth;
   Vector<Dual> row = now.normal * gap;
   if (joint.partial_slip && trial.model == JointModel::friction) {
-    // In metres: the deflection of a spring with the stiffness of a sticking contact.
+    // In metres: force difference times the compliance of a sticking contact.
     const Dual compliance = detail::chain(
         now.normal_force, contact_of(joint).tangential_compliance(now.normal_force.value()));
     const detail::BallRubbed law = detail::ball_rubbed(joint, now, BallMemory::of(trial.history),
@@ -184,8 +185,8 @@ Response respond(const BallJoint& joint, const Trial& trial, JointStatus status)
   return made;
 }
 
-/// The slip since the start of the step, if the present contact stuck. Its rate is the rate of
-/// slip.
+/// Slip since the start of the step: trial less elastic deflection, along the trial deflection. Its
+/// rate is the slip rate.
 Dual slipped(const BallJoint& joint, const Trial& trial) {
   const BallState<Dual> now = dual_state_of(joint, trial);
   const BallBend<Dual> bend = bend_of(joint, trial, now);
@@ -213,7 +214,7 @@ void BallJoint::evaluate(const Trial& trial, JointStatus status, JointWriter& wr
   const Response made = respond(*this, trial, status);
   if (partial_slip) writer.piece(made.piece);
   for (int k = 0; k < 3; ++k) writer.carries(trial.force[index(k)]);
-  // A contact without force does not constrain its tangential directions.
+  // Dashpots act where contact forces do not constrain the tangential directions.
   const bool is_open = status == JointStatus::open;
   double slack = 0.0;
   Vector3d slack_by_normal = Vector3d::Zero(), normal = Vector3d::Zero();
@@ -300,7 +301,7 @@ JointStatus BallJoint::decide(const Trial& trial, JointStatus status) const {
   }
   const BallBend<double> bend = bend_of(*this, trial, now);
   const double rounding = slide_rounding(trial, trial.length_rounding, trial.force_rounding);
-  // A step of Newton's method along one direction that leads back beyond where it began.
+  // Newton's method has reversed the slide along one direction: the joint sticks.
   const double carried = now.friction.norm();
   if (now.normal_force > slack + trial.force_rounding && carried > trial.force_rounding &&
       bend.pull.dot(now.friction) < -rounding * carried) {
@@ -342,7 +343,7 @@ void BallJoint::commit(const Trial& trial, JointStatus status, double* after) co
   const Vector3d carried = detail::ball_slide(now, BallMemory::of(trial.history)).axis;
   if (carried.isZero(0.0)) return;
   BallMemory end = BallMemory::of(after);
-  // Over many steps, rounding must not move it out of the plane.
+  // Keeps rounding of many steps from moving the direction out of the tangent plane.
   end.axis = (carried - now.normal * now.normal.dot(carried)).normalized();
   end.to(after);
 }
@@ -423,7 +424,7 @@ Seat BallJoint::seat(const Trial& trial, double opened, double next, double roun
   Seat seat;
   seat.force = trial.force;
   const BallState<double> now = state_of(*this, trial);
-  // The ball touches where its pin force pushes.
+  // The ball makes contact in the direction of its pin force.
   const double pushes = now.force.norm();
   seat.touches = opened > 0.0 || pushes > rounding;
   if (!seat.touches) return seat;

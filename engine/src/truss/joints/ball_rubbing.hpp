@@ -6,8 +6,8 @@
 
 namespace statejump::truss::detail {
 
-// Friction of a ball with partial slip. The memory has two components: along a direction of the
-// tangent plane that rotates with the contact, and to the left of it as seen along the normal.
+// Friction of a ball with partial slip. The memory has two components: along a reference direction
+// of the tangent plane that rotates with the contact, and to the left of it, seen along the normal.
 
 /// Slide of a step [m] along both directions of the memory.
 template <class Number>
@@ -37,7 +37,7 @@ inline Eigen::Vector3d any_across(const Eigen::Vector3d& normal) {
 /// Friction t at the end of a step [N], with its derivatives.
 struct BallRubbed {
   Vector<Dual> friction;
-  std::size_t piece;  ///< Tells apart the pieces of the law.
+  std::size_t piece;  ///< Identifies the branch of the piecewise law.
 };
 
 /// @param compliance 1/k_t at the end of the step [m/N]

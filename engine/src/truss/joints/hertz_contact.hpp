@@ -6,7 +6,7 @@
 
 namespace statejump::truss::detail {
 
-/// A function of the normal force, and its derivative by it.
+/// A function of the normal force, with its derivative.
 struct ByNormal {
   double value;
   double slope;
@@ -33,7 +33,7 @@ struct HertzContact {
     return {depth, 2.0 / 3.0 * depth / normal_force};
   }
 
-  /// 1/k_t of a contact that sticks [m/N]; 0: rigid.
+  /// 1/k_t of a sticking contact [m/N]; 0: rigid.
   ByNormal tangential_compliance(double normal_force) const {
     if (std::isinf(mindlin_stiffness)) return {0.0, 0.0};
     const double least = least_force();
@@ -43,7 +43,7 @@ struct HertzContact {
     return {compliance, normal_force > least ? -compliance / (3.0 * normal_force) : 0.0};
   }
 
-  /// Energy of the depth [J].
+  /// Elastic energy of the indentation [J].
   double energy(double normal_force) const {
     if (std::isinf(hertz_stiffness)) return 0.0;
     const double linear = std::min(normal_force, least_force());
@@ -54,8 +54,8 @@ struct HertzContact {
 
 /// Heat of micro-slip at the rim of a sticking contact [J]: work of friction less the stored
 /// energy. The force goes from F at compliance C to F' at C'. Loading, along ΔF (C + C')/2: (F² +
-/// F'²) (C − C')/4. Unloading, along F' C' − F C: F·F' (C' − C)/2. @param before_squared, product,
-/// squared F², F·F', F'² [N²]
+/// F'²) (C − C')/4. Unloading, along F' C' − F C: F·F' (C' − C)/2.
+/// @param before_squared, product, squared F², F·F', F'² [N²]
 inline double rim_slip(double before_squared, double compliance_before, double product,
                        double squared, double compliance) {
   if (compliance_before == 0.0) return 0.0;

@@ -44,7 +44,7 @@ void for_each_element(const IwanJoint& joint, Use&& use) {
   use(spread * joint.stiffness_ratio, last, last, last);
 }
 
-/// Forces of the elements at a slide, from the earlier positions of their sliders.
+/// Total force of the elements at a slide, given the positions of their sliders before.
 struct Response {
   double force = 0.0;
   double tangent = 0.0;
@@ -91,8 +91,9 @@ std::vector<IwanJoint::Jenkins> IwanJoint::jenkins() const {
 }
 
 double IwanJoint::slack() const {
-  // The polygon touches the curve at both ends of an interval. Its error is largest at its corner,
-  // φ_i: the sliders that already slip there lack ∫ (φ_i − φ) ρ from the start of the interval.
+  // The force is a polygon that touches the exact curve at both ends of an interval. The error is
+  // largest at its corner φ_i: the force ∫ (φ_i − φ) ρ of the sliders that already slip there,
+  // integrated from the start of the interval.
   const double last = last_reach();
   const double spread = tangent_stiffness / (1.0 + stiffness_ratio);
   const auto upto = [&](double share) { return std::pow(share, exponent + 1.0); };
@@ -141,7 +142,7 @@ void IwanJoint::validate(const Model&) const {
     throw kernel::OutOfRange(item, "exponent", exponent, "above -1, at most 0");
   }
   if (!(spacing >= 1.0)) throw kernel::OutOfRange(item, "spacing", spacing, ">= 1");
-  // The first interval must not be below the rounding of the last one.
+  // The first interval must exceed the rounding of the last one.
   const double longest = std::pow(spacing, elements - 1);
   if (!(longest < 1e12)) {
     throw kernel::OutOfRange(item, "spacing to the power of elements - 1", longest, "below 1e12");
@@ -164,7 +165,7 @@ void IwanJoint::evaluate(const Trial& trial, JointStatus status, JointWriter& wr
     });
     now.tangent = tangent_stiffness;
   }
-  // In metres: the deflection of a spring with the stiffness of the stuck joint.
+  // In metres: force difference times the compliance of the stuck joint.
   writer.piece(now.slipping);
   writer.closure(0, (now.force - trial.force[0]) / tangent_stiffness);
   writer.corner(0, 0, -1.0 / tangent_stiffness);
@@ -184,7 +185,7 @@ JointStatus IwanJoint::decide(const Trial& trial, JointStatus status) const {
 }
 
 void IwanJoint::begin(const Trial& trial, JointStatus, double* now) const {
-  // The start was found from the reference configuration, where nothing had slipped.
+  // The start is sought from the reference configuration, in which all sliders are at zero.
   const std::vector<double> drawn(static_cast<std::size_t>(history()), 0.0);
   respond(*this, slide_of(*this, trial), drawn.data(), now);
 }

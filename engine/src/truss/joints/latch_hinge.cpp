@@ -26,7 +26,7 @@ Matrix32 plane_of(const Trial& trial) {
   return trial.frame.axes.leftCols<2>();
 }
 
-/// One of the links of a hinge: local nodes of its ends, and the sign of its rotation in φ.
+/// A link of the hinge: local nodes of its ends, and the sign of its rotation in φ.
 struct Arm {
   std::size_t from;
   std::size_t to;
@@ -61,12 +61,12 @@ double radius_of(const Trial& trial) {
   return (trial.drawn[1] - trial.drawn[0]).norm();
 }
 
-/// Part of the rotation that friction takes elastically while it sticks [rad].
+/// Elastic rotation of sticking friction [rad].
 double bend(const LatchHinge& hinge, const Trial& trial) {
   return radius_of(trial) * trial.force[0] / hinge.friction_stiffness;
 }
 
-/// What of the rotation has slipped [rad].
+/// Slipped part of the rotation [rad].
 double slipped(const LatchHinge& hinge, const Trial& trial) {
   return rotation_of(hinge, trial) - bend(hinge, trial);
 }
@@ -189,7 +189,7 @@ JointStatus LatchHinge::decide(const Trial& trial, JointStatus status) const {
   const double rounding = slide_rounding(trial, trial.length_rounding, trial.force_rounding);
   if (sense * slid >= -rounding) return status;
   if (friction_moment > 0.0) return JointStatus::stick;
-  // Without friction it turns either way.
+  // Without friction both directions of slip are admissible.
   return sense > 0.0 ? JointStatus::slip_minus : JointStatus::slip_plus;
 }
 

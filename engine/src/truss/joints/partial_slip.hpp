@@ -44,14 +44,14 @@ inline void write_partial_slip(const kernel::PartialSlipMemory& memory, double* 
   }
 }
 
-/// A contact within its limit in which nothing has slipped yet.
+/// Memory of a contact with this limit before any slip.
 inline kernel::PartialSlipMemory pressed(double stiffness, double limit) {
   kernel::PartialSlipMemory memory;
   kernel::partial_slip_step(stiffness, limit, {0.0, 0.0}, memory);
   return memory;
 }
 
-/// Number of the piece on which the law is smooth.
+/// Index of the smooth branch of the law.
 inline std::size_t piece_of(const kernel::PartialSlipLine& line) {
   return static_cast<std::size_t>(line.stuck + 1024 * (line.plus + 1024 * line.minus));
 }
@@ -60,16 +60,16 @@ inline std::size_t piece_of(const kernel::PartialSlipPlane& plane) {
   return static_cast<std::size_t>(plane.stuck + 1024 * plane.slips);
 }
 
-/// Whether a contact slides as a whole at the end of a step, and in which direction. @param before
-/// the same at its start: a contact at rest after a slide keeps that status @param rounding of the
-/// slide [m]
+/// Whether a contact slides as a whole at the end of a step, and in which direction.
+/// @param before status at the start of the step: a contact at rest after a slide keeps its status
+/// @param rounding of the slide [m]
 inline JointStatus sliding(const kernel::PartialSlipLine& line, JointStatus before,
                            double rounding) {
   const JointStatus way = line.centre > 0.0 ? JointStatus::slip_plus : JointStatus::slip_minus;
   const double beyond = std::abs(line.centre) - line.bound;
   return beyond >= (before == way ? -rounding : rounding) ? way : JointStatus::stick;
 }
-/// The same in a plane, where slip has no sign.
+/// For a contact in a plane; slip has no sign there.
 inline JointStatus sliding(const kernel::PartialSlipPlane& plane, JointStatus before,
                            double rounding) {
   const double beyond = plane.centre.norm() - plane.bound;

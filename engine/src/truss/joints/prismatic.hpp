@@ -8,8 +8,8 @@
 namespace statejump::truss::detail {
 
 /// Frame of a joint whose first node moves along a fixed axis. Its first force acts along the axis.
-/// If there is a second node, further forces constrain both nodes across the axis. @param second
-/// −1: ground
+/// If there is a second node, further forces constrain both nodes across the axis.
+/// @param second −1: ground
 inline JointFrame prismatic_frame(const Model& model, int first, int second, const Vector3d& axis) {
   JointFrame frame;
   frame.nodes = {first, second, -1, -1};

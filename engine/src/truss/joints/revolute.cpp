@@ -42,8 +42,8 @@ constexpr std::size_t bearing_far = 3;
 /// are components along its two plane directions.
 struct Memory {
   Vector2d eccentricity;       ///< [m]
-  Vector2d journal_direction;  ///< Journal link, journal minus far node; zero without [m].
-  Vector2d bearing_direction;  ///< Bearing link, likewise [m].
+  Vector2d journal_direction;  ///< Journal minus far node of its link [m]; zero without link.
+  Vector2d bearing_direction;  ///< Bearing minus far node of its link [m]; zero without link.
   double journal_radius;       ///< At the contact [m].
   double bearing_radius;       ///< Likewise.
   double normal;               ///< λ_n [N].
@@ -101,7 +101,7 @@ struct Geometry {
   Vector2d journal_direction;
   Vector2d bearing_direction;
   double clearance;
-  double depth;  ///< Of the journal in the bearing; not below 0 [m].
+  double depth;  ///< Penetration of the journal into the bearing [m], >= 0.
   double journal_radius;
   double bearing_radius;
 };
@@ -192,7 +192,8 @@ Rubbing rubbing(const ClearanceRevolute& joint, const Trial& trial, double slide
   return {line, line.by_limit * mu + line.by_stiffness * stiffens};
 }
 
-/// One step of that law. @param memory at its start; out: at its end
+/// One step of the partial-slip law.
+/// @param memory at the start of the step; out: at its end
 kernel::PartialSlipResponse rub(const ClearanceRevolute& joint, const Trial& trial, bool open,
                                 kernel::PartialSlipMemory& memory) {
   const double slide = motion_of(geometry_of(joint, trial), Memory::of(trial.history)).slide;
@@ -202,14 +203,14 @@ kernel::PartialSlipResponse rub(const ClearanceRevolute& joint, const Trial& tri
                                    memory);
 }
 
-/// Gradients of the work of both forces, of the slide and of the elastic deflection, along the two
-/// directions of the joint's plane.
+/// Gradients of the slide and of the virtual work of both forces, in the two directions of the
+/// joint's plane, with the second derivatives of that work.
 struct Gradients {
   std::array<Vector2d, 4> normal;
   std::array<Vector2d, 4> friction;  ///< Virtual work of friction.
   std::array<Vector2d, 4> slide;     ///< Derivative of Δσ.
   std::array<std::array<Matrix2d, 4>, 4> hessian;
-  std::array<std::array<bool, 4>, 4> bent{};  ///< Which of the latter are not zero.
+  std::array<std::array<bool, 4>, 4> bent{};  ///< Whether a block of `hessian` is set.
   Gradients() {
     normal.fill(Vector2d::Zero());
     friction.fill(Vector2d::Zero());
@@ -219,7 +220,7 @@ struct Gradients {
     if (bent[by][of]) {
       hessian[by][of] += value;
     } else {
-      // From +0, so that no zero has a sign.
+      // Adding to +0 avoids entries −0.
       hessian[by][of] = Matrix2d::Zero() + value;
       bent[by][of] = true;
     }
@@ -234,8 +235,8 @@ void pinned(Gradients& of) {
   }
 }
 
-/// Damps the relative motion of journal and bearing where nothing else constrains it, see
-/// System::slack_stiffness(). @param stiffness against motion since the start of the step [N/m]
+/// Damps the relative motion of journal and bearing, see System::slack_stiffness().
+/// @param stiffness against motion since the start of the step [N/m]
 /// @returns the force on the journal [N]
 Vector2d hold_slack(const Trial& trial, double stiffness, const Vector2d& eccentricity,
                     Gradients& of) {
@@ -248,7 +249,7 @@ Vector2d hold_slack(const Trial& trial, double stiffness, const Vector2d& eccent
   return stiffness * (eccentricity - Memory::of(trial.history).eccentricity);
 }
 
-/// @param motion that of the step if the derivative of the slide is needed, else null
+/// @param motion of the step; zero if the derivative of the slide is not needed
 /// @param bends whether second derivatives are needed
 void in_contact(const ClearanceRevolute& joint, const Trial& trial, const Geometry& g,
                 const Memory& start, const Motion& motion, bool bends, Gradients& of) {
@@ -260,7 +261,7 @@ void in_contact(const ClearanceRevolute& joint, const Trial& trial, const Geomet
   const double friction = trial.force[1];
   const double lever = 0.5 * (start.eccentricity.norm() / distance + 1.0);
   const double deeper = g.depth > 0.0 ? 0.5 : 0.0;  // −dr1/d|d| = dr2/d|d|
-  // The radii change with the distance of the centres as well.
+  // The radii also depend on the distance of the centres.
   const double slide_by_distance =
       0.5 * motion.contact_turned - 0.5 * deeper * (motion.journal_turned + motion.bearing_turned);
   for (const auto& [at, sign] : {std::pair{journal, 1.0}, std::pair{bearing, -1.0}}) {
@@ -275,7 +276,7 @@ void in_contact(const ClearanceRevolute& joint, const Trial& trial, const Geomet
     of.bend(journal, bearing, -bend);
     of.bend(bearing, journal, -bend);
   }
-  // For a link that rotates, the surface slides by radius times angle.
+  // The rotation of a link contributes radius times angle to the slide.
   const auto turn = [&](std::size_t at, std::size_t far, const Vector2d& direction, double radius,
                         double mean_radius) {
     const PlanarAngle angle = planar_angle(direction);
@@ -407,7 +408,7 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
   Gradients of;
   Vector2d slack = Vector2d::Zero(), slack_by_normal = Vector2d::Zero();
   if (status == JointStatus::open) {
-    // No contact forces. The journal may be exactly in the middle, where no normal is defined.
+    // An open joint has no contact forces. A journal exactly in the middle has no normal.
     slack = hold_slack(trial, trial.slack_stiffness, g.eccentricity, of);
     writer.balance(0, normal);
     writer.balance(1, friction);
@@ -427,13 +428,13 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
     in_contact(*this, trial, g, start, motion, bends, of);
     holds_normal = true;
     const ByNormal depth = contact_of(*this).depth(normal);
-    // The contact yields in proportion to the opening of the clearance: from pins to contacts in
-    // small steps.
+    // The depth is scaled with the opened fraction of the clearance, so that the start proceeds
+    // from pins to contacts in small steps.
     writer.closure(0, g.eccentricity.norm() - g.clearance - trial.opening * depth.value);
     corner[0][0] = -trial.opening * depth.slope;
     const double mu = trial.model == JointModel::friction ? friction_coefficient : 0.0;
     if (partial_slip && trial.model == JointModel::friction) {
-      // In metres: the deflection of a spring with the stiffness of a sticking contact.
+      // In metres: force difference times the compliance of a sticking contact.
       const Rubbing law = rubbing(*this, trial, motion.slide);
       const auto [compliance, softens] = contact_of(*this).tangential_compliance(normal);
       slides = trial.unslipped ? 1.0 : compliance * law.line.by_slide;
@@ -455,7 +456,7 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
       corner[1][0] = -sense * mu;
       corner[1][1] = 1.0;
     }
-    // A contact without force does not constrain its tangential directions.
+    // Dashpots act where contact forces do not constrain the tangential direction.
     const double holds = trial.slack_held(normal, g.clearance);
     slack = hold_slack(trial, holds, g.eccentricity, of);
     if (holds > 0.0 && holds < trial.slack_stiffness) {
@@ -493,7 +494,7 @@ void ClearanceRevolute::warm(const Trial& trial, JointStatus status, double temp
   if (trial.model == JointModel::pins || status == JointStatus::open) return;
   const Geometry g = geometry_of(*this, trial);
   const Motion motion = motion_of(g, Memory::of(trial.history));
-  // How fast the radii grow [m/s].
+  // Growth rates of the radii [m/s].
   const double of_journal = temperature_rate * journal_thermal_expansion * journal_radius;
   const double of_bore =
       temperature_rate * bearing_thermal_expansion * (journal_radius + radial_clearance);
@@ -528,7 +529,7 @@ void ClearanceRevolute::warm(const Trial& trial, JointStatus status, double temp
 
 namespace {
 
-/// The slide of a step less the elastic deflection, with the accumulated error [m].
+/// The slide of a step less the elastic deflection, with the slip correction [m].
 double lag_at(const ClearanceRevolute& joint, const Trial& trial, const Geometry& g) {
   const Memory start = Memory::of(trial.history);
   return motion_of(g, start).slide - elastic_slide(joint, trial, start).slide + trial.owed.x();
@@ -650,8 +651,8 @@ JointStatus ClearanceRevolute::settled(const Trial& trial, JointStatus status) c
 }
 
 std::optional<LocalContact> ClearanceRevolute::contact(const Trial& trial, JointStatus) const {
-  if (partial_slip) return {};  // its friction is no cone: as a contact it is held
-  // For concentric parts no normal is defined.
+  if (partial_slip) return {};  // partial slip has no friction cone; the joint keeps its status
+  // Concentric parts have no normal.
   if (trial.between(bearing, journal).isZero(0.0)) return {};
   return LocalContact{1, 0, friction_coefficient, 0.0};
 }
@@ -663,7 +664,7 @@ Seat ClearanceRevolute::seat(const Trial& trial, double opened, double next,
   const Vector2d pin(trial.force[0], trial.force[1]);
   Vector2d normal;
   if (opened == 0.0) {
-    // The journal touches where its pin force pushes.
+    // The journal makes contact in the direction of its pin force.
     seat.touches = pin.norm() > rounding;
     if (!seat.touches) return seat;
     normal = pin / pin.norm();

@@ -21,7 +21,7 @@ struct Sense {
   JointStatus stop;
   JointStatus other_slip;
   JointStatus other_stop;
-  /// To a rigid stop [m].
+  /// Distance to a rigid stop [m].
   double clearance(const Slider& slider) const {
     if (slider.has_soft_stops()) return std::numeric_limits<double>::infinity();
     return sign > 0.0 ? slider.clearance_plus : slider.clearance_minus;
@@ -48,14 +48,15 @@ kernel::PartialSlipLine rubbing(const Slider& slider, const double* history, dou
                                    s - history[0], memory_of(history));
 }
 
-/// The step of that law to the slide s. @param memory at its start; out: at its end
+/// One step of the partial-slip law to the slide s.
+/// @param memory at the start of the step; out: at its end
 kernel::PartialSlipResponse rub(const Slider& slider, const double* history, double s,
                                 kernel::PartialSlipMemory& memory) {
   return kernel::partial_slip_step(slider.tangential_stiffness, slider.friction_force,
                                    {s - history[0], 0.0}, memory);
 }
 
-/// Friction at the slide s [N]; only for a contact that is not rigid.
+/// Friction at the slide s [N]. @pre the contact is not rigid
 double friction_at(const Slider& slider, const double* history, double s) {
   if (slider.partial_slip) return rubbing(slider, history, s).force;
   const double f = slider.friction_limit();
@@ -68,7 +69,7 @@ double beyond_stops(const Slider& slider, double s) {
   return s - std::clamp(s, -slider.clearance_minus, slider.clearance_plus);
 }
 
-/// Part of the contact's deflection that its play takes [m].
+/// Part of the contact's deflection within its play [m].
 double played(const Slider& slider, double bend) {
   return std::clamp(bend, -0.5 * slider.play, 0.5 * slider.play);
 }
@@ -99,7 +100,7 @@ Springs springs_at(const Slider& slider, const Trial& trial) {
   return found;
 }
 
-/// Between the slider's nodes, whatever its status.
+/// Applies soft stops and play between the slider's nodes, for any status.
 void push_springs(const Slider& slider, const Trial& trial, JointWriter& writer) {
   const Springs found = springs_at(slider, trial);
   const Eigen::Vector3d force = found.force * slider.axis;
@@ -114,7 +115,7 @@ void push_springs(const Slider& slider, const Trial& trial, JointWriter& writer)
   writer.block(1, 0, -block);
 }
 
-/// Slide of a state [m]. At a stop it is the clearance itself, so that rounding does not
+/// Slide of a state [m]. At a stop the clearance itself is returned, so that rounding does not
 /// accumulate.
 double slide_of(const Slider& slider, const Trial& trial, JointStatus status) {
   return status == JointStatus::stop_plus    ? slider.clearance_plus
@@ -122,7 +123,8 @@ double slide_of(const Slider& slider, const Trial& trial, JointStatus status) {
                                              : slide_of(slider, trial);
 }
 
-/// Slipped part of the slide [m]; not with partial slip. @param before at the start of the step
+/// Slipped part of the slide [m], without partial slip.
+/// @param before memory at the start of the step
 double slipped(const Slider& slider, const Trial& trial, JointStatus status, const double* before) {
   const double s = slide_of(slider, trial, status);
   if (status != JointStatus::stop_plus && status != JointStatus::stop_minus) {
@@ -136,14 +138,14 @@ double slipped(const Slider& slider, const Trial& trial, JointStatus status, con
 JointStatus after_slip(const Slider& slider, const Trial& trial, const Sense& way) {
   const double s = slide_of(slider, trial);
   if (way.sign * s > way.clearance(slider) + trial.length_rounding) return way.stop;
-  // While it slips, its friction is the force.
+  // While the slider slips, the unknown force is friction.
   const bool elastic = std::isfinite(slider.tangential_stiffness);
   const double slid = s - trial.force[0] / slider.tangential_stiffness - trial.history[0];
   if (way.sign * slid >=
       -slider.slide_rounding(trial, trial.length_rounding, trial.force_rounding)) {
     return way.slip;
   }
-  // Without friction it slides either way.
+  // Without friction both directions of slip are admissible.
   if (slider.friction_force == 0.0) return way.other_slip;
   return trial.before == way.other_stop && !elastic ? trial.before : JointStatus::stick;
 }
@@ -157,8 +159,8 @@ JointStatus after_stop(const Slider& slider, const Trial& trial, const Sense& wa
     const bool leaves = pushed < way.sign * rubs - trial.force_rounding;
     return leaves ? JointStatus::stick : way.stop;
   }
-  // If it rested there before, friction helps to keep it there. If it arrived in this step,
-  // friction pushes it back.
+  // If the slider was at the stop before, friction helps to hold it there. If it arrived in this
+  // step, friction acts against the stop.
   if (trial.before == way.stop) {
     return pushed < -(f + trial.force_rounding) ? way.other_slip : way.stop;
   }
@@ -169,7 +171,7 @@ JointStatus after_stop(const Slider& slider, const Trial& trial, const Sense& wa
 JointStatus after_stick(const Slider& slider, const Trial& trial, JointStatus status) {
   const bool elastic = std::isfinite(slider.tangential_stiffness);
   for (const Sense& way : {plus, minus}) {
-    // It may reach a stop by its elastic deflection.
+    // A sticking slider may reach a stop by elastic deflection.
     const double s = way.sign * slide_of(slider, trial);
     if (elastic && s > way.clearance(slider) + trial.length_rounding) return way.stop;
     if (slider.partial_slip) continue;  // one row for stick and slip
@@ -245,7 +247,7 @@ void Slider::evaluate(const Trial& trial, JointStatus status, JointWriter& write
   detail::push_along(trial, axis, writer);
   if (has_springs()) push_springs(*this, trial, writer);
   if (partial_slip && status != JointStatus::stop_plus && status != JointStatus::stop_minus) {
-    // In metres: the deflection of a spring with the stiffness of a sticking contact.
+    // In metres: force difference times the compliance of a sticking contact.
     const kernel::PartialSlipLine law = rubbing(*this, trial.history, s);
     const double gives = trial.unslipped ? 1.0 : law.by_slide / tangential_stiffness;
     writer.piece(detail::piece_of(law));
@@ -300,7 +302,7 @@ JointStatus Slider::decide(const Trial& trial, JointStatus status) const {
 }
 
 void Slider::begin(const Trial& trial, JointStatus status, double* now) const {
-  // The start was found from the reference configuration, where nothing had slipped.
+  // The start is sought from the reference configuration, in which the slip is zero.
   std::vector<double> drawn(detail::index(history()), 0.0);
   Trial from = trial;
   from.history = drawn.data();
@@ -374,7 +376,7 @@ void Slider::describe(const Trial& trial, double* outputs) const {
   outputs[0] = s;
   outputs[1] = trial.force[0];
   if (play > 0.0) {
-    // In the open play the force is zero, and not the difference of two forces.
+    // Inside an open play the force is exactly zero, not the difference of two forces.
     const double bend = s - trial.history[0];
     const double inside = played(*this, bend);
     outputs[1] = inside == bend ? 0.0 : trial.force[0] - tangential_stiffness * inside;
@@ -402,7 +404,7 @@ JointStatus Slider::settled(const Trial& trial, JointStatus status) const {
 }
 
 std::optional<LocalContact> Slider::contact(const Trial&, JointStatus status) const {
-  if (partial_slip) return {};  // its friction is no cone: as a contact it is held
+  if (partial_slip) return {};  // partial slip has no friction cone; the joint keeps its status
   // Statics does not determine how wall and friction share a force. In contact problems a slider at
   // a stop therefore keeps its status.
   if (status == JointStatus::stop_plus || status == JointStatus::stop_minus) return {};

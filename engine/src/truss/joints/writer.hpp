@@ -62,48 +62,48 @@ class Assembly {
 
   /// Begins an evaluation.
   void clear();
-  /// Makes the pattern of what was written.
+  /// Builds the pattern from the recorded positions.
   void record();
 
   Eigen::VectorXd residual;
-  Eigen::Matrix3Xd moved;  ///< Displacements of all nodes, where it is evaluated [m].
+  Eigen::Matrix3Xd moved;  ///< Displacements of all nodes at the evaluated state [m].
   /// The Jacobian of the last evaluation that updated it. All copies have the same pattern.
   linear::SparseView jacobian() const {
     return {residual.size(),      residual.size(),      values_.size(),
             slots_->outer.data(), slots_->inner.data(), values_.data()};
   }
   Eigen::VectorXd product;                      ///< Jacobian times the vector.
-  std::vector<Eigen::Triplet<double>> entries;  ///< Of the Jacobian, where they are listed.
+  std::vector<Eigen::Triplet<double>> entries;  ///< Entries of the Jacobian, if listed.
   std::vector<RowUnit> units;                   ///< Of every row.
-  double largest_force = 0.0;                   ///< Of any part [N].
-  std::size_t pieces = 0;  ///< Tells sets of pieces of branches that have several.
+  double largest_force = 0.0;                   ///< Largest force of an element or a joint [N].
+  std::size_t pieces = 0;  ///< Hash of the active branches of all piecewise laws; 0: none.
 
  private:
   friend class AssemblyStrand;
   /// Pattern of the Jacobian, and the position in it of each written entry.
   struct Slots {
-    std::vector<int> outer, inner;  ///< Of the Jacobian: begin of its columns, rows of its entries.
-    std::vector<int> entries;       ///< Where every run of places begins among the entries.
-    std::vector<std::size_t> begin;  ///< Where the strands begin.
+    std::vector<int> outer, inner;   ///< Compressed columns of the Jacobian.
+    std::vector<int> entries;        ///< For every run, the index of its first entry.
+    std::vector<std::size_t> begin;  ///< First run of every strand.
   };
   bool residual_only_ = false;
   bool lists_ = false;
   const Eigen::VectorXd* along_ = nullptr;
-  /// Consecutive positions of a column, which are consecutive entries: a column of a block.
+  /// Consecutive rows of a column of the Jacobian, whose entries are contiguous.
   struct Run {
     int row, column, length;
   };
   std::vector<Run> runs_;
-  std::vector<std::size_t> begin_;      // of the strands among the runs
-  std::shared_ptr<const Slots> slots_;  ///< Once recorded, the same of all copies.
-  Eigen::VectorXd values_;              ///< Of the entries of the Jacobian.
+  std::vector<std::size_t> begin_;      // first run of every strand
+  std::shared_ptr<const Slots> slots_;  ///< Recorded pattern, shared by all copies.
+  Eigen::VectorXd values_;              ///< Entries of the Jacobian.
 };
 
 /// Writes one part of an assembly, always the same positions in the same order.
 class AssemblyStrand {
  public:
-  /// @param which number of the strand; while an assembly records, strands come in the order of
-  /// their numbers
+  /// @param which number of the strand; while an assembly records, strands must be created in
+  /// ascending order
   AssemblyStrand(Assembly& to, std::size_t which) : to_(&to) {
     if (to.slots_ != nullptr) {
       slot_ = to.slots_->entries.data() + to.slots_->begin[which];
@@ -112,7 +112,7 @@ class AssemblyStrand {
       to.begin_.push_back(to.runs_.size());
     }
   }
-  /// Adds the scales of the strand to the assembly; call for strands in their order.
+  /// Merges force scale and active branches into the assembly. Call for strands in ascending order.
   void end() {
     to_->largest_force = std::max(to_->largest_force, largest_force_);
     to_->pieces = to_->pieces * hash_factor_ + pieces_;
@@ -126,9 +126,9 @@ class AssemblyStrand {
     at.each_term(direction, [&](int row, double factor) { residual(row, factor * value); });
   }
   void unit(int row, RowUnit unit) { to_->units[static_cast<std::size_t>(row)] = unit; }
-  /// Includes a force in the scale of rounding and balance [N].
+  /// Includes a force in the scale of rounding and force balance [N].
   void carries(double force) { largest_force_ = std::max(largest_force_, std::abs(force)); }
-  /// For a piecewise linear status: reports the active piece.
+  /// Reports the active branch of a piecewise law.
   void piece(std::size_t which) {
     pieces_ = hash_base * pieces_ + which;
     hash_factor_ *= hash_base;
