@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What straight elements between two nodes share.
+// Functions of straight elements between two nodes.
 #pragma once
 
 #include <array>
@@ -19,7 +19,8 @@ struct Axial {
   double energy() const { return stiffness > 0.0 ? 0.5 * tension * tension / stiffness : 0.0; }
 };
 
-/// Tension and stiffness of a bar. @param change ΔT of the bar [K]
+/// Tension and stiffness of a bar.
+/// @param change ΔT of the bar [K]
 inline Axial axial(const Bar& bar, double elongation_from_drawn, double drawn_length,
                    double change) {
   const double l0 = bar.stress_free_length;
@@ -44,7 +45,7 @@ inline void write_axial(const std::array<int, 2>& nodes, const Lengths& length, 
   writer.force(second, axial.tension * direction);
   writer.carries(axial.tension);
   if (writer.residual_only()) return;
-  // Along the element its stiffness, across it that of the tension.
+  // Stiffness along the element, and geometric stiffness of its tension across it.
   const double across = axial.tension / length.now;
   const double more = axial.stiffness - across;
   const auto own = [&](int node, const Vector3d& along) {

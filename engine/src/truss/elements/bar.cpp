@@ -20,7 +20,7 @@ using detail::Lengths;
 
 namespace {
 
-/// Of a bar at a state.
+/// Tension and stiffness of a bar at a state.
 Axial axial_at(const Bar& bar, const Lengths& length, const ElementState& state) {
   const double change = bar.temperature_fraction * state.temperature_change(bar.program);
   return axial(bar, length.growth, length.drawn, change);
@@ -83,7 +83,7 @@ void Bar::thermal_rate(const Frame& frame, const ElementState& state,
   const double growth =
       stress_free_length * thermal_expansion * temperature_fraction * program_rates[index(program)];
   if (growth == 0.0) return;
-  // N = E A (L/l_T − 1) by l_T.
+  // Derivative of N = E A (L/l_T − 1) with respect to l_T.
   const Lengths length = detail::lengths(frame.nodes, state);
   const double change = temperature_fraction * state.temperature_change(program);
   const double free = thermal::length(stress_free_length, thermal_expansion, change);
@@ -131,8 +131,8 @@ void Bar::mass(const Frame& frame, const Inertia& inertia, std::size_t i,
   const double rotary = inertia.link_moment.size() == 0
                             ? mass / 12.0
                             : inertia_of(inertia.link_moment, i) / std::pow(stress_free_length, 2);
-  // The centre of mass moves by (1 − G) v1 + G v2 with G a rotation and stretch of the plane; the
-  // body rotates by the remaining part of v2 − v1.
+  // The centre of mass moves by (1 − G) v1 + G v2. G rotates and stretches the plane. The body
+  // rotates by the remaining part of v2 − v1.
   Eigen::Matrix3d to_second = 0.5 * Eigen::Matrix3d::Identity();
   if (inertia.link_centre.size() != 0) {
     const auto centre = inertia.link_centre.col(static_cast<Eigen::Index>(i));

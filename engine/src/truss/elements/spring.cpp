@@ -15,8 +15,8 @@ using detail::Lengths;
 
 namespace {
 
-/// Computed from differences, because the rounding of a length would be noise in the force of a
-/// stiff spring.
+/// Elongation [m]. Computed from differences, because the rounding of a length would cause noise in
+/// the force of a stiff spring.
 double stretch(const Spring& spring, const Lengths& length) {
   return (length.drawn - spring.free_length) + length.growth;
 }

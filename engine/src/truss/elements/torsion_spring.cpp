@@ -18,12 +18,12 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// The bars whose angle a spring resists.
+/// The bars between which the spring acts.
 struct Arms {
   struct Arm {
     int first;
     int second;
-    double sign;  ///< Of its turn in the angle.
+    double sign;  ///< Sign of its rotation in the angle.
     Vector2d drawn;
     Vector2d moved;  ///< Displacement of the second end relative to the first [m].
   };
@@ -90,12 +90,13 @@ void TorsionSpring::evaluate(const Frame& frame, const ElementState& state,
                              ElementWriter& writer) const {
   const Arms now = arms_of(frame, state);
   const double moment = stiffness * (now.angle - free_angle);
-  // The motion of the second end of a bar rotates it, that of the first end with the opposite sign.
+  // The angle of a bar increases with the motion of its second end and decreases with that of its
+  // first.
   struct End {
     std::size_t bar;
     int node;
     Vector3d turns;    ///< Derivative of the angle along the node's directions [rad/m].
-    Vector3d outward;  ///< Direction of the bar over its length, along the same [1/m].
+    Vector3d outward;  ///< Direction of the bar over its length, along the node's directions [1/m].
   };
   std::array<End, 4> ends;
   std::size_t count = 0;

@@ -11,7 +11,7 @@
 namespace statejump::truss {
 
 /// Adds the forces of elements on nodes, and their derivatives, to the rows of the nodes' dofs.
-/// Node −1 is the ground, which takes any force.
+/// Node −1, the ground, has no rows.
 class ElementWriter {
  public:
   ElementWriter(const detail::DofMap& dofs, AssemblyStrand& to) : dofs_(&dofs), to_(&to) {}
@@ -25,8 +25,8 @@ class ElementWriter {
       to_->residual(dofs, i, dofs.directions->col(i).dot(value));
     }
   }
-  /// Derivative of a node's force by another node's displacement: `value(direction of the force,
-  /// direction of the displacement)`.
+  /// Derivative of a node's force with respect to another node's displacement: `value(direction of
+  /// the force, direction of the displacement)`.
   template <class Value>
   void block(int row_node, int column_node, Value&& value) {
     to_->block(at(row_node), at(column_node), value);
@@ -35,9 +35,9 @@ class ElementWriter {
   Eigen::Vector3d seen(int node, const Eigen::Vector3d& vector) const {
     return at(node).directions->transpose() * vector;
   }
-  /// Includes a force in the scale of rounding and balance [N].
+  /// Includes a force in the scale of rounding and force balance [N].
   void carries(double force) { to_->carries(force); }
-  /// For a piecewise linear law: reports the active piece.
+  /// Reports the active branch of a piecewise law.
   void piece(std::size_t which) { to_->piece(which); }
 
  private:
@@ -51,7 +51,7 @@ class MatrixWriter {
   MatrixWriter(const detail::DofMap& dofs, std::vector<Eigen::Triplet<double>>& to)
       : dofs_(&dofs), to_(&to) {}
 
-  /// Adds the derivative of a force on one node by the motion of another.
+  /// Adds the derivative of a force on one node with respect to the motion of another.
   void block(int row_node, int column_node, const Eigen::Matrix3d& value) {
     const NodeDofs& rows = dofs_->at(row_node);
     const NodeDofs& columns = dofs_->at(column_node);

@@ -179,7 +179,7 @@ class AssemblyStrand {
       }
     }
   }
-  /// The same that is zero.
+  /// Adds a block of zeros.
   void zeros(const NodeDofs& rows, const NodeDofs& columns) {
     if (rows.sums == nullptr && columns.sums == nullptr) {
       return zeros(rows.row, rows.freedoms, columns.row, columns.freedoms);
@@ -194,7 +194,7 @@ class AssemblyStrand {
   }
 
  private:
-  /// The slow case: positions are not recorded yet, or no Jacobian is wanted.
+  /// Slow case: positions are not recorded yet, or no Jacobian is needed.
   [[gnu::noinline]] void elsewhere(int row, int column, double value) {
     if (to_->lists_) {
       to_->entries.emplace_back(row, column, value);
@@ -218,8 +218,8 @@ class AssemblyStrand {
 
   static constexpr std::size_t hash_base = 1000003;
   Assembly* to_;
-  double* values_ = nullptr;   ///< Of the entries of the Jacobian.
-  const int* slot_ = nullptr;  ///< Of the next place; none: nothing is recorded.
+  double* values_ = nullptr;   ///< Entries of the Jacobian.
+  const int* slot_ = nullptr;  ///< Next position; null: nothing is recorded.
   double largest_force_ = 0.0;
   std::size_t pieces_ = 0;
   std::size_t hash_factor_ = 1;
@@ -241,7 +241,7 @@ class JointWriter {
     }
   }
   bool residual_only() const { return to_->residual_only(); }
-  /// Derivative of a node's force by another node's displacement [N/m].
+  /// Derivative of a node's force with respect to another node's displacement [N/m].
   void block(std::size_t by_node, std::size_t of_node, const Eigen::Matrix3d& value) {
     if (to_->residual_only()) return;
     const NodeDofs& rows = places[by_node];
@@ -251,19 +251,19 @@ class JointWriter {
     to_->block(rows, columns,
                [&](int i, int j) { return rows.directions->col(i).dot(image.col(j)); });
   }
-  /// Derivative of a row by a node's displacement.
+  /// Derivative of a row with respect to a node's displacement.
   void row(int row, std::size_t node, const Eigen::Vector3d& gradient) {
     if (to_->residual_only()) return;
     const NodeDofs& at = places[node];
     to_->block(own(row), at, [&](int, int j) { return at.directions->col(j).dot(gradient); });
   }
-  /// Derivative of a node's force by one of the joint's.
+  /// Derivative of a node's force with respect to a force of the joint.
   void column(std::size_t node, int force, const Eigen::Vector3d& gradient) {
     if (to_->residual_only()) return;
     const NodeDofs& at = places[node];
     to_->block(at, own(force), [&](int i, int) { return at.directions->col(i).dot(gradient); });
   }
-  /// Derivative of a row by one of the joint's forces.
+  /// Derivative of a row with respect to a force of the joint.
   void corner(int row, int force, double value) {
     to_->add(first_force + row, first_force + force, value);
   }
@@ -271,9 +271,9 @@ class JointWriter {
   void closure(int row, double value) { set(row, value, RowUnit::closure); }
   /// Sets the residual of a row as a difference of forces [N].
   void balance(int row, double value) { set(row, value, RowUnit::force); }
-  /// Includes a force in the scale of rounding and balance [N].
+  /// Includes a force in the scale of rounding and force balance [N].
   void carries(double force) { to_->carries(force); }
-  /// For a piecewise linear status: reports the active piece.
+  /// Reports the active branch of a piecewise law.
   void piece(std::size_t which) { to_->piece(which); }
   /// Constrains the first two nodes along a direction by one of the joint's forces.
   void hold(int row, const Eigen::Vector3d& along, double force, double apart) {
@@ -299,8 +299,8 @@ class JointWriter {
   AssemblyStrand* to_;
 };
 
-/// The same for a joint with forces and slides in a plane: vectors are components along its two
-/// directions.
+/// JointWriter for a joint with forces and slides in a plane. Vectors are components along the two
+/// directions of the plane.
 class PlanarWriter {
  public:
   PlanarWriter(JointWriter& to, const Eigen::Matrix<double, 3, 2>& plane) : to_(&to) {
@@ -341,7 +341,8 @@ class PlanarWriter {
  private:
   using Directions = Eigen::Matrix<double, 2, 3>;
   JointWriter* to_;
-  std::array<Directions, most_joint_nodes> seen_;  ///< In which its nodes are free.
+  std::array<Directions, most_joint_nodes>
+      seen_;  ///< In-plane components of the nodes' free directions.
 };
 
 }  // namespace statejump::truss

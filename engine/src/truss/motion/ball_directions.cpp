@@ -8,12 +8,13 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// A step rotates friction by little, and the error of a rotation falls with its square.
+/// Most iterations of the directions in a step. Directions change little, and the iteration
+/// converges quadratically.
 constexpr int most_rotations = 50;
-/// Fraction of the bound that friction may have across its direction: its size is then off by half
-/// the square of it, which is where a contact counts as slipping.
+/// Tolerated friction across its direction, over the friction limit. Half its square is the error
+/// of the magnitude, below the tolerance at which a contact counts as slipping.
 constexpr double aside = 1e-4;
-/// The same for what a changed stiffness makes of it while it sticks.
+/// Tolerated change of transverse friction by an updated stiffness while sticking, over the limit.
 constexpr double stiffened = 1e-8;
 
 }  // namespace
@@ -40,7 +41,8 @@ bool direct_balls(const System& system, const TimeStep& step, int rotations,
       statuses[cone.place + 1] = status_of(beside);
     };
     if (contact.slips_in_part) {
-      // The contact problem has friction within what is given; on statuses there is only the law.
+      // The contact problem limits friction to `given_force`; a solve on statuses uses the law
+      // alone.
       if (rotations > 0 && friction.norm() < beside.given_force) continue;
       beside.given_force = std::max(given, 2.0 * friction.norm());
       if (rotations > 0 && bound > 0.0) settled = false;
@@ -74,7 +76,7 @@ bool direct_balls(const System& system, const TimeStep& step, int rotations,
       if (sticks && had_friction && was == 0.0) {
         pull = friction;
       } else if (contact.sticks(bound / contact.friction_coefficient, friction[0])) {
-        pull = friction;  // of an iterate that did not hold it across
+        pull = friction;  // the iterate did not constrain the transverse direction
         right = false;
         if (was == 0.0 && had_friction) across = pull.norm() > bound ? Contact::infinite : 0.0;
       } else {

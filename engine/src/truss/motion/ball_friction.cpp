@@ -8,7 +8,7 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// A ball where it is, free of force.
+/// State of a ball without forces.
 BallState<double> state_of(const BallJoint& joint, const Trial& at) {
   return ball_state<double>(joint, Vector3d::Zero(), at.temperature_change, at.opening,
                             [&](std::size_t from, std::size_t to) { return at.between(from, to); });
@@ -31,7 +31,7 @@ void BallFriction::measure(const Trial& at) {
     point(moved.axis);
     return;
   }
-  // Unknown yet: where it pointed, or anywhere.
+  // The direction is still unknown: that of the last step, or an arbitrary one.
   const Vector3d before = along;
   along = now.normal.isZero(0.0) ? Vector3d::Zero() : now.normal.unitOrthogonal();
   point(before);
@@ -82,7 +82,7 @@ void Contacts::write(const BallFriction& cone, bool with_dashpots, VectorXd& z) 
                          system_->displacement(joint.socket_node, z);
   Vector3d force = Vector3d::Zero();
   if (!apart.isZero(0.0)) {
-    // From the middle of the step to its end.
+    // Rotated from the middle of the step to its end.
     const Vector3d normal = apart.normalized();
     force = (with_dashpots ? contact.normal_force : contact.elastic_normal) * normal;
     if (!cone.now.normal.isZero(0.0)) {

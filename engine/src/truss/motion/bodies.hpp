@@ -12,29 +12,30 @@ namespace statejump::truss::detail {
 /// Masses and dashpots of a truss, for its independent displacements.
 class Bodies {
  public:
-  /// All arguments must outlive it. @throws kernel::OutOfRange for numbers of a wrong count or sign
+  /// @pre The arguments outlive this object.
+  /// @throws kernel::OutOfRange for a wrong number of values or a negative value
   Bodies(const System& system, const Inertia& inertia);
 
   const Eigen::SparseMatrix<double>& mass() const { return mass_; }
   bool damped() const { return !dashpots_.empty(); }
   const VectorXd& joint_damping() const { return joint_damping_; }
 
-  /// Values of a step that the dashpots use [s].
+  /// Values of a step for the dashpots.
   struct Step {
     double from;
     double to;
-    std::vector<double> growth_rate = {};  ///< Of the stress-free length of every dashpot [m/s].
+    std::vector<double> growth_rate = {};  ///< Of every dashpot's stress-free length [m/s].
   };
   Step step(double from, double to) const;
-  /// Forces of the dashpots on the independent displacements [N]. Stress-free lengths grow evenly
-  /// over the step: at a corner of a program within the step, the rate at one instant would jump.
+  /// Forces of the dashpots on the independent displacements [N]. Stress-free lengths grow at the
+  /// mean rate of the step, because their rate jumps at a corner of a program.
   VectorXd force(const VectorXd& q, const VectorXd& v, const Step& step) const;
   /// −∂force/∂v at q.
   Eigen::SparseMatrix<double> damping(const VectorXd& q) const;
   /// The entries of the damping matrix, always in the same order. Entries at one position add up.
   std::vector<Eigen::Triplet<double>> damping_entries(const VectorXd& q) const;
-  /// The softening of links by their compression, at positions and a time: the negative geometric
-  /// stiffness, with its sign changed.
+  /// Negative geometric stiffness of links in compression at positions and a time, with its sign
+  /// changed.
   std::vector<Eigen::Triplet<double>> compression_entries(const VectorXd& q, double time) const;
   /// Heat of the dashpots over the step, and the work of the temperature on them [J].
   struct Work {
@@ -57,7 +58,7 @@ class Bodies {
     double strain_rate;  // L' − l_T' [m/s]
     Vector3d across;     // [m/s]
   };
-  /// Of places and velocities of all nodes.
+  /// From positions and velocities of all nodes.
   Rate rate(const Dashpot& dashpot, const Eigen::Matrix3Xd& moved, const Eigen::Matrix3Xd& velocity,
             double growth_rate) const;
 

@@ -15,18 +15,20 @@ namespace statejump::truss::detail {
 /// of the step.
 class ContactProblem {
  public:
-  /// All arguments must outlive it.
+  /// @pre The arguments outlive this object.
   ContactProblem(StepForces& forces, StepMatrix& matrix, const MotionOptions& options)
       : forces_(forces), matrix_(matrix), options_(options) {}
 
-  /// Solves the step. @throws Failure if no solution is found
+  /// Solves the step.
+  /// @throws Failure if no solution is found
   void solve(TimeStep& step, StepContacts& contacts);
 
   long iterations() const { return iterations_; }
   double largest_merit() const { return largest_merit_; }
 
  private:
-  /// Solves the contact problem of an iterate. @param free velocities without impulses
+  /// Solves the contact problem of an iterate.
+  /// @param free velocities without impulses
   void solve_contacts(const TimeStep& step, const VectorXd& free, bool first,
                       StepContacts& contacts);
 
@@ -37,8 +39,8 @@ class ContactProblem {
   double largest_merit_ = 0.0;
 };
 
-/// The contact of a planar problem with the largest violation of its law [unit of u]: W_nn times
-/// the error of its impulses; −1 without contacts.
+/// The contact of a planar problem that violates its law most; −1 without contacts. The violation
+/// is the error of its impulses times W_nn [m/s].
 Eigen::Index worst_contact(const complementarity::Problem& problem, const VectorXd& impulses);
 
 }  // namespace statejump::truss::detail

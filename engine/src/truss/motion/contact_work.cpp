@@ -9,8 +9,8 @@ namespace {
 
 using Eigen::Index;
 
-/// Takes friction that Coulomb's law with a spring gives. @param along speeds of the contacts by
-/// which impulses work [m/s]
+/// Commits the friction of a contact with a spring and Coulomb's limit.
+/// @param along mean speeds of the contacts in the step [m/s]
 void commit_friction(const TimeStep& step, const StepContacts& contacts, Index i,
                      const VectorXd& along, EnergyAccount& account) {
   Contact& contact = contacts.contact(i);
@@ -41,7 +41,7 @@ void commit_friction(const TimeStep& step, const StepContacts& contacts, Index i
   account.negative += std::min(heat, 0.0);
 }
 
-/// Takes the friction of a contact that slips partially, and of the one beside it.
+/// Commits the friction of a contact with partial slip, and of its transverse contact.
 /// @param speeds of the contacts at the end of the step [m/s]
 void commit_partial_slip(const TimeStep& step, const StepContacts& contacts, Index owner,
                          const VectorXd& speeds, const VectorXd& along, EnergyAccount& account) {

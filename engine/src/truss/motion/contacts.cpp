@@ -11,7 +11,7 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Share of Coulomb's bound from which a contact slips: the contact problem is solved to 1e-10.
+/// Fraction of Coulomb's limit from which a contact slips: the contact problem is solved to 1e-10.
 constexpr double at_bound = 1.0 - 1e-8;
 
 /// Journal minus bearing centre across the joint's axis [m].
@@ -22,13 +22,13 @@ Vector3d eccentricity(const Trial& at) {
 }
 
 JointStatus sliding(double friction, double bound) {
-  if (bound <= 0.0) return JointStatus::slip_plus;  // slips freely either way
+  if (bound <= 0.0) return JointStatus::slip_plus;  // slips freely in both directions
   return friction >= at_bound * bound    ? JointStatus::slip_plus
          : friction <= -at_bound * bound ? JointStatus::slip_minus
                                          : JointStatus::stick;
 }
 
-/// How a contact with a bound of friction [N] rubs.
+/// Stick or slip of a contact with a friction limit [N].
 JointStatus rubs(const Contact& contact, double bound) {
   if (!contact.slips_in_part) return sliding(contact.friction_force, bound);
   return !contact.annuli.slip_all        ? JointStatus::stick
@@ -53,11 +53,12 @@ double Contact::tangential_compliance(double normal) const {
 }
 
 Contact::Across Contact::across(double depth, double speed, double h) const {
-  // Linear below the least depth, so that an iterate that parts finds its way.
+  // Linear below the least depth, so that iterates without contact converge.
   const double at = std::max(depth, least_depth);
   const double stiffness = 1.5 * hertz_stiffness * std::sqrt(at);
   const double elastic = force_at(at) + stiffness * (depth - at);
-  // The dashpot goes with the fourth root of a depth, which no iteration likes: that of the middle.
+  // The dashpot coefficient contains the fourth root of the depth, whose derivative is unbounded.
+  // It is evaluated at the depth at the middle of the step.
   const double dashpot =
       damping * std::sqrt(1.5 * hertz_stiffness * std::sqrt(std::max(-gap, 0.0)));
   const double slope = h * stiffness + dashpot;
@@ -80,7 +81,7 @@ double Contact::spring_friction(double normal, double slide, double limit) const
 
 SlipAnnuli::Pressed Contact::pressed(double elastic, double normal, double share) const {
   const double stiffness = 1.0 / tangential_compliance(elastic);
-  // k_t grows as the cube root of the force.
+  // k_t is proportional to the cube root of the force.
   const bool stiffens = is_elastic() && depth(elastic) > least_depth;
   return {stiffness, stiffens ? share * stiffness / (3.0 * elastic) : 0.0, friction_coefficient,
           normal, damping * std::sqrt(stiffness)};
@@ -96,7 +97,7 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
   for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
     const JointFrame frame =
         std::visit([&](const auto& one) { return one.frame(model); }, model.joints[index(i)]);
-    // A ball is held by the pin that stands for it alone.
+    // Only the pin in place of a ball constrains it; in motion its contact does.
     const bool is_ball = std::holds_alternative<BallJoint>(model.joints[index(i)]);
     const auto held =
         is_ball ? 0 : static_cast<int>(std::count(frame.holds.begin(), frame.holds.end(), true));
@@ -106,7 +107,7 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
   }
   slip_in_part_ = std::any_of(all_.begin(), all_.end(),
                               [](const Contact& contact) { return contact.slips_in_part; });
-  // Across its friction a ball holds as it does along it.
+  // The transverse contact of a ball is as rigid as its first one.
   hold_rigidly_ = std::any_of(all_.begin(), all_.end(), [](const Contact& contact) {
     return contact.is_rigid() || (contact.sticks_rigidly() && !contact.beside);
   });
@@ -133,7 +134,7 @@ Contact& Contacts::add_friction(int joint, int column, double bound, double stif
 void Contacts::add(int joint, int first_column, const LatchHinge& hinge) {
   const Model& model = system_->model();
   const Bar& link = model.links[index(hinge.first_link)];
-  // On this radius its moment is a force, as in its rows.
+  // A force on this radius represents the moment, as in the rows of the hinge.
   const double radius =
       (model.nodes[index(link.second)].position - model.nodes[index(link.first)].position).norm();
   springs_ = springs_ || hinge.stiffness > 0.0 || hinge.preload_moment != 0.0;
@@ -239,7 +240,7 @@ double Contacts::friction_at_rest(const Contact& contact, const State& state,
     force = (told("hinge_moment_N_m") - elastic) / radius;
   } else if (const auto* slider = std::get_if<Slider>(&joint);
              slider != nullptr && contact.sticks_rigidly()) {
-    // A rigid stop takes what is beyond the bound.
+    // A rigid stop supports the force beyond the limit.
     force = told("slider_force_N") - slider->soft_stop_force(told("slide_m"));
   } else {
     force = contact.tangential_stiffness * slide_at_rest(contact, state, start);
@@ -253,7 +254,7 @@ void Contacts::begin(const State& state, StartFriction start) {
     contact.compliance = contact.tangential_compliance(contact.given_force);
     if (contact.slips_in_part) {
       const SlipAnnuli::Pressed by = contact.pressed(contact.given_force, contact.given_force, 1.0);
-      // Normal force first, then friction: partial slip depends on the order.
+      // Normal force first, then friction, because partial slip depends on their order.
       contact.annuli.take(by, Eigen::Vector2d::Zero());
       contact.friction_force =
           contact.annuli.take(by, {slide_at_rest(contact, state, start), 0.0})[0];
@@ -262,7 +263,7 @@ void Contacts::begin(const State& state, StartFriction start) {
     }
     contact.elastic_friction = contact.friction_force;
   }
-  double friction = 0.0;  // of a slider, before its stops
+  double friction = 0.0;  // of a slider; its stops follow
   for (Contact& contact : all_) {
     if (contact.normal_column < 0) friction = contact.friction_force;
     if (contact.beside || contact.normal_column < 0) continue;
@@ -360,10 +361,10 @@ void Contacts::write(VectorXd& z, Statuses& statuses) const {
     if (contact.normal_column < 0) {
       z[contact.tangential_column] += contact.elastic_friction;
       if (contact.annuli.play > 0.0) {
-        // The joint's unknown is the friction without the play, see Slider.
+        // The unknown of the joint is friction without the play, see Slider.
         z[contact.tangential_column] += contact.tangential_stiffness * contact.annuli.played();
       }
-      // The contacts of a joint follow each other; it slips where any of them does.
+      // The contacts of a joint are consecutive; the joint slips if any of them does.
       const JointStatus now = rubs(contact, contact.given_force);
       if (contact.joint != last || now != JointStatus::stick) status = now;
       last = contact.joint;

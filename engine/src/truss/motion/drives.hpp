@@ -12,13 +12,13 @@ namespace statejump::truss::detail {
 /// Links with prescribed rotation, as constraints on the velocities at the end of a step.
 class Drives {
  public:
-  /// All arguments must outlive it. @throws kernel::OutOfRange, std::invalid_argument with the
-  /// drive's name
+  /// @pre The arguments outlive this object.
+  /// @throws kernel::OutOfRange, std::invalid_argument with the name of a drive
   Drives(const System& system, const std::vector<Drive>& drives);
 
   Eigen::Index count() const { return static_cast<Eigen::Index>(drives_->size()); }
-  /// Derivative of each link's angle by the independent displacements [1/m], in the direction that
-  /// its program prescribes for the end of the step, with the length at q.
+  /// Derivatives of each link's angle with respect to the independent displacements [1/m]. The link
+  /// has its prescribed direction at the end of the step and its length at q.
   std::vector<Eigen::Triplet<double>> directions(const VectorXd& q, double to) const;
   /// Angular velocities at the end of the step [rad/s]: those of the program, plus half of the
   /// angle error at the start (q) divided by the step. Positions follow the mean velocity of a

@@ -3,26 +3,27 @@
 
 namespace statejump::truss::detail {
 
-/// Step sizes through one span of time, each a half of the next longer one, so that factors of a
-/// length may be kept. A step begins at a multiple of its length, so that steps end at the end of
+/// Step sizes within a time span, each half of the next longer one, so that factors of a length can
+/// be reused. A step starts at a multiple of its length, so that the last step ends at the end of
 /// the span.
 class DyadicStepSize {
  public:
-  /// @param level halvings of the span for the first step; @param most_halvings at which the
-  /// shortest step is
+  /// @param level halvings of the span for the first step
+  /// @param most_halvings halvings of the span for the shortest step
   DyadicStepSize(int level, int most_halvings);
 
-  /// Share of the span where the next step ends.
+  /// End of the next step as a fraction of the span.
   double to() const;
-  /// Length of the next step as a share of the span.
+  /// Length of the next step as a fraction of the span.
   double length() const;
   int level() const { return level_; }
   bool is_shortest() const { return level_ == most_; }
   bool done() const { return at_ == whole(); }
 
-  /// Goes on; to a step of twice the length where that is possible and wanted.
+  /// Accepts the step. The next one is twice as long if `longer` and if it then starts at a
+  /// multiple.
   void accept(bool longer);
-  /// Halves the next step so often, as far as possible.
+  /// Halves the next step this many times, down to the shortest step.
   void shorten(int halvings);
 
  private:

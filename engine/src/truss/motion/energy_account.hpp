@@ -9,9 +9,9 @@ namespace statejump::truss::detail {
 struct EnergyAccount {
   double thermal_work = 0.0;
   double damping = 0.0;      ///< Heat of all dashpots.
-  double impact = 0.0;       ///< Heat of all contacts across their surfaces.
+  double impact = 0.0;       ///< Heat of all contacts along their normals.
   Eigen::VectorXd friction;  ///< Heat of every joint.
-  double negative = 0.0;     ///< Sum of the heats of contacts that were below zero in a step.
+  double negative = 0.0;     ///< Sum of the negative heats of contacts in single steps.
   double drives = 0.0;       ///< Work of the drives.
 };
 

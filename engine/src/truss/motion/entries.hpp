@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Entries of sparse matrices and their positions.
+// Access to the entries of sparse matrices.
 #pragma once
 
 #include <Eigen/SparseCore>

@@ -50,7 +50,7 @@ double FrictionElement::shortfall(double slide, double speed, double rise) const
 }
 
 void SlipTrajectory::add(double time, double slide, double speed) {
-  // Newton's divided differences, the new place twice: their last diagonal is all that is needed.
+  // Newton's divided differences with every point twice. Only the last diagonal is needed.
   for (const bool again : {false, true}) {
     const std::size_t k = time_.size();
     time_.push_back(time);
@@ -86,7 +86,7 @@ std::optional<double> end_of_status(const FrictionElement& element, const SlipTr
   const auto margin = [&](double time) {
     return element.margin(way.slide_at(time), way.speed_at(time), h);
   };
-  // Between so many places a smooth way does not turn back unseen by more than the error of a step.
+  // Between so many points, a reversal of a smooth trajectory is smaller than the error of a step.
   constexpr int places = 32;
   double before = 0.0;
   for (int k = 1; k <= places; ++k) {
@@ -95,7 +95,7 @@ std::optional<double> end_of_status(const FrictionElement& element, const SlipTr
       before = after;
       continue;
     }
-    // To rounding of the step.
+    // Bisection to rounding of the step.
     for (int halving = 0; halving < 48; ++halving) {
       const double middle = 0.5 * (before + after);
       (margin(middle) > level ? before : after) = middle;
@@ -111,7 +111,7 @@ std::optional<std::vector<FrictionElement>> friction_elements(const System& syst
   if (contacts.have_springs()) return {};
   for (const Contact& contact : contacts.all()) {
     const Joint& joint = system.model().joints[index(contact.joint)];
-    // The direction of a latch hinge turns with its links.
+    // The direction of a latch hinge rotates with its links.
     const bool straight =
         std::holds_alternative<Slider>(joint) || std::holds_alternative<IwanJoint>(joint);
     const bool springs =

@@ -10,19 +10,19 @@
 
 namespace statejump::truss::detail {
 
-/// Dry friction of a given bound b in series with a spring, along one constant direction d. At a
-/// slip s and a speed u = dᵀv its force is λ = e + c u, e' = k u, while |λ| < b, else ±b; the
-/// spring then goes on to ±b itself. Between changes of its status it is smooth.
+/// Dry friction with limit b in series with a spring, and a dashpot, along a constant direction d.
+/// At slip s and slip rate u = dᵀv its force is λ = e + c u, e' = k u, while |λ| < b. Otherwise λ =
+/// ±b, and the spring force e continues to ±b. Between changes of status the element is smooth.
 struct FrictionElement {
   enum class Status : signed char { slip_minus = -1, stick = 0, slip_plus = 1 };
 
   int joint = 0;
-  int column = 0;                 ///< Of its force among the unknowns of the truss.
+  int column = 0;                 ///< Column of its force among the unknowns of the truss.
   double bound = 0.0;             ///< b [N]
   double stiffness = 0.0;         ///< k [N/m]
   double damping = 0.0;           ///< c [N s/m]
-  std::array<int, 6> rows{};      ///< Free displacements that it reaches.
-  std::array<double, 6> along{};  ///< d there.
+  std::array<int, 6> rows{};      ///< Free displacements on which it acts.
+  std::array<double, 6> along{};  ///< Entries of d for these displacements.
   std::size_t count = 0;
 
   Status status = Status::stick;
@@ -36,51 +36,55 @@ struct FrictionElement {
     for (std::size_t i = 0; i < count; ++i) sum += along[i] * of[rows[i]];
     return sum;
   }
-  /// e after a slide from the start of the step that does not turn [N].
+  /// e after a slide from the start of the step without reversal [N].
   double spring(double slide) const;
   /// λ [N]
   double force(double slide, double speed) const;
-  /// How far the status is from its end [N]; below 0 it is over. Of a slide whose spring is at its
-  /// bound it is what the contact would lose in a step of length h at this speed, were it to stick.
+  /// Distance of the status from its end [N]; negative: it has ended. For a slip with the spring at
+  /// its limit, it is the force that sticking would release in a step of length h at this slip
+  /// rate.
   double margin(double slide, double speed, double h) const;
-  /// Rate of the margin where the status ends [N/s]; of a slide that turns, of its speed [m/s²].
-  /// @param rise of the speed [m/s²]
+  /// Rate of the margin at the end of a status [N/s]; for a reversing slip, rate of its slip rate
+  /// [m/s²].
+  /// @param rise rate of the slip rate [m/s²]
   double margin_rate(double slide, double speed, double rise) const;
-  /// @param level margin from which it counts, 0 or what the step began with below it: places
-  /// between the ends of a step are known to its error only
+  /// @param level margin below which the status has ended: 0, or the negative margin at the start
+  /// of the step, because positions within a step are known only to its error
   bool has_ended(double slide, double speed, double h, double level) const {
     return margin(slide, speed, h) < level - allowance * bound;
   }
-  /// What its force is short of where its status ends [N]: of a slide that is about to turn, what
-  /// it would gain until then, were it to stick. @param rise of the speed [m/s²]
+  /// Missing force until the end of the status [N]. For a slip about to reverse, it is the force
+  /// that sticking would release until the reversal.
+  /// @param rise rate of the slip rate [m/s²]
   double shortfall(double slide, double speed, double rise) const;
-  /// Goes to the status that follows on the one that has ended.
+  /// Switches to the status that follows.
   void turn(double slide, double speed);
-  /// Share of b that counts as none: rounding does not end a status.
+  /// Tolerance of the margin over b: rounding does not end a status.
   static constexpr double allowance = 1e-9;
 };
 
 /// A slide through a step: the polynomial through its values and rates at the start and the stages.
 class SlipTrajectory {
  public:
-  /// Of one place more [s; m; m/s].
+  /// Adds a point [s; m; m/s].
   void add(double time, double slide, double speed);
   double slide_at(double time) const;
   double speed_at(double time) const;
 
  private:
-  std::vector<double> time_;    ///< Every one twice.
-  std::vector<double> factor_;  ///< Of Newton's form.
-  std::vector<double> last_;    ///< Its last diagonal.
+  std::vector<double> time_;    ///< Every point twice.
+  std::vector<double> factor_;  ///< Coefficients of Newton's form.
+  std::vector<double> last_;    ///< Last diagonal of divided differences.
 };
 
-/// Time since the start of a step of length h at which the status of a contact ends [s]; none if it
-/// lasts. @param level see FrictionElement::has_ended()
+/// Time since the start of a step of length h at which the status of a contact ends [s]; empty if
+/// it does not end.
+/// @param level see FrictionElement::has_ended()
 std::optional<double> end_of_status(const FrictionElement& element, const SlipTrajectory& way,
                                     double h, double level);
 
-/// Friction elements of all contacts of a truss; none if it has contacts of another kind, or that
-/// stick rigidly.
+/// Friction elements of all contacts of a truss; empty if a contact is of another type or sticks
+/// rigidly.
 std::optional<std::vector<FrictionElement>> friction_elements(const System& system,
                                                               const Contacts& contacts);
 

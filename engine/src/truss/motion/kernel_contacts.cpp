@@ -16,15 +16,15 @@ namespace laws = kernel::laws;
 
 namespace {
 
-/// Laws of one contact for kernel::contact_step(). Friction that remembers is given the slide since
-/// the last step, which is an integral; dashpots take the velocity that there is now.
+/// Laws of one contact for kernel::contact_step(). A friction law with memory receives the mean
+/// velocity since the last step, from the integrated slide; dashpots receive the present velocity.
 struct StageLaws {
   const laws::JointLaw& law;
   const laws::FrictionParameters friction_parameters;
   laws::NormalState normal_state;
   double stiffness;  ///< k_t [N/m]
-  Vector3d speed;    ///< Of the first part against the second [m/s].
-  Vector3d slide;    ///< Since the last step [m].
+  Vector3d speed;    ///< First part relative to the second [m/s].
+  Vector3d slide;    ///< Integrated since the last step [m].
   bool remembers;
   double since;
   Vector3d across;
@@ -49,7 +49,7 @@ struct StageLaws {
 
 }  // namespace
 
-/// Where a contact is in a stage.
+/// Geometry of a contact in a stage.
 struct KernelContacts::Place {
   Vector3d normal;
   double clearance = 0.0;
@@ -114,7 +114,7 @@ KernelContact KernelContacts::round(const KernelContact& parts, double hertz, do
   made.second_far = frame.nodes[3];
   made.program = frame.program;
   made.temperature_fraction = frame.temperature_fraction;
-  // What made the stiffnesses: K = 4/3 E* √R and 8 G* √R.
+  // Moduli that reproduce the stiffnesses K = 4/3 E* √R and 8 G* √R.
   const double root =
       std::sqrt(kernel::internal_effective_radius(made.first_radius, made.second_radius));
   made.parameters.elastic = {0.75 * hertz / root, 0.125 * mindlin / root};
@@ -305,13 +305,13 @@ VectorXd KernelContacts::start_way(const State& start, StartFriction friction) c
     const Model& model = system_->model();
     const double there = output(model, start, contact.joint, "slide_m")[0];
     if (contact.has_play()) {
-      slide = there;  // from the drawn shape, where nothing had slipped
+      slide = there;  // from the reference configuration, with zero slip
       continue;
     }
     const double rubs = output(model, start, contact.joint, "slider_force_N")[0] -
                         std::get<Slider>(model.joints[index(contact.joint)]).soft_stop_force(there);
     const double share = std::min(std::abs(rubs) / contact.pressed, 1.0);
-    // Cattaneo's contact under a constant normal force, or a spring.
+    // Slide of Cattaneo's contact under a constant normal force, or of a spring.
     const double gives = rim_slips ? 1.5 * (1.0 - std::cbrt((1.0 - share) * (1.0 - share))) : share;
     slide = std::copysign(gives * contact.pressed / contact.held, rubs);
   }
@@ -341,7 +341,8 @@ void KernelContacts::commit(const Stage& stage, VectorXd& force, VectorXd& rates
     heat.friction[contact.joint] += found.friction_dissipation;
     heat.damping += found.damping_dissipation;
     if (!contact.is_pad() && contact.radius > 0.0) {
-      // The clearance works against the force, the curvature changes what a depth stores.
+      // The clearance works against the force; the effective radius changes the energy at a given
+      // depth.
       const double pressed =
           0.5 * (found.elastic_normal_force + contact.response.elastic_normal_force);
       const double stored =
@@ -365,7 +366,7 @@ void KernelContacts::write(VectorXd& z, Statuses& statuses) const {
     const bool slips = contact.history.slipping || (!remembers_ && !rubs.isZero(0.0));
     if (contact.is_pad()) {
       const double against = -contact.axis.dot(found.tangential_force);
-      // The joint's unknown is the friction without the play, see Slider.
+      // The unknown of the joint is friction without the play, see Slider.
       z[contact.first_column] =
           contact.has_play() ? against + contact.held * contact.annuli.played() : against;
       status = !slips          ? JointStatus::stick
@@ -401,7 +402,7 @@ double KernelContacts::stored() const {
   return sum;
 }
 
-/// Inverse of the smallest mass with which a node resists along its free directions [1/kg].
+/// Largest inverse mass of a node along its free directions [1/kg].
 double KernelContacts::mobility(int node, const VectorXd& inverse_mass) const {
   const NodeDofs& at = system_->dofs().at(node);
   double largest = 0.0;

@@ -11,10 +11,11 @@ using Eigen::Index;
 
 namespace {
 
-/// Joints that a neighbourhood reaches at first; it doubles while a correction reaches its edge.
+/// Initial size of a neighbourhood in layers of joints; doubled while a correction reaches its
+/// edge.
 constexpr int first_layers = 4;
-/// Fraction of the largest change of a velocity that its edge may feel. The systems of the whole
-/// truss find the rest; a smaller fraction would spare none of them, because the sign of a residual
+/// Tolerated correction at the edge, over the largest correction of a velocity. Solves of the whole
+/// truss correct the rest. A smaller tolerance would not save any, because the sign of a residual
 /// decides a status.
 constexpr double felt = 1e-2;
 
@@ -220,7 +221,7 @@ bool NeighbourhoodPivots::move() {
   for (Index k = 0; k < size; ++k) {
     const int unknown = inside_[static_cast<std::size_t>(k)];
     const double by = moved_[k];
-    // No guess needs the impulses of constraints.
+    // The impulses of constraints are not needed for a guess.
     if (unknown < velocities_) {
       step_.v[unknown] += by;
     } else if (unknown >= bodies_) {

@@ -10,10 +10,9 @@ namespace statejump::truss::detail {
 
 /// Records the first step in which Coulomb's law does not allow a slide to continue (Painlevé).
 ///
-/// While a rigid contact slides, its normal force keeps the gap from closing: p r_n = −b. p is the
-/// acceleration at which the gap opens for a unit of normal force and its friction. If p is not
-/// above 0, the force has no solution or several, and the slide ends at once, by an impulse without
-/// a collision.
+/// While a rigid contact slides, its normal force prevents the gap from closing: p r_n = −b. p is
+/// the opening acceleration caused by a unit normal force with its friction. If p <= 0, the force
+/// has no solution or several. The slide then ends at once, by an impulse without a collision.
 class PainleveCheck {
  public:
   PainleveCheck(const StepForces& forces, StepMatrix& matrix) : forces_(forces), matrix_(matrix) {}

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contacts that slip partially: their law is one function of the slip, solved by its tangent.
+// Contacts with partial slip. Their law is one function of the slide, and its tangent enters a
+// step.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
@@ -11,8 +12,8 @@ using complementarity::Problem;
 
 namespace {
 
-/// Fraction of k_t that the contact problem takes for the least slope of a law: where all annuli
-/// slip there is none, and Coulomb's bound limits friction.
+/// Least slope of the law in the contact problem, over k_t. The slope is zero if all annuli slip;
+/// Coulomb's limit then bounds friction.
 constexpr double least_slope = 1e-9;
 
 }  // namespace
@@ -66,7 +67,7 @@ ContactRow StepContacts::partial_slip_row(const TimeStep& step, Index i) const {
   const SlipAnnuli& annuli = contact(first).annuli;
   const Vector2d& speed = annuli.tangent_speed;
   const SlipAnnuli::Law now = annuli.law(by, annuli.tangent_slide, speed, step.h);
-  // As a speed: what the force lacks, moved in a step by a contact that sticks.
+  // Scaled to a speed: missing force over k_t h.
   const double unit = 1.0 / (by.stiffness * step.h);
   ContactRow law;
   law.compliance = unit / step.h;

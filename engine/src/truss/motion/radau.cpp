@@ -28,7 +28,7 @@ Real nodal(int s, Real x) {
 
 Vector nodes(int s) {
   Vector found(s);
-  // The zeros are more than 1/s² apart at the ends.
+  // Distances of the zeros exceed 1/s², also at the ends.
   const int places = 20 * s * s;
   int count = 0;
   for (int k = 0; k + 1 < places && count + 1 < s; ++k) {
@@ -49,7 +49,7 @@ Vector nodes(int s) {
 
 Radau::Radau(int stages) {
   const Vector node = nodes(stages);
-  // Sums over the stages of powers of c are integrals of powers.
+  // A integrates powers of c exactly (collocation).
   Matrix power(stages, stages);     // c_j^(k − 1)
   Matrix integral(stages, stages);  // c_i^k / k
   for (int k = 0; k < stages; ++k) {
@@ -79,7 +79,7 @@ Radau::Radau(int stages) {
                        back.row(k).cast<std::complex<double>>()});
     }
   }
-  // Weights of order s with the start among the nodes, whose weight is 1/λ.
+  // Weights of order s with the start as an additional node of weight 1/λ.
   Vector integrals(stages);
   for (int k = 0; k < stages; ++k) integrals[k] = 1 / static_cast<Real>(k + 1);
   integrals[0] -= 1 / static_cast<Real>(eigenvalue);

@@ -13,7 +13,7 @@ namespace {
 /// Fraction of the largest pivot of W below which a reaction depends on others. W results from
 /// solves whose matrix has a condition of at most 1e4, because h²K is about as large as M.
 constexpr double dependent = 1e-10;
-/// Fraction of the largest reaction in a null vector from which a joint is named.
+/// Fraction of the largest reaction in a null vector above which a joint is named.
 constexpr double takes_part = 1e-3;
 
 }  // namespace

@@ -31,8 +31,8 @@ class ReactionUniqueness {
   const StepForces& forces_;
   StepMatrix& matrix_;
   std::optional<Undetermined> found_;
-  ContactStatuses checked_;  ///< Those that were checked last …
-  std::vector<int> active_;  ///< … and the numbers of their contacts.
+  ContactStatuses checked_;  ///< Statuses of the last check.
+  std::vector<int> active_;  ///< Numbers of their contacts.
 };
 
 }  // namespace statejump::truss::detail

@@ -8,8 +8,8 @@
 
 namespace statejump::truss::detail {
 
-/// A square sparse matrix that is filled repeatedly, always in the same order. The position of each
-/// entry is found once. Entries at one position add up.
+/// A square sparse matrix that is filled repeatedly in the same order. The position of every entry
+/// is determined once. Values at one position are added.
 class RefilledMatrix {
  public:
   void begin(Eigen::Index size) {

@@ -23,10 +23,9 @@ using detail::KernelContacts;
 using detail::Statuses;
 using Eigen::VectorXd;
 
-/// Square of the angle by which a step of Runge and Kutta's method turns a swing at most without
-/// growing it, 2 √2.
+/// Stability limit of the classical Runge–Kutta method: largest (ω h)², with ω h = 2 √2.
 constexpr double largest_turn_squared = 8.0;
-/// To which share free directions of a node are orthogonal.
+/// Off-diagonal mass over the mass up to which the mass matrix counts as diagonal.
 constexpr double orthogonal = 1e-12;
 
 void check(const Model& model, const MotionOptions& options) {
@@ -39,7 +38,7 @@ void check(const Model& model, const MotionOptions& options) {
                   static_cast<double>(options.drives.size()), "0 with the scheme 'regularised'");
 }
 
-/// A motion that is being made.
+/// A motion in progress.
 class Run {
  public:
   Run(const Model& model, const Inertia& inertia, const std::string& friction_law,
@@ -71,7 +70,7 @@ class Run {
   Motion make() &&;
 
  private:
-  /// How places, velocities and slides change, in a stage that leaves nothing behind.
+  /// Rates of positions, velocities and slides in a stage, without change of memory.
   struct Rates {
     VectorXd velocity;
     VectorXd acceleration;
@@ -83,7 +82,7 @@ class Run {
   void commit(const KernelContacts::Stage& stage);
   /// Forces of links, springs and loads [N].
   VectorXd elastic_force(const VectorXd& q, double time);
-  /// Forces of their dashpots [N].
+  /// Dashpot forces of links, springs and pins [N].
   VectorXd dashpots(const VectorXd& q, const VectorXd& v, const detail::Bodies::Step& span) const {
     return bodies_.damped() ? bodies_.force(q, v, span) : VectorXd::Zero(q.size());
   }
@@ -103,7 +102,8 @@ class Run {
   VectorXd q_;
   VectorXd v_;
   double time_ = 0.0;
-  Rates now_;  // at the end of the last step, without dashpots: at a corner of a program they jump
+  Rates now_;  // at the end of the last step, without dashpots, whose forces jump at a corner of a
+               // program
   detail::KernelHeat heat_;
   double thermal_work_ = 0.0;  // of the links
   double damping_ = 0.0;       // of links, springs and pins
@@ -134,8 +134,8 @@ void Run::commit(const KernelContacts::Stage& stage) {
   now_.acceleration = now_.acceleration.cwiseProduct(inverse_mass_);
 }
 
-/// Runge and Kutta's step of fourth order. Contacts answer from where the last step ended; only
-/// what they say of the whole step is taken over, so that no stage leaves a slip behind.
+/// Classical Runge–Kutta step of fourth order. All stages evaluate contacts from their memory at
+/// the start of the step; only the whole step updates the memory.
 void Run::advance(double to) {
   const double h = to - time_;
   const detail::Bodies::Step span = bodies_.step(time_, to);
@@ -194,7 +194,7 @@ void Run::sample() {
   const VectorXd z = with_forces();
   State state;
   system_.describe(z, time_, system_.begin(z, time_, statuses_, 1.0), state);
-  // What contacts store is for their laws to say.
+  // The contact laws determine the energy stored by contacts.
   VectorXd unloaded = VectorXd::Zero(system_.unknowns());
   unloaded.head(q_.size()) = q_;
   State bars;
@@ -226,7 +226,7 @@ bool Run::begin() {
     way = contacts_.start_way(*start, options_.start_friction);
   }
   const double h = duration_ / static_cast<double>(options_.steps);
-  // Normal force first, then friction: partial slip depends on the order.
+  // Normal force first, then friction, because partial slip depends on their order.
   commit({q_, v_, 0.0, h, VectorXd::Zero(contacts_.numbers())});
   if (!way.isZero(0.0)) commit({q_, v_, 0.0, h, way});
   heat_.friction.setZero();

@@ -8,7 +8,7 @@ namespace statejump::truss::detail {
 
 struct Rods::State {
   Vector3d direction;
-  Vector3d across;  ///< Of the speed of the second end from the first [m/s].
+  Vector3d across;  ///< Relative velocity of the ends across the rod [m/s].
   double length;
   double tension;      ///< Elastic [N].
   double growth_rate;  ///< Of the stress-free length [m/s].
@@ -91,7 +91,7 @@ Rods::Power Rods::power(const ConstColumn& q, const ConstColumn& v, const Heat& 
     const double dashpot = rod.axial_damping * now.strain_rate;
     sum.heat += dashpot * now.strain_rate +
                 rod.turning_damping / (now.length * now.length) * now.across.squaredNorm();
-    // ∂V/∂l_T = −N − N²/(2 E A), and the dashpot pulls at what grows.
+    // ∂V/∂l_T = −N − N²/(2 E A); the dashpot also works against the growth.
     sum.thermal -=
         (now.tension * (1.0 + 0.5 * now.tension / rod.axial_stiffness) + dashpot) * now.growth_rate;
   }

@@ -14,7 +14,7 @@ namespace statejump::truss::detail {
 /// System and Bodies compute the same forces more slowly.
 class Rods {
  public:
-  /// The system and its model must outlive it.
+  /// @pre The system and its model outlive this object.
   Rods(const System& system, const Inertia& inertia);
 
   /// Values of the programs at a time: changes [K] and rates [K/s].
@@ -22,7 +22,7 @@ class Rods {
     std::vector<double> change;
     std::vector<double> rate;
   };
-  /// Power of the dashpots' heat and of the temperature [W].
+  /// Heat of the dashpots and work of the temperature per time [W].
   struct Power {
     double heat = 0.0;
     double thermal = 0.0;
@@ -34,8 +34,8 @@ class Rods {
   Power power(const ConstColumn& q, const ConstColumn& v, const Heat& heat) const;
 
  private:
-  /// An independent displacement, and the motion that it causes of the second end of a rod relative
-  /// to the first.
+  /// An independent displacement, and the motion of a rod's second end relative to the first that
+  /// it causes.
   struct Move {
     int row;
     Vector3d by;
@@ -47,7 +47,7 @@ class Rods {
     double drawn_length;
     double stress_free_length;
     double axial_stiffness;
-    double expansion;  ///< α times the link's share of the program [1/K].
+    double expansion;  ///< α times the link's fraction of the program [1/K].
     std::size_t program;
     double axial_damping;    ///< [N s/m]
     double turning_damping;  ///< [N m s/rad]

@@ -20,24 +20,24 @@ namespace {
 using detail::index;
 using Eigen::VectorXd;
 
-/// Share of the duration below which times do not tell the length of a step to 1e-6, from which
-/// factors are known to be of the same length.
+/// Smallest step over the duration: below it, rounding of times exceeds 1e-6 of the step length, by
+/// which factors are recognised as reusable.
 constexpr double shortest = 1e6 * std::numeric_limits<double>::epsilon();
-/// Halvings between two samples because branches of many contacts were not found at once, down to a
-/// thousandth of a step. Forces that hold each other have no branches to be found, however short.
+/// Most halvings between two samples because the statuses were not found, down to a thousandth of a
+/// step. With self-equilibrated reactions the statuses are not found at any step length.
 constexpr int most_unsettled = 10;
 
-/// Halvings of an equal step that has no solution.
+/// Most halvings of an equal step without solution.
 constexpr int most_halvings = 16;
-/// Parts of such a step of one length before a longer one is tried again.
+/// Substeps of one length before a longer one is attempted.
 constexpr int before_longer = 8;
 
-/// Parts of equal steps, tried or taken, after which a motion is given up: so many times as many as
-/// steps were asked for, and no fewer than one step has at most. Shorter equal steps cost less.
+/// Limit of steps and substeps over the requested steps, but not below the substeps of one step.
+/// More substeps cost more than shorter equal steps.
 constexpr long most_parts = 10;
 
-/// Tries without going on after which a step of sought changes has none: every try is shorter, or a
-/// contact changes its branch.
+/// Consecutive attempts without progress after which a step counts as unsolvable. Every attempt is
+/// shorter, or a contact changes its status.
 constexpr int most_tries = 1000;
 
 void check(const Model& model, const MotionOptions& options) {
@@ -52,7 +52,7 @@ void check(const Model& model, const MotionOptions& options) {
   kernel::require(options.most_iterations >= 1, "most_iterations", options.most_iterations, ">= 1");
 }
 
-/// What an attempted step is off by [m]; infinite where it has no solution that is found.
+/// Error of an attempted step [m]; infinite without a solution.
 double attempt(detail::Stepper& stepper, double to, bool give_up, bool is_last) {
   constexpr double unknown = std::numeric_limits<double>::infinity();
   try {
@@ -63,7 +63,7 @@ double attempt(detail::Stepper& stepper, double to, bool give_up, bool is_last) 
   }
 }
 
-/// A motion that is being made.
+/// A motion in progress.
 class Run {
  public:
   Run(const Model& model, const Inertia& inertia, const MotionOptions& options)
@@ -83,32 +83,39 @@ class Run {
  private:
   bool begin();
   void make_equal_steps();
-  /// From one end of an equal step to the next, by halves where it has no solution.
-  /// @param level halvings for its first step; out: for the first of the next
+  /// Takes one equal step, in halves if it has no solution.
+  /// @param level halvings of its first substep; out: for the next equal step
   void make_equal_step(long number, int& level);
   void make_steps_within_tolerance();
-  /// From one sample to the next. @param level halvings of the span for its first step; out: for
-  /// the first of the next
+  /// Integrates from one sample to the next.
+  /// @param level halvings of the span for its first step; out: for the next span
   void make_span(long first, long count, int& level);
-  /// Makes a step as long as the step size says, or shortens it. @param to where it ends, and the
-  /// length of the whole span [s]; @param unsettled tries in the span that found no solution
-  /// @return whether the step is made
+  /// Takes a step of the present size, or shortens it.
+  /// @param to end of the step [s]
+  /// @param span length of the whole span [s]
+  /// @param unsettled attempts in the span without a solution
+  /// @return whether the step was taken
   bool try_step(double to, double span, detail::DyadicStepSize& step_size, int& unsettled);
-  /// Steps of a truss whose branches change at times that are sought.
+  /// Steps with event location, for a truss that SmoothStepper supports.
   void make_smooth_steps();
   [[noreturn]] void fail() const;
-  /// @throws Failure after too many parts. @param length of the last one [s]
+  /// @throws Failure after too many substeps
+  /// @param length of the last one [s]
   void check_parts(double length) const;
 
-  /// Changes of joints and their heat in a step that is taken. @param length of it [s]
+  /// Records status changes of joints, and heat, in a step that `take` commits.
+  /// @param length of the step [s]
   template <class Stepper, class Take>
   void note(const Stepper& stepper, double length, const Take& take);
   template <class Stepper>
   void sample(Stepper& stepper);
   void watch(long step);
-  /// Tells how far it is. @param time [s]; @return whether to go on
+  /// Reports the progress.
+  /// @param time [s]
+  /// @return whether to continue
   bool go_on(double time);
-  /// Time of a step of the options [s]; of the whole, for a sum of steps would not end at the end.
+  /// Time after this many steps of the options [s]. Computed from the duration: a sum of steps
+  /// would not end exactly at the end.
   double time_of(double steps) const {
     return duration_ * (steps / static_cast<double>(options_.steps));
   }
@@ -119,9 +126,9 @@ class Run {
   const detail::System system_;
   const detail::Bodies bodies_;
   detail::Stepper stepper_;
-  std::unique_ptr<detail::SmoothStepper> smooth_;  ///< Of a truss that can be stepped so.
+  std::unique_ptr<detail::SmoothStepper> smooth_;  ///< Null if the truss is not supported.
   Motion motion_;
-  int settled_ = 0;  ///< Equal steps, or their parts, since the last one without solution.
+  int settled_ = 0;  ///< Steps or substeps since the last one without solution.
 };
 
 bool Run::begin() {
@@ -168,7 +175,7 @@ bool Run::go_on(double time) {
 template <class Stepper, class Take>
 void Run::note(const Stepper& stepper, double length, const Take& take) {
   detail::Statuses before;
-  before = stepper.statuses();  // a copy: the step changes them
+  before = stepper.statuses();  // copy: the step changes the original
   const auto heat = [&] { return stepper.account().friction.sum() + stepper.account().impact; };
   const double heat_before = heat();
   take();
@@ -199,8 +206,8 @@ void Run::make_equal_step(long number, int& level) {
   const int most =
       std::clamp(static_cast<int>(std::log2(whole / (shortest * duration_))), 0, most_halvings);
   detail::DyadicStepSize step_size(level, most);
-  // Without damping, an oscillation whose period is short beside the step goes on and may leave no
-  // solution: implicit Euler damps it.
+  // Without numerical damping, an oscillation faster than the step persists and may leave no
+  // solution. Implicit Euler damps it.
   bool damps = level > 0;
   int unsettled = 0;
   while (!step_size.done()) {
@@ -267,8 +274,8 @@ bool Run::try_step(double to, double span, detail::DyadicStepSize& step_size, in
   const bool too_far = off > options_.displacement_tolerance;
   if (too_far && !step_size.is_shortest()) {
     ++motion_.rejected_steps;
-    // A force that turns up in a step puts it off by its square, a jump of the velocity by its
-    // first power: then there is another try.
+    // A force that starts in the step causes an error of second order, a jump of the velocity one
+    // of first order, which needs another attempt.
     const double halvings = 0.5 * std::log2(off / options_.displacement_tolerance);
     step_size.shorten(std::isfinite(off) ? std::max(static_cast<int>(std::ceil(halvings)), 1) : 1);
     return false;
@@ -278,7 +285,7 @@ bool Run::try_step(double to, double span, detail::DyadicStepSize& step_size, in
   note(stepper_, length, [&] { stepper_.accept(); });
   ++motion_.steps;
   motion_.time_step = std::min(motion_.time_step, length);
-  // Of second order: a step of twice the length is eight times as far off.
+  // The error is of third order: a doubled step has eight times the error.
   step_size.accept(8.0 * off <= options_.displacement_tolerance);
   return true;
 }
@@ -290,10 +297,10 @@ void Run::make_smooth_steps() {
     return time_of(static_cast<double>(std::min(next_sample, options_.steps)));
   };
   double length = sample_time();
-  double after_change = length;  // of the first step after a change of branches
+  double after_change = length;  // length of the first step after a change of status
   bool has_changed = true;
-  int standing = 0;              // tries without going on
-  std::optional<double> change;  // where the step is to end
+  int standing = 0;              // attempts without progress
+  std::optional<double> change;  // time at which the step should end
   while (smooth_->time() < duration_ && motion_.complete) {
     const double from = smooth_->time();
     const double until = std::min(smooth_->smooth_until(), sample_time());
@@ -302,7 +309,7 @@ void Run::make_smooth_steps() {
     const double tried = to - from;
     if (++standing > most_tries) fail();
     const std::optional<double> off = smooth_->attempt(to);
-    // Of what was tried, by the leading term of its error.
+    // Step ratio from the leading error term.
     constexpr double none = std::numeric_limits<double>::min();
     const double best =
         off ? std::pow(tolerance / std::max(*off, none), 1.0 / smooth_->error_power()) : 0.5;
@@ -317,7 +324,7 @@ void Run::make_smooth_steps() {
     if (!off) fail();
     change = smooth_->first_change();
     if (change && *change <= from) {
-      // Nothing is stepped over.
+      // The change is at the start of the step.
       int turned = 0;
       note(*smooth_, 0.0, [&] { turned = smooth_->turn(); });
       if (turned == 0) length = 0.25 * tried;
@@ -325,7 +332,7 @@ void Run::make_smooth_steps() {
       change.reset();
       continue;
     }
-    // What ends in rounding of the step's end ends there.
+    // A change within rounding of the end counts as one at the end.
     if (change && *change < to - 1e-6 * tried) {
       ++motion_.rejected_steps;
       continue;
@@ -340,8 +347,8 @@ void Run::make_smooth_steps() {
     ++motion_.steps;
     standing = 0;
     change.reset();
-    if (has_changed) after_change = tried * share;  // what it could have been
-    // Of the same length factors are kept.
+    if (has_changed) after_change = tried * share;  // the length that the tolerance allowed
+    // Steps of equal length reuse the factors.
     if (share > 1.25) length = std::max(length, tried * share);
     has_changed = turned > 0;
     if (has_changed) length = std::min(length, after_change);

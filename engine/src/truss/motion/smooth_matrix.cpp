@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The iteration matrices of smooth steps: their places are looked up once.
+// The iteration matrices of smooth steps. Positions of entries are determined once.
 #include "entries.hpp"
 #include "smooth_stepper.hpp"
 

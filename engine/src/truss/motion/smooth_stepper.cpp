@@ -10,22 +10,23 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Every change of a branch is a step of the whole truss of its own: of more contacts that cost,
-/// which goes with their square, is more than that of steps which find many changes at once.
+/// Largest number of contacts. Every change of status ends a step of the whole truss, so the cost
+/// grows with the square of their number. Steps that include many changes are then cheaper.
 constexpr std::size_t most_contacts = 200;
 constexpr int most_iterations = 8;
-/// Corrections that do not fall to this share of the one before them ask for new tangents.
+/// If a correction exceeds this fraction of the previous one, new tangents are computed.
 constexpr double falls_to = 0.3;
-/// What stages may be off by as a share of the tolerance: little beside the error of the step,
-/// which is a difference of stages.
+/// Tolerated error of the stages over the displacement tolerance: small relative to the error of
+/// the step, which is a difference of stages.
 constexpr double share_of_iteration = 1e-3;
-/// How much faster than measured corrections are thought to fall no longer, some steps later.
+/// Safety factor on the measured convergence rate, and steps until it is measured again.
 constexpr double caution = 10.0;
 constexpr int most_trusted = 10;
-/// Share of a step within which branches end at once, as those of like parts do but for rounding.
+/// Fraction of a step within which status changes count as simultaneous; those of equal parts
+/// differ by rounding.
 constexpr double at_once = 1e-6;
-/// Share of Coulomb's bound by which a branch may change too early: a force is off by as much for
-/// as long as it takes to grow by it.
+/// Force deficit over Coulomb's limit at which a status may change early. The resulting error of
+/// the force is of the same size and lasts until the force has grown by it.
 constexpr double early = 1e-6;
 
 }  // namespace
@@ -80,7 +81,7 @@ void SmoothStepper::begin(const VectorXd& q, const VectorXd& v, const State* equ
   statuses_ = system_->all_stick();
   origin_ = system_->begin(z_, 0.0, statuses_, 1.0);
   if (equilibrium != nullptr) contacts_.begin(*equilibrium, options_->start_friction);
-  // Directions of the contacts, which stay as they are.
+  // Directions of the contacts, which are constant.
   Assembly joints = system_->assembly(System::Parts::joints);
   system_->evaluate_joints(z_, 0.0, origin_, statuses_, joints);
   const linear::SparseView jacobian = joints.jacobian();
@@ -113,7 +114,7 @@ void SmoothStepper::force(const Rods::ConstColumn& q, const Rods::ConstColumn& v
 }
 
 const Rods::Heat& SmoothStepper::heat_at(double time) {
-  // Rates just before a corner, where the step ends.
+  // Rates just before a corner, because steps end there.
   const double within = std::min(time, std::nextafter(smooth_until_, 0.0));
   heat_.change.clear();
   heat_.rate.clear();
@@ -147,7 +148,7 @@ std::optional<double> SmoothStepper::attempt(double to) {
         std::min(friction_elements_[k].margin(0.0, friction_elements_[k].seen(v_), h), 0.0) -
         grace_[k];
   }
-  // Steps of one length differ by the rounding of times.
+  // Equal step lengths differ by rounding of times.
   while (std::abs(factor_h_ - h) > 1e-9 * h ? !factorize(h) || !solve_stages() : !solve_stages()) {
     if (tangents_are_new_) return {};
     renew_tangents();
@@ -173,7 +174,7 @@ bool SmoothStepper::solve_stages() {
     }
     const double size = h * correct(residual);
     if (!std::isfinite(size)) return false;
-    // Rounding of places is not corrected.
+    // Corrections below rounding of the positions are not needed.
     const double rounding =
         4.0 * std::numeric_limits<double>::epsilon() * stage_q_.cwiseAbs().maxCoeff();
     if (k > 0 && last > rounding) {
@@ -182,7 +183,7 @@ bool SmoothStepper::solve_stages() {
       if (size > rounding && contraction_ > falls_to) return false;
     }
     last = size;
-    // How far the last correction was off is told by how corrections fall.
+    // The measured convergence rate estimates the remaining error.
     if (size <= rounding) break;
     if ((k > 0 || !measures) && caution * contraction_ * size <= enough) break;
     if (k == most_iterations) return false;
@@ -210,7 +211,7 @@ double SmoothStepper::error() {
   const double g = (to_ - time_) / radau_.eigenvalue;
   const VectorXd place = g * v_ + (stage_q_.colwise() - q_) * radau_.embedded;
   const VectorXd speed = g * a_ + (stage_v_.colwise() - v_) * radau_.embedded;
-  // Through the matrix, so that what is fast counts with what is left of it [Hairer and Wanner].
+  // Filtered with the iteration matrix, so that stiff components are damped [Hairer and Wanner].
   const VectorXd filtered = factor_.solve(bodies_->mass() * speed - g * (stiffness_ * place));
   return (place + g * filtered).cwiseAbs().maxCoeff();
 }
@@ -285,7 +286,7 @@ int SmoothStepper::turn() {
     const double speed = one.seen(v_);
     grace_[k] = 2.0 * std::max(one.shortfall(0.0, speed, one.seen(a_)), 0.0);
     one.turn(0.0, speed);
-    // Without a dashpot its spring is at its bound.
+    // Without a dashpot the spring is at its limit.
     if (one.status != FrictionElement::Status::stick && one.damping == 0.0) {
       const double at_bound = one.sign() * one.bound;
       account_.friction[one.joint] -=
@@ -317,7 +318,7 @@ void SmoothStepper::book() {
         account_.damping += weight(i) * one.damping * std::pow(one.seen(stage_v_.col(i)), 2);
       }
     } else {
-      // Its spring gives way first; the dashpot has what the bound is above it.
+      // The spring deflects until its limit; the dashpot dissipates the difference to the limit.
       const double slid = slide(k, stage_q_.col(stages - 1));
       const double elastic = one.spring(slid);
       const double bent = (elastic - one.elastic) / one.stiffness;
@@ -335,7 +336,7 @@ void SmoothStepper::write() {
   for (const FrictionElement& one : friction_elements_) {
     z_[one.column] += one.elastic;
     if (one.status == FrictionElement::Status::stick) continue;
-    // A joint slips where any of its contacts does.
+    // A joint slips if any of its contacts does.
     statuses_[index(one.joint)] = one.status == FrictionElement::Status::slip_plus
                                       ? JointStatus::slip_plus
                                       : JointStatus::slip_minus;

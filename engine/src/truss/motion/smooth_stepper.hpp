@@ -17,36 +17,37 @@
 
 namespace statejump::truss::detail {
 
-/// A truss in motion whose friction acts in series with springs: between changes of statuses its
-/// equations M v' = f(q, v, t), q' = v are smooth, and steps are of Radau IIA. A step is tried on
-/// the branches that hold at its start; where one of them ends within it, whoever asks tries again
-/// up to there, so that the order is kept over changes of branches.
+/// A truss in motion whose friction acts in series with springs. Between changes of status its
+/// equations M v' = f(q, v, t), q' = v are smooth, and steps use Radau IIA. A step is attempted
+/// with the statuses at its start. If a status ends within it, the caller repeats the step up to
+/// that time, so that the order of accuracy is preserved across changes.
 class SmoothStepper {
  public:
-  /// One for a truss of links whose contacts are all such, and whose freedoms all have mass; else
-  /// none. All arguments must outlive it.
+  /// A stepper for a truss of links whose contacts are all of this type and whose dofs all have
+  /// mass; null for another truss.
+  /// @pre The arguments outlive this object.
   /// @param stages of Radau IIA, odd
   static std::unique_ptr<SmoothStepper> of(const System& system, const Bodies& bodies,
                                            const Inertia& inertia, const MotionOptions& options,
                                            int stages = 5);
 
-  /// Sets places and velocities, contacts as a quasi-static state has them if it is given.
+  /// Sets positions and velocities, and contact forces from a quasi-static state if one is given.
   void begin(const VectorXd& q, const VectorXd& v, const State* equilibrium);
 
   /// The next corner of a program [s].
   double smooth_until() const { return smooth_until_; }
-  /// Tries a step on the present branches, up to smooth_until() at most; what displacements are off
-  /// by [m]. Nothing if it does not converge.
+  /// Attempts a step with the present statuses, at most up to smooth_until(). Returns the error of
+  /// the displacements [m]; empty without convergence.
   std::optional<double> attempt(double to);
-  /// What attempt() gives goes with this power of the length.
+  /// Order of the error that attempt() returns, as a power of the step length.
   double error_power() const { return static_cast<double>(radau_.c.size()) + 1.0; }
-  /// Time at which the first branch ends in the attempted step; none if all last [s].
+  /// Time at which the first status ends in the attempted step [s]; empty if none does.
   std::optional<double> first_change() const { return first_change_; }
-  /// Takes the step that was attempted last.
+  /// Commits the last attempted step.
   void accept();
-  /// Changes the branches that were found to end here. How many.
+  /// Changes the statuses that were found to end at the present time. Returns their number.
   int turn();
-  /// Joint of the contact whose branch ended first in a step; for messages.
+  /// Joint of the contact whose status ended first in a step; for messages.
   int turning_joint() const { return friction_elements_[first_to_turn_].joint; }
 
   double time() const { return time_; }
@@ -54,7 +55,7 @@ class SmoothStepper {
   const Statuses& statuses() const { return statuses_; }
   const EnergyAccount& account() const { return account_; }
   double kinetic_energy() const { return 0.5 * v_.dot(bodies_->mass() * v_); }
-  /// The state where it is, of which joints take note.
+  /// Describes the present state and updates the memory of the joints.
   void describe(State& state);
   long factorizations() const { return factorizations_; }
 
@@ -67,32 +68,33 @@ class SmoothStepper {
   // The iteration matrix.
   void make_pattern(const Eigen::SparseMatrix<double>& damping);
   void renew_tangents();
-  /// K and C with the springs and dashpots of the contacts that stick.
+  /// Adds springs and dashpots of sticking contacts to K and C.
   void add_contacts();
   /// Factors of M + g C + g² K for all g = h/λ. False if one of them is singular.
   bool factorize(double h);
 
   /// Solves the stages by Newton's method. False if that does not converge.
   bool solve_stages();
-  /// Adds its correction to the stages' velocities; the largest of all [m/s].
+  /// Adds the correction to the velocities of the stages. Returns its largest component [m/s].
   double correct(const Eigen::MatrixXd& residual);
-  /// What displacements are off by, from the embedded method [m].
+  /// Error of the displacements from the embedded method [m].
   double error();
-  /// f of links, loads, dashpots and contacts on their branches [N].
+  /// f of links, loads, dashpots and contacts on their statuses [N].
   void force(const Rods::ConstColumn& q, const Rods::ConstColumn& v, double time, VectorXd& to);
   void find_change();
   double time_of(Eigen::Index stage) const {
     return stage + 1 == radau_.c.size() ? to_ : time_ + radau_.c[stage] * (to_ - time_);
   }
-  /// Slide of a contact since the start of the step at a place [m].
+  /// Slide of a contact at q since the start of the step [m].
   double slide(std::size_t contact, const Rods::ConstColumn& q) const {
     return friction_elements_[contact].seen(q) - slide_from_[static_cast<Eigen::Index>(contact)];
   }
-  /// A new start of a step. @param anew forces or rates have jumped
+  /// Prepares the next step.
+  /// @param anew whether forces or rates have jumped
   void start_from_here(bool anew);
   const Rods::Heat& heat_at(double time);
   void book();
-  /// Forces of the joints and statuses as they are.
+  /// Writes the present joint forces and statuses.
   void write();
 
   const System* system_;
@@ -102,34 +104,35 @@ class SmoothStepper {
   Contacts contacts_;
   std::vector<FrictionElement> friction_elements_;
   std::vector<double> corners_;  ///< Of all programs [s].
-  Assembly bars_;                ///< Stiffness.
+  Assembly bars_;                ///< Elements, for their stiffness.
   Rods rods_;
   VectorXd loads_;  ///< On the free displacements [N].
   linear::SparseFactor mass_factor_;
 
-  Eigen::SparseMatrix<double> stiffness_;  ///< Its places are those of all matrices.
-  VectorXd mass_entries_;                  ///< Of M, C and K in these places.
+  Eigen::SparseMatrix<double> stiffness_;  ///< Its pattern is that of all matrices.
+  VectorXd mass_entries_;                  ///< Entries of M, C and K in this pattern.
   VectorXd damping_entries_;
   VectorXd stiffness_entries_;
-  VectorXd sticking_damping_;  ///< C with the contacts that stick; K with them is `stiffness_`.
+  VectorXd sticking_damping_;  ///< C with sticking contacts; `stiffness_` is K with them.
   std::vector<Eigen::Index> damping_places_;
   std::vector<Eigen::Index> stiffness_places_;
-  std::vector<Eigen::Index> contact_places_;  ///< Of d dᵀ of one contact after the other.
+  std::vector<Eigen::Index>
+      contact_places_;  ///< Positions of d dᵀ of all contacts, one after the other.
   linear::SparseFactor factor_;
   std::vector<linear::ComplexFactor> pair_factors_;
-  double factor_h_ = 0.0;          ///< Of the factors [s]; 0: none.
-  bool tangents_are_new_ = false;  ///< Of the start of this step.
-  double contraction_ = 1.0;       ///< Of corrections, as measured last.
-  int trusted_ = 0;                ///< Steps since then.
+  double factor_h_ = 0.0;          ///< Step length of the factors [s]; 0: none.
+  bool tangents_are_new_ = false;  ///< Whether tangents belong to the start of this step.
+  double contraction_ = 1.0;       ///< Last measured convergence rate of the corrections.
+  int trusted_ = 0;                ///< Steps since that measurement.
 
-  // Where it is, the start of the next step.
+  // State at the start of the next step.
   double time_ = 0.0;
   VectorXd q_;
   VectorXd v_;
   VectorXd a_;                 ///< Accelerations [m/s²].
   VectorXd slide_from_;        ///< dᵀ q of every contact [m].
-  std::vector<double> grace_;  ///< What a branch may be short of since it began [N].
-  // The step that is tried; columns are stages.
+  std::vector<double> grace_;  ///< Tolerated deficit of a status since its start [N].
+  // The attempted step; columns are stages.
   double to_ = 0.0;
   Eigen::MatrixXd stage_q_;
   Eigen::MatrixXd stage_v_;
@@ -137,7 +140,7 @@ class SmoothStepper {
   std::vector<double> level_;  ///< See FrictionElement::has_ended().
   std::optional<double> first_change_;
   std::size_t first_to_turn_ = 0;
-  std::vector<std::size_t> to_turn_;  ///< Contacts whose branch ended first, in the last such step.
+  std::vector<std::size_t> to_turn_;  ///< Contacts whose status ended first, in the last such step.
 
   Rods::Heat heat_;
   double smooth_until_ = 0.0;

@@ -18,7 +18,7 @@ ContactStatuses first_statuses(const StepContacts& contacts, const MotionState& 
   for (Eigen::Index i = 0; i < contacts.count(); ++i) {
     const auto number = static_cast<std::size_t>(contacts.numbers[static_cast<std::size_t>(i)]);
     const ContactStatus last = state.contacts[number];
-    // A rigid contact that is active has closed.
+    // A rigid contact is active only if its gap has closed.
     const bool closes = last == ContactStatus::open && contacts.contact(i).is_rigid();
     found.push_back(closes ? ContactStatus::stick : last);
   }
@@ -78,7 +78,8 @@ class StepPivots {
     bool is_near = false;
   };
 
-  /// Pivots around each violated contact; the iterate is near to the solution on what that finds.
+  /// Pivots around each violated contact. The iterate is then near the solution on the resulting
+  /// statuses.
   std::optional<ContactStatuses> pivot_locally(const Changes& violated);
 
   StepForces& forces_;
@@ -115,7 +116,7 @@ std::optional<ContactStatuses> StepPivots::pivot_locally(const Changes& violated
 
 bool StatusSearch::find(TimeStep& step, StepContacts& contacts) {
   StepPivots pivots(forces_, matrix_, solver_, step, contacts);
-  // The contact problem takes no more systems than there are contacts.
+  // The contact problem needs as many solves as there are contacts.
   const auto most_single = static_cast<std::size_t>(contacts.count());
   return pivots.solve() && find_active_set(pivots, Blocks::until_repeated, most_single);
 }

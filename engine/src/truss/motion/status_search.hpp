@@ -17,8 +17,8 @@ class StatusSearch {
   StatusSearch(StepForces& forces, StepMatrix& matrix)
       : forces_(forces), matrix_(matrix), solver_(forces, matrix) {}
 
-  /// False if single pivots come back to statuses that were not right, or a solve does not
-  /// converge: the step is then spoilt.
+  /// False if single pivots repeat earlier statuses, or a solve does not converge. The step is then
+  /// invalid.
   bool find(TimeStep& step, StepContacts& contacts);
 
  private:

@@ -10,11 +10,11 @@ namespace {
 
 /// Newton's method converges in three or four iterations, unless a contact has another status.
 constexpr int most_iterations = 8;
-/// The same limit with partial slip, whose tangents are updated in every iteration, and for a
-/// matrix without the softening by compression.
+/// Limit with partial slip, whose tangents are updated in every iteration, and for a matrix without
+/// the softening by compression.
 constexpr int most_tangents = 50;
-/// Line search: the step is halved until the residual has fallen by this fraction of it, or the
-/// step is short.
+/// Line search: the step is halved until the residual has decreased by this fraction, or the step
+/// is short.
 constexpr double least_fall = 1e-4;
 constexpr double shortest_share = 1e-3;
 /// Kept factors that need more iterations than this are replaced for the next step.

@@ -20,7 +20,8 @@ class StatusSolver {
   StatusSolver(StepForces& forces, StepMatrix& matrix) : forces_(forces), matrix_(matrix) {}
 
   /// Solves the step with the given status of every active contact. Returns false without
-  /// convergence. @param is_near whether to start at the iterate; else at the end of the last step
+  /// convergence.
+  /// @param is_near whether to start at the iterate; otherwise at the end of the last step
   bool solve(const ContactStatuses& statuses, TimeStep& step, StepContacts& contacts, bool is_near);
 
  private:
@@ -33,8 +34,9 @@ class StatusSolver {
   /// Residual of the equations at an iterate [N s].
   struct Residual {
     VectorXd right;
-    VectorXd momentum;     ///< What momentum lacks without impulses.
-    bool on_laws = false;  ///< Of contacts that are not elastic, and of constraints.
+    VectorXd momentum;  ///< Residual of the momentum balance without impulses.
+    bool on_laws =
+        false;  ///< Whether constraints, and contacts that are not elastic, satisfy their laws.
   };
   Residual residual(const StatusFactors& on, TimeStep& step, const StepContacts& contacts,
                     double drift);

@@ -21,7 +21,7 @@ struct ContactRow {
   double offset = 0.0;      ///< [m/s]
   double compliance = 0.0;  ///< [1/kg]
   double by_speed = 1.0;
-  double by_beside = 0.0;  ///< By the speed along the other tangent of a ball.
+  double by_beside = 0.0;  ///< For the speed along the other tangent of a ball.
   double by_normal = 0.0;  ///< [1/kg]
 };
 
@@ -41,11 +41,11 @@ class StepContacts {
                const TimeStep& step, double restitution);
 
   std::vector<Contact*> contacts;
-  std::vector<int> numbers;                ///< Of these contacts among all.
+  std::vector<int> numbers;                ///< Numbers of these contacts among all contacts.
   Eigen::SparseMatrix<double> directions;  ///< H
   VectorXd before;                         ///< Speeds at the start of the step.
   VectorXd impulses;                       ///< r [N s]
-  Delassus delassus;                       ///< Only where the contact problem is solved.
+  Delassus delassus;                       ///< Computed for the contact problem only.
 
   Index count() const { return static_cast<Index>(contacts.size()); }
   Contact& contact(Index i) const { return *contacts[static_cast<std::size_t>(i)]; }
@@ -68,57 +68,60 @@ class StepContacts {
 
   ContactRow normal_row(const TimeStep& step, Index i) const;
   ContactRow stick_row(const TimeStep& step, Index i) const;
-  /// Residual of a row [m/s]. @param across whether it is the normal one
+  /// Residual of a row [m/s].
+  /// @param across whether it is the normal row
   double residual(const ContactRow& row, const TimeStep& step, Index i, bool across) const;
   /// Tangential over normal impulse of a contact that slides.
   static double friction_ratio(const Contact& contact, ContactStatus status);
-  /// The status that a contact's inequalities request, from the one whose equations hold.
+  /// The status that the inequalities of a contact request, given the status whose equations hold.
   ContactStatus requested(const TimeStep& step, Index i, ContactStatus status) const;
-  /// Statuses at the end of a step, by the impulses.
+  /// Statuses at the end of a step, derived from the impulses.
   ContactStatuses statuses() const;
   /// Whether a rigid contact closes in the step, so that velocities jump.
   bool closes() const;
 
-  /// The other tangent of a ball that slips partially; −1: none.
+  /// The other tangent of a ball with partial slip; −1: none.
   Index partner(Index i) const {
     return !contact(i).slips_in_part || contact(i).ball < 0 ? -1
            : contact(i).beside                              ? i - 1
                                                             : i + 1;
   }
 
-  // Contacts that slip partially, in partial_slip_contacts.cpp. An owner is the contact that is
-  // pressed.
-  /// Speeds of the contacts that slip partially, of others 0 [m/s].
+  // Contacts with partial slip, in partial_slip_contacts.cpp. An owner is the contact with the
+  // normal force.
+  /// Speeds of the contacts with partial slip; 0 for others [m/s].
   VectorXd partial_slip_speeds(const TimeStep& step) const;
-  /// Where tangents are taken: in the kinks of the laws; at an iterate; or there and, of those
-  /// whose slip has reversed, in the kink.
+  /// Tangent points: at the kinks of the laws; at an iterate; or (next) at an iterate, but at the
+  /// kink for contacts whose slip has reversed.
   enum class TangentAt : unsigned char { kinks, iterate, next };
   /// @param speeds of the contacts [m/s]
   void place_tangents(const TimeStep& step, const VectorXd& speeds, TangentAt at);
-  /// Whether impulses are on the laws themselves. @param drift rounding of speeds [m/s]
+  /// Whether impulses satisfy the partial-slip laws, not only their tangents.
+  /// @param drift rounding of speeds [m/s]
   bool on_partial_slip_laws(const TimeStep& step, double drift) const;
-  /// Adds the tangent to the contact problem. @param opens speed at which the contact opens [m/s]
+  /// Adds the tangent to the contact problem.
+  /// @param opens opening speed of the contact [m/s]
   void add_partial_slip(const TimeStep& step, Index owner, double opens,
                         complementarity::Problem& problem) const;
-  /// The loads on the annuli of a contact that opens at a speed [m/s].
+  /// Loads of the partial-slip law at an opening speed [m/s].
   SlipAnnuli::Pressed pressed(const TimeStep& step, Index owner, double opens) const;
-  /// Entries of both tangents of a contact; the second of a plane is 0.
+  /// Components along both tangents of a contact; the second is 0 for a planar contact.
   Vector2d along(Index owner, const VectorXd& speeds) const;
-  /// Slip of the step that does not depend on its speed [m].
+  /// Part of the slide of the step that does not depend on its speed [m].
   Vector2d slid(Index owner) const;
 
  private:
   /// Depth of an elastic contact at the end of the step, opening at this speed [m].
   double depth(const TimeStep& step, Index i, double speed) const;
-  /// The contact whose normal force presses one.
+  /// The contact that provides the normal force.
   Index owner(Index i) const { return contact(i).beside ? i - 1 : i; }
-  /// Tangent of the law of partial slip, for a contact or the one beside it.
+  /// Tangent of the partial-slip law, for a contact or its transverse contact.
   ContactRow partial_slip_row(const TimeStep& step, Index i) const;
 
   double restitution_;
 };
 
-/// Status of a contact by the forces that it remembers.
+/// Status of a contact, derived from the forces in its memory.
 ContactStatus status_of(const Contact& contact);
 
 }  // namespace statejump::truss::detail

@@ -19,7 +19,7 @@ namespace statejump::truss::detail {
 /// vanishes to rounding and every contact is on its law.
 class StepForces {
  public:
-  /// All arguments must outlive it.
+  /// @pre The arguments outlive this object.
   StepForces(const System& system, const Bodies& bodies, Contacts& contacts,
              const MotionState& state);
   StepForces(const StepForces&) = delete;
@@ -31,34 +31,35 @@ class StepForces {
   Contacts& contacts() { return contacts_; }
   const MotionState& state() const { return state_; }
 
-  /// Without dashpots and contacts [N].
+  /// Forces without dashpots and contacts [N].
   VectorXd elastic_force(const VectorXd& q, double time);
-  /// Those of the last iterate.
+  /// elastic_force() of the last iterate.
   const VectorXd& last_elastic_force() const { return elastic_force_; }
   /// Forces at the beginning of the step, with dashpots [N].
   VectorXd force_before(const TimeStep& step) const;
 
   /// Gaps and directions of the contacts, evaluated as if all were closed without force.
   void evaluate_contacts(const VectorXd& q, double time);
-  /// As evaluated last.
+  /// Result of the last evaluate_contacts().
   const Assembly& joints() const { return joints_; }
-  /// Forces of joints besides their contacts.
+  /// Forces of joints other than contact forces.
   const Assembly& evaluate_springs(const VectorXd& q, double time);
   const Assembly& evaluate_elements(const VectorXd& q, double time);
 
-  /// Gap of a contact along the directions of the step [m]. @param way displacement from its middle
-  /// [m]
+  /// Gap of a contact, linear along the directions of the step [m].
+  /// @param way displacement from the middle of the step [m]
   double gap_after(const Contact& contact, const VectorXd& way) const;
   /// Rounding of lengths at the middle of a step [m].
   double rounding_at_middle(const TimeStep& step) const;
 
-  /// Moves q according to the step's velocities. @return residual of the momentum without impulses
-  /// [N s]
+  /// Moves q according to the velocities of the step.
+  /// @return momentum residual without impulses [N s]
   VectorXd move(TimeStep& step);
-  /// Whether momentum balances, and elastic contacts are on their laws and not only on the
-  /// tangents. @param residual of move() @param constraints B, see VelocityConstraints @param
-  /// on_statuses allows a contact to pull, or to be open where it closes, because its status is
-  /// checked next
+  /// Whether momentum balances, and elastic contacts satisfy their laws, not only their tangents.
+  /// @param residual of move()
+  /// @param constraints B, see VelocityConstraints
+  /// @param on_statuses accepts contacts in tension and open contacts with penetration, because
+  /// their statuses are checked next
   bool balanced(const TimeStep& step, const VectorXd& residual,
                 const Eigen::SparseMatrix<double>& constraints, const StepContacts& contacts,
                 bool on_statuses) const;
@@ -71,7 +72,7 @@ class StepForces {
   Contacts& contacts_;
   const MotionState& state_;
   Assembly joints_;    ///< Gaps and directions at the middle of the step.
-  Assembly springs_;   ///< Forces of joints besides their contacts.
+  Assembly springs_;   ///< Forces of joints other than contact forces.
   Assembly elements_;  ///< Stiffness at the middle of the step.
   Assembly forces_;    ///< Forces at an iterate; no Jacobian.
   VectorXd elastic_force_;

@@ -11,13 +11,13 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Number of kept factors of other statuses or step lengths.
+/// Number of stored factors of other statuses or step lengths.
 constexpr std::size_t most_kept = 8;
 
-/// Whether a push would accelerate a contact against it. The step is then long beside the time
-/// scale of an instability, and the contact problem may have no solution.
+/// Whether an impulse would accelerate a contact against its direction. The step is then longer
+/// than the time scale of an instability, and the contact problem may have no solution.
 bool is_indefinite(const Eigen::MatrixXd& delassus) {
-  constexpr double rounding = 1e-8;  // of systems whose condition is that of stiff links
+  constexpr double rounding = 1e-8;  // of systems with the condition number of stiff links
   if (delassus.size() == 0) return false;
   const VectorXd pivots = delassus.ldlt().vectorD();
   return pivots.minCoeff() < -rounding * pivots.cwiseAbs().maxCoeff();
@@ -70,7 +70,7 @@ void StepMatrix::fill_bodies(const TimeStep& step, RefilledMatrix& to) {
 
 StatusFactors& StepMatrix::factors_for(double h, const StepContacts& contacts,
                                        const ContactStatuses& statuses) {
-  // Steps of one length differ by the rounding of times.
+  // Equal step lengths differ by rounding of times.
   const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const auto& one) {
     return std::abs(one->h - h) <= 1e-6 * h && one->statuses == statuses &&
            one->active == contacts.numbers;
@@ -79,8 +79,8 @@ StatusFactors& StepMatrix::factors_for(double h, const StepContacts& contacts,
     std::rotate(kept_.begin(), found, found + 1);
     return *kept_.front();
   }
-  // The pattern depends on the active contacts, not on their statuses. The oldest factors with the
-  // same pattern are reused without a new order.
+  // The pattern depends on the active contacts only. The oldest factors with the same pattern are
+  // reused without a new ordering.
   const auto same = std::find_if(kept_.rbegin(), kept_.rend(),
                                  [&](const auto& one) { return one->active == contacts.numbers; });
   if (kept_.size() < most_kept || same == kept_.rend()) {
@@ -145,15 +145,15 @@ void StepMatrix::each_contact_entry(ContactStatus now, const TimeStep& step,
   const double scale = constraints_.scale();
   const Eigen::Index n = forces_.state().q.size() + constraints_.columns().cols() + 2 * i;
   const Eigen::Index t = n + 1;
-  // An inactive row is an identity row: its impulse keeps its value. @param beside the other
-  // tangent
+  // An inactive row is an identity row: its impulse keeps its value.
+  // @param beside row of the other tangent
   const auto row = [&](Eigen::Index at, bool is_active, const ContactRow& law,
                        Eigen::Index beside) {
     using Column = Eigen::SparseMatrix<double>::InnerIterator;
     Column other(contacts.directions, 2 * std::max<Eigen::Index>(beside, 0) + 1);
     for (Column it(contacts.directions, 2 * i + at - n); it; ++it) {
       double speed = law.by_speed * it.value();
-      // Both are sums of the same columns.
+      // Both columns have the same pattern.
       if (beside >= 0) {
         speed += law.by_beside * other.value();
         ++other;
@@ -199,7 +199,7 @@ Delassus StepMatrix::delassus(const TimeStep& step, const StepContacts& contacts
   if (is_indefinite(found.matrix)) {
     fail_step(forces_.system(), FailureKind::not_converged, step.to, nullptr);
   }
-  // Rows without other entries are scaled to the size of the others.
+  // Empty rows are scaled to the size of the others.
   const auto real = (found.matrix.diagonal().array() > 0.0).count();
   const double size = real > 0 ? found.matrix.trace() / static_cast<double>(real) : 1.0;
   for (Eigen::Index k = 0; k < rows; ++k) {

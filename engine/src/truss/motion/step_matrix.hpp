@@ -17,8 +17,8 @@ struct StatusFactors {
   double h = 0.0;
   std::vector<int> active;  ///< Numbers of the active contacts.
   ContactStatuses statuses;
-  double scale = 1.0;    ///< Of the velocity constraints.
-  bool outdated = true;  ///< Not yet made, or to be made again: they converge slowly.
+  double scale = 1.0;    ///< Scale of the velocity constraints.
+  bool outdated = true;  ///< Not computed yet, or to be renewed because of slow convergence.
   linear::SparseFactor factor;
 };
 
@@ -35,27 +35,28 @@ struct StatusFactors {
 /// contact problem.
 class StepMatrix {
  public:
-  /// All arguments must outlive it.
+  /// @pre The arguments outlive this object.
   StepMatrix(StepForces& forces, const std::vector<Drive>& drives);
 
-  /// Factors for a step length and statuses; existing ones if there are.
+  /// Factors for a step length and statuses; stored ones if there are any.
   StatusFactors& factors_for(double h, const StepContacts& contacts,
                              const ContactStatuses& statuses);
-  /// Factors the matrix at an iterate. False: the matrix is singular.
+  /// Factors the matrix at an iterate. False: singular.
   bool factorize(StatusFactors& of, const TimeStep& step, const StepContacts& contacts);
   /// Fills the matrix of a step at an iterate, for given statuses of its contacts.
   void assemble(const ContactStatuses& statuses, const TimeStep& step,
                 const StepContacts& contacts);
-  /// Replaces the entries of one contact by those of another status at an iterate.
+  /// Replaces the entries of a contact by those for another status at an iterate.
   void update_entries(ContactStatus status, const TimeStep& step, const StepContacts& contacts,
                       Eigen::Index i);
   /// The matrix of the last assemble(). Rows: momentum, constraints, then two for each active
   /// contact.
   const Eigen::SparseMatrix<double>& matrix() const { return matrix_.matrix(); }
-  double scale() const { return scale_; }  ///< Of its constraints and contacts.
+  double scale() const { return scale_; }  ///< Scale of the rows of constraints and contacts.
 
-  /// Factors the bodies alone, for solve_bodies(). @throws Failure if that matrix is singular, or
-  /// if a push would accelerate a contact against it
+  /// Factors the bodies alone, for solve_bodies().
+  /// @throws Failure if their matrix is singular, or if an impulse would accelerate a contact
+  /// against its direction
   Delassus delassus(const TimeStep& step, const StepContacts& contacts);
   VectorXd solve_bodies(const VectorXd& right) { return bodies_factor_.solve(right); }
 
@@ -76,10 +77,10 @@ class StepMatrix {
   StepForces& forces_;
   VelocityConstraints constraints_;
   RefilledMatrix matrix_;
-  long step_number_ = -1;  ///< TimeStep::number of its bodies.
+  long step_number_ = -1;  ///< TimeStep::number of its entries for bodies.
   double scale_ = 1.0;
-  std::vector<std::size_t> contact_entries_;          ///< The first one of every active contact.
-  std::vector<std::unique_ptr<StatusFactors>> kept_;  ///< The last ones used, the latest first.
+  std::vector<std::size_t> contact_entries_;          ///< First entry of every active contact.
+  std::vector<std::unique_ptr<StatusFactors>> kept_;  ///< Most recently used first.
   RefilledMatrix bodies_matrix_;
   linear::SparseFactor bodies_factor_;
   long factorizations_ = 0;

@@ -11,8 +11,8 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Fraction of its clearance by which a contact may end beside where its directions, those of the
-/// middle of the step, lead.
+/// Tolerated error of a contact's gap at the end of the step, over its clearance. The gap is
+/// predicted with the directions at the middle of the step.
 constexpr double off_course = 0.1;
 
 }  // namespace
@@ -140,12 +140,12 @@ bool Stepper::advance_damped(double to, bool give_up) {
 std::optional<double> Stepper::attempt(double to, bool give_up) {
   TimeStep step = begin_step(to);
   step.theta = 1.0;
-  // BDF2 of unequal steps; without a step before implicit Euler.
+  // BDF2 with variable steps; implicit Euler without a previous step.
   const double ratio = before_.length > 0.0 ? step.length / before_.length : 0.0;
   const double weight = 1.0 + 2.0 * ratio;
   step.differentiates = ratio > 0.0;
   step.h = (1.0 + ratio) / weight * step.length;
-  VectorXd change = VectorXd::Zero(state_.v.size());  // of v in the last step, at this length
+  VectorXd change = VectorXd::Zero(state_.v.size());  // extrapolated change of v from the last step
   if (ratio > 0.0) {
     change = ratio * (state_.v - before_.v);
     step.v_from += ratio / weight * change;
@@ -177,7 +177,7 @@ void Stepper::accept() {
 void Stepper::commit(const TimeStep& step, const StepContacts& contacts) {
   painleve_.check(step, contacts);
   uniqueness_.check(step, contacts);
-  // Velocities by which impulses work.
+  // Mean velocities, by which impulses do work.
   const VectorXd through = step.differentiates ? VectorXd((step.q - state_.q) / step.h)
                                                : VectorXd(0.5 * (state_.v + step.v));
   commit_contacts(step, contacts, through, contacts_, account_);

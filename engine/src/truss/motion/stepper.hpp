@@ -26,7 +26,7 @@ namespace statejump::truss::detail {
 /// are smooth. If it fails, ContactProblem solves the step. The step is then committed.
 class Stepper {
  public:
-  /// All arguments must outlive it.
+  /// @pre The arguments outlive this object.
   Stepper(const System& system, const Bodies& bodies, const MotionOptions& options);
   Stepper(const Stepper&) = delete;
   Stepper& operator=(const Stepper&) = delete;
@@ -34,19 +34,20 @@ class Stepper {
   /// Sets positions and velocities. If a quasi-static state is given, contacts start at rest with
   /// its forces.
   void begin(const VectorXd& q, const VectorXd& v, const State* equilibrium);
-  /// Takes one step to a time. The stepper changes only if the step succeeds. Returns false if a
-  /// contact ends elsewhere than the directions of the step predict. @throws Failure if no solution
-  /// is found
+  /// Takes one step to a time. The state changes only if the step succeeds. Returns false if the
+  /// gap of a contact differs from the prediction with the directions of the step.
+  /// @throws Failure if no solution is found
   bool advance(double to);
   /// The same by implicit Euler with a positive definite matrix, for a step that has no solution
   /// otherwise. Also returns false if its statuses are not found and `give_up`.
   bool advance_damped(double to, bool give_up);
   /// Attempts a step of backward differentiation without committing it. Returns the error of the
-  /// displacements [m]. It is second-order accurate if the last step was of this kind. The error is
-  /// NaN if the statuses were not found and `give_up`, which avoids the contact problem. @throws
-  /// Failure as advance()
+  /// displacements [m]. The step is second-order accurate if the last step was of this type. The
+  /// result is empty if the statuses were not found and `give_up`, which avoids the contact
+  /// problem.
+  /// @throws Failure as advance()
   std::optional<double> attempt(double to, bool give_up);
-  /// Takes what was attempted last.
+  /// Commits the attempted step.
   void accept();
 
   const VectorXd& velocity() const { return state_.v; }
@@ -63,24 +64,24 @@ class Stepper {
   double largest_merit() const { return contact_problem_.largest_merit(); }
 
  private:
-  /// The second-last step, for backward differentiation.
+  /// The last step, for backward differentiation.
   struct Before {
-    double length = 0.0;  ///< [s]; 0: none, or velocities jump.
-    VectorXd q;           ///< Where it began.
+    double length = 0.0;  ///< [s]; 0: no last step, or velocities jumped.
+    VectorXd q;           ///< State at its start.
     VectorXd v;
   };
 
-  /// The beginning of a Moreau–Jean step to this time.
+  /// Initial values of a Moreau–Jean step to this time.
   TimeStep begin_step(double to);
   StepContacts contacts_of(const TimeStep& step);
   /// Finds the end of a step; empty if its statuses are not found and `give_up`.
   std::optional<StepContacts> find(TimeStep& step, bool give_up);
-  /// Whether round contacts end where the directions of the step predict. In a step that is long
-  /// beside their motion they do not, and their forces create energy.
+  /// Whether the gaps of round contacts end as predicted with the directions of the step. In a step
+  /// that is too long they do not, and contact forces create energy.
   bool keeps_directions(const TimeStep& step) const;
-  /// Largest depth at the end of a step of those rigid contacts that were open at its middle [m].
+  /// Largest penetration at the end of a step of rigid contacts that were open at its middle [m].
   double deepest(const TimeStep& step) const;
-  /// Takes a step: state, memories, energies.
+  /// Commits a step: state, memory, energies.
   void commit(const TimeStep& step, const StepContacts& contacts);
   void note_statuses();
 

@@ -22,22 +22,22 @@ struct MotionState {
   VectorXd z;                ///< q and the forces of the joints.
   StepStart origin;          ///< Statuses and history of the joints.
   VectorXd force;            ///< Forces without dashpots and contacts at (q, time) [N].
-  ContactStatuses contacts;  ///< Of all contacts in the last step.
+  ContactStatuses contacts;  ///< Statuses of all contacts in the last step.
 };
 
-/// A step that is being solved: M (v − v_from) = h (θ f + (1 − θ) f0) + H r, q = q_from + h (θ v +
-/// (1 − θ) v0). A Moreau–Jean step begins where the last one ended. A step of backward
-/// differentiation has θ = 1; its beginning follows from the last two steps, and its h is a
-/// fraction of its length.
+/// A step in progress: M (v − v_from) = h (θ f + (1 − θ) f0) + H r, q = q_from + h (θ v + (1 − θ)
+/// v0). A Moreau–Jean step starts at the end of the last one. A step of backward differentiation
+/// has θ = 1; its starting values follow from the last two steps, and its h is a fraction of its
+/// length.
 struct TimeStep {
   long number = 0;
   double h = 0.0;       ///< [s]; impulses are h times the forces at the end.
   double to = 0.0;      ///< Time at its end [s].
   double length = 0.0;  ///< [s]
   double theta = 1.0;
-  bool differentiates = false;  ///< Whether the last two steps give its beginning.
-  /// Whether the matrix omits the softening by compression. At the beginning of a step a slack
-  /// element looks compressed by its temperature. At the end it carries nothing, and only its mass
+  bool differentiates = false;  ///< Whether the last two steps determine its starting values.
+  /// Whether the matrix omits the softening by compression. At the start of a step a slack element
+  /// appears compressed by its temperature. At the end its force vanishes, and only its mass
   /// resists a rotation.
   bool is_definite = false;
   Bodies::Step span = {};
@@ -47,11 +47,10 @@ struct TimeStep {
   VectorXd force_before;  ///< f0 [N]
   VectorXd q;
   VectorXd v;
-  VectorXd held = {};  ///< Impulses of the velocity constraints, along their scaled columns.
+  VectorXd held = {};  ///< Impulses of the velocity constraints, for their scaled columns.
 
-  /// Mean of a force over the step, by which it works. In a step of backward differentiation, the
-  /// mean of a force that grew from zero is half its size. The mean of a force at its limit is the
-  /// whole force while the contact slides.
+  /// Mean force of the step, with which it does work. In a step of backward differentiation it is
+  /// the mean of both ends, except for a force at its limit while the contact slides.
   double mean(double before, double after, bool slides) const {
     return differentiates && !slides ? 0.5 * (before + after) : after;
   }
@@ -66,7 +65,8 @@ constexpr double on_law = 1e-6;
 /// speed. It corresponds to the tolerance of the contact problem.
 constexpr double allowance = 1e-10;
 
-/// Throws Failure for a step without a solution. @param contact the contact that caused it, or null
+/// Throws Failure for a step without a solution.
+/// @param contact the contact that caused it, or null
 [[noreturn]] void fail_step(const System& system, FailureKind kind, double time,
                             const Contact* contact);
 

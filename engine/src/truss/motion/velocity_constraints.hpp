@@ -13,7 +13,7 @@ namespace statejump::truss::detail {
 /// nodes, then drives. Columns are scaled to the size of the matrix, so that pivots are comparable.
 class VelocityConstraints {
  public:
-  /// All arguments must outlive it.
+  /// @pre The arguments outlive this object.
   VelocityConstraints(const StepForces& forces, const std::vector<Drive>& drives);
 
   Eigen::Index count() const;
