@@ -45,7 +45,7 @@ Problem checked(Problem problem) {
   return problem;
 }
 
-/// W of compressed columns, as scipy.sparse.csc_matrix has them.
+/// W from compressed columns, as stored by scipy.sparse.csc_matrix.
 Problem of_columns(int dimension, const std::vector<int>& starts, const std::vector<int>& rows,
                    const VectorXd& values, VectorXd q, VectorXd mu) {
   const auto entries = static_cast<Eigen::Index>(rows.size());

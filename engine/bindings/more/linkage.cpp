@@ -25,7 +25,8 @@ namespace {
 
 using Row = std::vector<std::pair<const char*, double>>;
 
-/// Arrays by column name. @param row_of row i as (name, value) pairs, the same names in every row
+/// Arrays by column name.
+/// @param row_of row i as (name, value) pairs, the same names in every row
 template <class RowOf>
 py::dict columns(std::size_t rows, RowOf&& row_of) {
   std::vector<std::pair<const char*, py::array_t<double>>> arrays;
@@ -41,7 +42,7 @@ py::dict columns(std::size_t rows, RowOf&& row_of) {
   return result;
 }
 
-/// A run together with what its samples mean.
+/// A run with the model and program that its columns need.
 struct BoundRun {
   linkage::Linkage model;
   thermal::Program program;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// All models except the bar on a slider. Python finds their names in _engine.
+// All models except the bar on a slider. The module _engine looks up their names here.
 #include <string>
 
 #include "../bindings.hpp"
@@ -9,7 +9,7 @@ PYBIND11_MODULE(_engine_more, module) {
   namespace bindings = statejump::bindings;
   module.doc() = "Models that _engine offers beside the bar on a slider.";
   const std::string name = module.attr("__name__").cast<std::string>();
-  // Its classes are arguments of functions of this module.
+  // Classes of _engine are arguments of functions of this module.
   const auto engine =
       pybind11::module_::import(name.substr(0, name.size() - bindings::more_suffix.size()).c_str());
   bindings::use_failure(engine);

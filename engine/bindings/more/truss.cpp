@@ -33,7 +33,7 @@ using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Indices = py::array_t<int, py::array::c_style | py::array::forcecast>;
 using Flags = py::array_t<bool, py::array::c_style | py::array::forcecast>;
 
-/// The arrays of one kind of item; a missing array, or one of another length, is refused.
+/// The arrays of one type of item. Rejects a missing array, or one of another length.
 class Table {
  public:
   Table(const char* kind, const py::dict& arrays) : kind_(kind), arrays_(arrays) {
@@ -88,7 +88,7 @@ std::pair<truss::Directions, int> free_directions(const bool* fixed, Vector3d no
   int freedoms = 0;
   Eigen::Matrix3d columns = Eigen::Matrix3d::Identity();
   while (held.size() < 3) {
-    // The coordinate direction of which most is left.
+    // The coordinate direction with the largest part outside the constrained directions.
     Vector3d best = remainder(Vector3d::UnitX());
     for (int k = 1; k < 3; ++k) {
       const Vector3d direction = remainder(Vector3d::Unit(k));
@@ -100,11 +100,11 @@ std::pair<truss::Directions, int> free_directions(const bool* fixed, Vector3d no
   return {truss::Directions(columns), freedoms};
 }
 
-/// Nodes of a truss whose reading leaves megabytes.
+/// Number of nodes above which reading a truss leaves megabytes of free memory.
 constexpr std::size_t many_nodes = 10000;
 
-/// Returns free memory between kept blocks to the system. Reading a large truss leaves such gaps,
-/// which are too small for the solver's arrays.
+/// Returns free memory to the system. Reading a large truss leaves gaps between blocks in use, too
+/// small for the arrays of the solver.
 void give_back_memory() {
 #ifdef __GLIBC__
   malloc_trim(0);
@@ -206,7 +206,7 @@ truss::Model make_model(const py::dict& nodes_, const py::dict& elements_, const
   return model;
 }
 
-/// One array (states, items) or (states, items, 3) of a member of every state.
+/// An array (states, items) or (states, items, 3) of one member of every state.
 template <class State, class Member>
 py::array_t<double> stacked(const std::vector<State>& states, Member member, py::ssize_t width) {
   const auto count = static_cast<py::ssize_t>(states.size());
@@ -249,7 +249,7 @@ OfType of_type(const truss::Model& model) {
   return found;
 }
 
-/// Array (states, joints) or (states, joints, width) of what `value` gives for state and joint.
+/// An array (states, joints) or (states, joints, width) of `value(state, joint)`.
 template <class Number, class Value>
 py::array_t<Number> of_joints(const std::vector<truss::State>& states, std::size_t joints,
                               py::ssize_t width, Value value) {
@@ -266,7 +266,7 @@ py::array_t<Number> of_joints(const std::vector<truss::State>& states, std::size
   return result;
 }
 
-/// Outputs of every type by their keys; statuses and heat by kind.
+/// Outputs of all types by key; statuses and heat by type of joint.
 py::dict states_dict(const truss::Model& model, const std::vector<truss::State>& states) {
   using truss::State;
   py::dict d;
@@ -320,7 +320,7 @@ py::dict states_dict(const truss::Model& model, const std::vector<truss::State>&
   return d;
 }
 
-/// A number of every event.
+/// An array with one number per event.
 template <class Number, class Value>
 py::array_t<Number> of_events(const std::vector<truss::Event>& found, Value value) {
   py::array_t<Number> result(static_cast<py::ssize_t>(found.size()));
@@ -328,8 +328,8 @@ py::array_t<Number> of_events(const std::vector<truss::Event>& found, Value valu
   return result;
 }
 
-/// Events as columns, because a truss of a million joints has millions. Joints are numbered within
-/// their kind. Statuses are codes whose names are in `statuses`.
+/// Events as columns, because a truss of a million joints has millions of events. Joints are
+/// numbered within their type. Statuses are codes; `statuses` lists their names.
 py::dict event_columns(const truss::Model& model, const std::vector<truss::Event>& found) {
   using truss::Event;
   std::vector<py::ssize_t> place(model.joints.size());
@@ -371,7 +371,7 @@ py::dict event_columns(const truss::Model& model, const std::vector<truss::Event
   return events;
 }
 
-/// Calls a caller's function with the finished fraction. Returns whether to continue.
+/// Reports the finished fraction to a caller's function. Returns whether to continue.
 std::function<bool(double)> going_on(const py::object& progress) {
   return [&progress](double done) {
     py::gil_scoped_acquire lock;
@@ -397,7 +397,7 @@ truss::TraceSink trace_to(const py::object& function, const truss::Model& model)
   };
 }
 
-/// The same for runs whose partial results are useful: Ctrl-C ends them.
+/// Reports like going_on(), for runs whose partial results are useful: Ctrl-C ends the run.
 std::function<bool(double)> until_interrupted(const py::object& progress) {
   return [go_on = going_on(progress)](double done) {
     try {
@@ -504,7 +504,7 @@ py::dict path_dict(const truss::Model& model, const truss::Path& path) {
   return result;
 }
 
-/// What Python reads of a type of element or joint.
+/// Description of a type of element or joint for Python.
 template <class Type>
 py::dict type_dict() {
   py::list parameters;

@@ -32,7 +32,8 @@ class InteriorPoint {
   /// Starts far from the boundary.
   explicit InteriorPoint(const ScaledProblem& problem);
 
-  /// One predictor-corrector step, one factorisation. @return its length, at most 1; 0 at the end
+  /// One predictor-corrector step, one factorisation.
+  /// @return its length, at most 1; 0 at the end
   double advance();
   Eigen::VectorXd reactions() const;
 

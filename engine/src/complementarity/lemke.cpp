@@ -39,8 +39,8 @@ MatrixXd lcp_matrix(const ScaledProblem& problem) {
   return m;
 }
 
-/// Lemke's table: rows of basic variables; columns of w, of z, of the artificial variable, and the
-/// values.
+/// Lemke's tableau: one row per basic variable; columns of w, of z, of the artificial variable, and
+/// the values.
 class Table {
  public:
   explicit Table(const ScaledProblem& problem)
@@ -82,7 +82,8 @@ class Table {
     return best;
   }
 
-  /// Exchanges the variables. @return the variable that left the basis
+  /// Exchanges the variables.
+  /// @return the variable that left the basis
   Index pivot(Index row, Index entering) {
     rows_.row(row) /= rows_(row, entering);
     for (Index i = 0; i < size_; ++i) {

@@ -18,8 +18,8 @@ namespace {
 
 using kernel::require;
 
-/// Sweeps before the first Newton attempt: enough to find most contacts' statuses, cheaper than one
-/// linear system.
+/// Sweeps before the first Newton attempt. They find the statuses of most contacts and cost less
+/// than one linear system.
 constexpr int first_sweeps = 20;
 /// Sweeps after the other methods have failed; doubled each time.
 constexpr int more_sweeps = 200;
@@ -95,15 +95,16 @@ class Driver {
     if (!ended()) run_interior_point();
     if (!ended() && !is_small && planar_contacts > 0 && planar_contacts <= many_contacts)
       run_lemke();
-    // From the best result, a few sweeps may decide what Newton could not. From the end of the
-    // earlier sweeps, many may be needed.
+    // From the best result, a few sweeps may find the statuses that Newton's method did not. From
+    // the end of the earlier sweeps, many may be needed.
     if (!ended()) finish(best_, more_sweeps);
     for (int sweeps = more_sweeps; !ended() && sweeps_left() > 0; sweeps *= 2) {
       swept = finish(std::move(swept), sweeps);
     }
   }
 
-  /// Sweeps, then tries Newton from there. @return the iterate after the sweeps
+  /// Sweeps, then tries Newton from there.
+  /// @return the iterate after the sweeps
   Iterate finish(Iterate from, int sweeps) {
     Iterate swept = sweep(std::move(from), std::min(sweeps, sweeps_left()));
     if (!ended()) run_newton(swept, newton_systems);
@@ -111,7 +112,8 @@ class Driver {
   }
   int sweeps_left() const { return options_.most_sweeps - counted_.gauss_seidel; }
 
-  /// Sweeps from an iterate. @return the last iterate
+  /// Sweeps from an iterate.
+  /// @return the last iterate
   Iterate sweep(Iterate from, int sweeps) {
     constexpr int sweeps_per_report = 500;
     while (sweeps > 0 && !ended()) {

@@ -30,7 +30,7 @@ constexpr int halving_limit = 40;
 /// Newton's method and of roots, so that a path that only touches the limit does not slip.
 constexpr double limit_rounding = 1e-10;
 
-/// Rejects a law of the catalogue that these equations do not contain.
+/// Rejects laws that these equations do not contain.
 void validate_laws(const linkage::Linkage& model) {
   using namespace kernel::laws;
   const NormalLaw& normal = model.law.normal;
@@ -85,7 +85,7 @@ Equilibrium start(const linkage::Linkage& model, const Equations& equations, dou
   model.validate();
   validate_laws(model);
   const int side = loaded_side(model, contact_angle);
-  // Rigid bodies first; then the effect of the force (f, 0), from moments about A, on each spring.
+  // Rigid bodies first. Then each spring deflects by the force (f, 0), from moments about A.
   const JointPoint rigid = joint_point(model, 0.0, side, contact_angle);
   Equilibrium at;
   at.p = parameters(model, 0.0);
@@ -152,7 +152,7 @@ class PathFollower {
     sign_ = contact_angle < 0.0 ? -1.0 : 1.0;
     side_ = equations_.moment(now_.z) < 0.0 ? -1.0 : 1.0;
     if (compliance_ == TangentialCompliance::mindlin && slips_at_the_rim(model)) {
-      // Loaded at a constant ratio of both forces, like loaded_state(): no annulus has slipped.
+      // Loaded at a constant ratio of both forces, as in loaded_state(): no annulus has slipped.
       partial_.friction_coefficient = mu_;
       partial_.step(now_.p, now_.z[dep], -1.5 * now_.z[ft] / now_.stiffness(), partial_.memory);
       is_partial_ = true;
@@ -271,8 +271,8 @@ class PathFollower {
     return sign * at.z[ft] - mu_ * at.normal();
   }
 
-  /// Plastic slide along F_t per kelvin of temperature change [m/K]; < 0 in slip, because friction
-  /// resists.
+  /// Plastic slide along F_t per kelvin of temperature change [m/K]; negative in slip, because
+  /// friction opposes it.
   double slip_rate(const Equilibrium& at) const {
     const double ratio = sign_ * mu_;
     const Vector rate = equations_.slipping_rate(ratio, at);
@@ -288,8 +288,8 @@ class PathFollower {
     return sign_ * heading_ * slide;
   }
 
-  /// Last point in contact before `to`, by bisection. Without force its direction is undefined, so
-  /// no convergence counts as no contact.
+  /// Last point in contact before `to`, by bisection. Without force the contact direction is
+  /// undefined, so no convergence counts as no contact.
   Equilibrium last_contact(double to) const {
     Equilibrium last = now_;
     const auto parts = [&](double change) {

@@ -42,7 +42,7 @@ inline Eigen::Vector2d across(const Eigen::Vector2d& u) {
 }
 
 /// Hertz's force. A negative depth gives the mirrored tension, which only serves root finding: it
-/// shows that contact was lost.
+/// indicates loss of contact.
 inline double normal_force(const Parameters& p, double depth) {
   return p.hertz.value * depth * std::sqrt(std::abs(depth));
 }
@@ -81,7 +81,7 @@ class Slide {
            w.th2 * (z[th2] - from.z[th2]);
   }
 
-  /// Derivative of arc + rest by z.
+  /// Derivative of arc + rest with respect to z.
   void derivative(const Equilibrium& from, const Parameters& p, const Vector& z,
                   Matrix::RowXpr row) const {
     const Weights w = mean(from, p, z);
@@ -91,7 +91,7 @@ class Slide {
     row[dep] += 0.5 * (z[psi] - from.z[psi]) - 0.25 * (z[th4] - from.z[th4] + z[th2] - from.z[th2]);
   }
 
-  /// Slide per change of the state, exact.
+  /// Rate of the slide, exact.
   double rate(const Equilibrium& at, const Vector& z_rate) const {
     const Weights w = weights(at.p, at.z);
     return (r2_ - r1_ + w.psi) * z_rate[psi] + (r1_ + w.th4) * z_rate[th4] -
@@ -116,7 +116,7 @@ class Slide {
   double r1_, r2_;
 };
 
-/// Partial slip as one step of its law from a state to another: force against slide and depth.
+/// Partial slip in one step: force as a function of slide and depth.
 struct PartialSlip {
   double friction_coefficient = 0.0;
   kernel::PartialSlipMemory memory;  ///< at the start of the step
@@ -130,14 +130,14 @@ struct PartialSlip {
   }
 };
 
-/// The friction line: F_t = ratio F_N, no slip since `from`, or partial slip since then.
+/// Equation of friction: F_t = ratio F_N, no slip since `from`, or partial slip since then.
 struct FrictionLine {
   bool sticks = false;
   double ratio = 0.0;
   TangentialCompliance compliance = TangentialCompliance::rigid;
   const Equilibrium* from = nullptr;  ///< start of the step
-  double arc = 0.0;                   ///< Slide::arc() without slide
-  double past = 0.0;                  ///< Slide::rest() since then, up to `from` [m]
+  double arc = 0.0;                   ///< Slide::arc() at zero slide
+  double past = 0.0;                  ///< Slide::rest() from that state to `from` [m]
   const PartialSlip* partial = nullptr;
 };
 
@@ -161,7 +161,7 @@ class Equations {
  private:
   void evaluate(const FrictionLine& line, const Parameters& p, const Vector& z, Vector& residual,
                 Matrix& jacobian) const;
-  /// The friction line alone; the other entries of its row must be 0.
+  /// The equation of friction alone; the other entries of its row must be 0.
   void evaluate_friction(const FrictionLine& line, const Parameters& p, const Vector& z,
                          Vector& residual, Matrix& jacobian) const;
   static void evaluate_partial(const FrictionLine& line, const Parameters& p, const Vector& z,

@@ -15,7 +15,7 @@ using numerics::change_between;
 
 namespace {
 
-/// Follows the path; `arc` is the constant of the current roll.
+/// Follows the path. `arc` is the constant of the current rolling motion.
 class PathFollower {
  public:
   PathFollower(const linkage::Linkage& model, int side, double contact_angle)
@@ -50,7 +50,7 @@ class PathFollower {
     return rolling_arc(model_, joint_point(model_, temperature_change, side_, angle));
   }
 
-  /// φ in the cone with the arc of the roll; s grows with φ there.
+  /// φ in the cone at which the arc equals the rolling constant; the arc grows with φ.
   double rolling_angle(double temperature_change) const {
     if (arc_at(temperature_change, limit_) <= arc_) return limit_;
     if (arc_at(temperature_change, -limit_) >= arc_) return -limit_;
@@ -89,7 +89,7 @@ JointPoint joint_point(const linkage::Linkage& model, double temperature_change,
   const Vector2d d(c * std::cos(contact_angle), c * std::sin(contact_angle));
   const Vector2d w = Vector2d(model.frame_length, 0.0) - d;
   const double length = w.norm();
-  // Foot of B on w and its height: no arc cosine near its ends.
+  // Foot of B on w and its height; avoids an arc cosine near its ends.
   const double x = (length * length + (l1 - l2) * (l1 + l2)) / (2.0 * length);
   const double y = std::sqrt((l1 - x) * (l1 + x));
   const Vector2d along = w / length;
@@ -120,7 +120,7 @@ int loaded_side(const linkage::Linkage& model, double contact_angle) {
           "> 0 N m/rad, else statics leaves the position within the play undetermined");
   require(std::abs(contact_angle) <= std::atan(model.friction_coefficient()), "contact_angle",
           contact_angle, "[-atan(mu), atan(mu)] rad");
-  // The sign of M must be the assumed one; between the two the contact is unloaded.
+  // The sign of M must be the assumed one; if neither sign fits, the contact is unloaded.
   int side = 0;
   for (const int candidate : {-1, 1}) {
     if (candidate * joint_point(model, 0.0, candidate, contact_angle).spring_moment > 0.0) {

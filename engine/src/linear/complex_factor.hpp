@@ -19,10 +19,10 @@ class ComplexFactor {
   ComplexFactor(const ComplexFactor&) = delete;
   ComplexFactor& operator=(const ComplexFactor&) = delete;
 
-  /// Orders a square, compressed pattern. False if every order leaves a zero diagonal.
+  /// Orders a square, compressed pattern. False if the diagonal has a zero in every ordering.
   bool analyze(const Eigen::SparseMatrix<double>& pattern);
-  /// Factors a matrix with these entries of the pattern, in order. The pivots are those of the
-  /// first values. False if one of them is zero.
+  /// Factors a matrix with these entries of the pattern, in order. The pivot positions are those of
+  /// the first factorization. False if a pivot is zero.
   bool factorize(const std::complex<double>* values);
   /// Solves in place.
   void solve(Eigen::VectorXcd& x) const;

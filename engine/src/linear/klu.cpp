@@ -21,12 +21,12 @@ namespace {
 using numerics::raise;
 using Matrix = Eigen::Ref<const Eigen::SparseMatrix<double>>;
 
-/// Entries of L over those that AMD foresaw, from which on COLAMD is tried as well.
+/// Fill of L over the fill that AMD predicted, above which COLAMD is tried as well.
 constexpr double exceeded_fill = 2.0;
 /// Columns that a thread takes at once.
 constexpr std::size_t columns_at_once = 20000;
 
-/// Whether a permutation is an odd one: a cycle of n takes n - 1 exchanges.
+/// Whether a permutation is odd: a cycle of length n is n - 1 transpositions.
 bool odd(const int* permutation, int size) {
   std::vector<bool> seen(static_cast<std::size_t>(size), false);
   bool is_odd = false;
@@ -44,15 +44,15 @@ bool odd(const int* permutation, int size) {
 struct SparseFactor::Factors {
   Factors() {
     klu_defaults(&common);
-    // Where factors begin, over entries of the matrix: KLU reserves ten times as much by default,
-    // gigabytes of a large truss, and lets factors grow where they need more.
+    // Initial size of the factors over the entries of the matrix. The default of KLU is ten times
+    // as much, gigabytes for a large truss. KLU enlarges the factors on demand.
     common.initmem = 1.0;
   }
   ~Factors() { klu_free_numeric(&numeric, &common); }
   Factors(const Factors&) = delete;
   Factors& operator=(const Factors&) = delete;
 
-  /// New factors, their pivots chosen anew.
+  /// Computes factors with new pivots.
   bool choose_pivots(int* columns, int* rows, double* values) {
     halves.end();
     klu_free_numeric(&numeric, &common);
@@ -63,11 +63,11 @@ struct SparseFactor::Factors {
     return true;
   }
 
-  /// New factors of a small matrix in the order of COLAMD, if they have fewer entries than those at
-  /// hand: where rows exchanged for pivots fill these far more than AMD foresaw.
+  /// Computes factors of a small matrix in the order of COLAMD, and keeps them if they have fewer
+  /// entries. AMD's order fills far more than predicted if rows are exchanged for pivots.
   bool choose_order(double* values) {
     const std::shared_ptr<const Order> first = order;
-    const double foreseen = first->symbolic->lnz;  // negative: by COLAMD, which foresees none
+    const double foreseen = first->symbolic->lnz;  // negative for COLAMD, which predicts no fill
     if (foreseen < 0.0 || numeric->lnz <= exceeded_fill * foreseen || settled == first) return true;
     const int filled = numeric->lnz + numeric->unz;
     order = std::make_shared<const Order>(size, *first->pattern, Ordering::colamd, common);
@@ -79,8 +79,8 @@ struct SparseFactor::Factors {
     return choose_pivots(order->columns(), order->rows(), values);
   }
 
-  /// Whether every pivot is more than rounding of its column, within its diagonal block.
-  /// @param growth how far rounding may have been multiplied before it was taken from a pivot
+  /// Whether every pivot exceeds the rounding of its column, within its diagonal block.
+  /// @param growth possible growth of rounding errors before the pivot
   bool has_pivots(const Matrix& matrix, double growth) const {
     const double least = singular_pivot * growth;
     const double* pivots = static_cast<const double*>(numeric->Udiag);
@@ -92,7 +92,7 @@ struct SparseFactor::Factors {
       each_in_parallel(static_cast<std::size_t>(order->symbolic->R[block + 1] - first),
                        columns_at_once, [&](std::size_t in_block) {
                          const int k = first + static_cast<int>(in_block);
-                         // Beyond what it may be of a column whose entries are at most 1.
+                         // Sufficient if the entries of the column are at most 1.
                          if (std::abs(pivots[k]) > least) return;
                          double largest = 0.0;
                          for (Matrix::InnerIterator it(matrix, order->symbolic->Q[k]); it; ++it) {
@@ -106,9 +106,9 @@ struct SparseFactor::Factors {
     return has;
   }
 
-  /// Factors a matrix of the same pattern with the pivots that the last one had. Only where rows
-  /// are multiplied by no more than `most`, and pivots are more than what that makes of rounding:
-  /// new ones tell whether the matrix is singular.
+  /// Factors a matrix of the same pattern with the last pivots. False if rows are multiplied by
+  /// more than `most`, or if a pivot does not exceed the rounding amplified by that factor. New
+  /// pivots then show whether the matrix is singular.
   bool keeps_pivots(int* columns, int* rows, double* values, const Matrix& matrix, double most) {
     if (numeric == nullptr) return false;
     if (halves.are_halved()) {
@@ -118,12 +118,12 @@ struct SparseFactor::Factors {
       if (made == 0 || common.status != KLU_OK) return false;
     }
     const double growth = std::max(1.0, largest_of_lower());
-    // What one pivot has multiplied another one may multiply again.
+    // Growth in two successive pivots multiplies.
     return growth <= most && has_pivots(matrix, growth * growth);
   }
 
-  /// The largest entry of L; no number if one is none. They are read where KLU has them, of every
-  /// column first the rows, then the entries: klu_extract() copies all of L.
+  /// The largest entry of L; NaN if any entry is NaN. Reads KLU's storage, in which the rows of a
+  /// column precede its entries, because klu_extract() copies all of L.
   double largest_of_lower() const {
     double largest = 0.0;
     for (int block = 0; block < order->symbolic->nblocks; ++block) {
@@ -148,7 +148,7 @@ struct SparseFactor::Factors {
     return largest;
   }
 
-  /// Where a matrix has entries that are not zero, by columns.
+  /// Positions of the nonzero entries of a matrix, by columns.
   struct Pattern {
     std::vector<int> columns, rows;
 
@@ -161,8 +161,8 @@ struct SparseFactor::Factors {
       }
     }
 
-    /// Puts the entries of a matrix in their places. False: one has none, or there are more than
-    /// twice as many places as entries: a new order pays.
+    /// Copies the entries of a matrix to their positions. False if an entry has no position, or if
+    /// less than half of the positions are used, so that a new order pays off.
     bool take(const Matrix& matrix, std::vector<double>& values) const {
       values.assign(rows.size(), 0.0);
       std::size_t used = 0;
@@ -181,17 +181,17 @@ struct SparseFactor::Factors {
     }
   };
 
-  /// AMD orders the pattern of the matrix and its transpose and fills least if pivots stay on the
-  /// diagonal; COLAMD bounds the fill whatever rows are exchanged.
+  /// AMD orders the pattern of the matrix plus its transpose, with the least fill if pivots stay on
+  /// the diagonal. COLAMD bounds the fill for any row exchanges.
   enum class Ordering : unsigned char { amd, colamd };
 
-  /// Of a pattern. KLU's C interface allocates and frees what it makes itself.
+  /// Order of a pattern. KLU's C interface allocates and frees its own objects.
   struct Order {
     Order(int size, Pattern of, Ordering ordering, klu_common common) : pattern(std::move(of)) {
       common.ordering = ordering == Ordering::amd ? 0 : 1;
       symbolic = klu_analyze(size, columns(), rows(), &common);
     }
-    /// Of a large matrix, whose entries are all ordered and stay where they are.
+    /// Order of a large matrix, whose entries are used in place.
     Order(int size, int* columns, int* rows, klu_common common) {
       common.ordering = 3;
       common.user_order = order_in_halves;
@@ -206,23 +206,23 @@ struct SparseFactor::Factors {
     Order(const Order&) = delete;
     Order& operator=(const Order&) = delete;
 
-    // See Arrays.
+    // KLU takes no const pointers, see Arrays.
     int* columns() const { return const_cast<int*>(pattern->columns.data()); }
     int* rows() const { return const_cast<int*>(pattern->rows.data()); }
 
-    std::optional<Pattern> pattern;  ///< Nothing: that of the matrix.
+    std::optional<Pattern> pattern;  ///< Empty: the pattern of the matrix itself.
     HalvedOrder halves;
     klu_symbolic* symbolic = nullptr;
   };
 
-  /// A matrix as KLU takes it. It has no const, but writes to none of it.
+  /// Arguments of KLU for a matrix. KLU takes no const pointers, but does not write to them.
   struct Arrays {
     int* columns;
     int* rows;
     double* values;
   };
 
-  /// A matrix in an order; nothing: it has none.
+  /// The matrix in an order; empty if it has none.
   std::optional<Arrays> ordered(const Matrix& matrix) {
     if (size >= HalvedOrder::least_columns) {
       const Arrays all{const_cast<int*>(matrix.outerIndexPtr()),
@@ -248,12 +248,12 @@ struct SparseFactor::Factors {
 
   klu_common common{};
   std::shared_ptr<const Order> order;    ///< Shared and only read.
-  std::shared_ptr<const Order> settled;  ///< Which COLAMD did not better.
-  std::vector<double> entries;           ///< Of a small matrix, in the places of its pattern.
+  std::shared_ptr<const Order> settled;  ///< Order that COLAMD did not improve.
+  std::vector<double> entries;  ///< Entries of a small matrix, in the positions of its pattern.
   klu_numeric* numeric = nullptr;
   HalvedFactors halves;
   int size = 0;
-  std::optional<bool> odd_permutation;  ///< Of rows and columns together, where it was asked for.
+  std::optional<bool> odd_permutation;  ///< Parity of rows and columns together, once computed.
 };
 
 SparseFactor::SparseFactor() : factors_(std::make_unique<Factors>()) {}
@@ -262,7 +262,7 @@ SparseFactor::~SparseFactor() = default;
 bool SparseFactor::factorize(const Matrix& matrix, double most_growth) {
   Factors& f = *factors_;
   f.size = static_cast<int>(matrix.rows());
-  if (f.size == 0) return true;  // KLU takes no empty matrix
+  if (f.size == 0) return true;  // KLU accepts no empty matrix
   const std::optional<Factors::Arrays> of = f.ordered(matrix);
   if (!of) return false;
   if (f.keeps_pivots(of->columns, of->rows, of->values, matrix, most_growth)) return true;

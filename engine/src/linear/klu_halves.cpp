@@ -17,8 +17,8 @@ namespace statejump::linear {
 
 namespace {
 
-/// One column per this many may be in the separator, whose columns are long and wait for both
-/// halves.
+/// Largest separator: one column per this many. Its columns are long, and their factorization waits
+/// for both halves.
 constexpr int columns_of_one = 1000;
 
 std::size_t index(int i) {
@@ -27,7 +27,7 @@ std::size_t index(int i) {
 
 enum ColumnSet : unsigned char { first_half, second_half, separator };
 
-/// Part of every column: columns of the second half that share a row with the first form the
+/// Set of every column. Columns of the second half that share a row with the first half form the
 /// separator.
 std::vector<ColumnSet> cut(int size, const int* columns, const int* rows) {
   const numerics::Lists rows_of({columns, columns + size + 1}, {rows, rows + columns[size]});

@@ -23,8 +23,8 @@ struct HalvedOrder {
 };
 
 /// Orders a block for KLU (`user_order`). A large block with a narrow separator is divided into two
-/// halves, each ordered by COLAMD. @param common its `user_data` is a HalvedOrder that receives the
-/// result
+/// halves, each ordered by COLAMD.
+/// @param common its `user_data` is a HalvedOrder that receives the result
 int order_in_halves(int size, int* columns, int* rows, int* order, klu_common* common);
 
 /// A column of L or U in KLU's storage: first the rows, then the entries.
@@ -47,8 +47,8 @@ struct FactorColumn {
 /// klu_refactor(), bit for bit.
 class HalvedFactors {
  public:
-  /// Examines factors of klu_factor(). If pivots leave their half, or there are no halves, KLU does
-  /// all the work.
+  /// Examines factors of klu_factor(). If pivots leave their half, or the order has no halves, KLU
+  /// continues alone.
   void begin(klu_numeric& numeric, const klu_symbolic& symbolic, const HalvedOrder& order);
   void end() { order_ = {}; }
   bool are_halved() const { return order_.is_cut(); }

@@ -7,7 +7,7 @@
 
 namespace statejump::linear {
 
-/// Compressed sparse matrix that is kept elsewhere.
+/// View of a compressed sparse matrix.
 using SparseView = Eigen::Map<const Eigen::SparseMatrix<double>>;
 
 /// LU factors of a sparse square matrix whose pattern never changes. One source file per library:
@@ -30,8 +30,7 @@ class SparseFactor {
   /// last pivots are kept, which takes a fraction of the time of new ones
   bool factorize(const Eigen::Ref<const Eigen::SparseMatrix<double>>& matrix,
                  double most_growth = stable_growth);
-  /// Takes over the order of another factorisation with the same pattern, if that order can be
-  /// shared.
+  /// Reuses the order of another factorization with the same pattern, if that order can be shared.
   void order_like(const SparseFactor& other);
   /// Frees the factors and keeps the order: the next factorisation takes no longer than one with
   /// new pivots.

@@ -85,7 +85,7 @@ struct Trajectory {
   }
 };
 
-/// The state ceased to be finite.
+/// Thrown when the state is no longer finite.
 struct NotFinite : std::domain_error {
   NotFinite() : std::domain_error("the state is not finite") {}
 };
@@ -111,7 +111,7 @@ struct ContactPoint {
   double nx, ny, depth, approach_speed;
 };
 
-/// |d|² − c², > 0 in contact; no square root.
+/// d|² − c², computed without a square root; > 0 in contact.
 template <class Terms>
 double overlap(const Constants& k, const typename Terms::Vector& y, double temperature_change) {
   const double c = radii_at(k, temperature_change).clearance();
@@ -198,8 +198,9 @@ double sliding_speed(const Constants& k, const SpatialContact<Terms>& spatial,
   return -at.ny * v.x() + at.nx * v.y();
 }
 
-/// Friction along (−n_y, n_x), first component. @param motion slide of the step [m] for a law with
-/// memory (dissipation in J), else speed [m/s] (dissipation in W)
+/// Friction along (−n_y, n_x), first component.
+/// @param motion slide of the step [m] for a law with memory (dissipation in J), else speed [m/s]
+/// (dissipation in W)
 inline kernel::laws::FrictionResponse friction(const Constants& k, const NormalForce& normal,
                                                double motion, kernel::ContactHistory& history) {
   return kernel::laws::evaluate(
@@ -243,7 +244,7 @@ struct ContactEffect {
   double couple_ab = 0.0, couple_bc = 0.0;  ///< [N m]
 };
 
-/// Separate from rates(), which is short while the joint is open. Adds to the energy rates.
+/// Separate from rates(), so that rates() stays short for an open joint. Adds to the energy rates.
 template <class Terms>
 [[gnu::noinline]] ContactEffect contact_effect(const Constants& k, const typename Terms::Vector& y,
                                                const Temperature& heat, const State& memory,

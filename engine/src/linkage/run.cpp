@@ -131,7 +131,7 @@ class FixedStepRun {
 
   const Linkage& model_;
   Constants k_;
-  State memory_;  // positions and velocities only as of the last sample
+  State memory_;  // positions and velocities are those of the last sample
   typename Terms::Vector y_;
   Run run_;
   double time_ = 0.0;

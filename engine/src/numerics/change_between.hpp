@@ -9,8 +9,8 @@
 
 namespace statejump::numerics {
 
-/// Where a condition changes: the last point found where it does not hold, the first where it
-/// holds.
+/// Interval in which a condition changes: last point found where it is false, first where it is
+/// true.
 struct Change {
   double before;
   double after;
@@ -19,8 +19,8 @@ struct Change {
 /// Sixty halvings of an interval: below the rounding of a quantity measured over it.
 constexpr double fine = 0x1p-60;
 
-/// Bisects between `before`, where a condition does not hold, and `after`, where it holds. Ends
-/// when both are neighbouring numbers or at most `tolerance` apart. `after` may be smaller than
+/// Bisects between `before`, where a condition is false, and `after`, where it is true. Ends when
+/// both are neighbouring numbers or at most `tolerance` apart. `after` may be smaller than
 /// `before`. Uses Boost.Math's bisection with at most 200 halvings; an interval about zero needs
 /// more only for roots below 1e-60 of it.
 /// @param holds condition(x); not evaluated at the ends

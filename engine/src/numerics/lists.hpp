@@ -45,7 +45,8 @@ class Lists {
 };
 
 /// Items in breadth-first order. When a search ends, it restarts at the first item not yet visited.
-/// @param groups_of the groups of every item, @param items_of the items of every group
+/// @param groups_of the groups of every item
+/// @param items_of the items of every group
 inline std::vector<int> breadth_first(const Lists& groups_of, const Lists& items_of) {
   std::vector<int> order;
   order.reserve(groups_of.size());

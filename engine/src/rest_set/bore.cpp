@@ -19,7 +19,7 @@ Intervals one_interval(const Interval& i) {
   return result;
 }
 
-// Cylinder in bore: the can.
+// Cylinder in bore: the configuration surface is a can.
 
 struct CanSet {
   Intervals band = circle_set(), low_rim = circle_set(), high_rim = circle_set();
@@ -152,7 +152,7 @@ RestSet can(const CanSet& set, double c, double b) {
       if ((high ? set.high_disc : set.low_disc) && rim.full()) {
         part.area += pi * c * c;
       } else if (!rim.list().empty()) {
-        // Both are found to rounding; their overlap must not leave a length.
+        // Both are accurate to rounding, which must not leave a length.
         const double beyond = width(rim) - band;
         if (beyond > 1e-12) part.length += c * beyond;
       }

@@ -269,7 +269,8 @@ std::map<GridEdge, std::vector<GridEdge>> CurveGrid::neighbours() const {
       }
       if (crossed.size() == 4 &&
           (surface.value(0.5 * (node(i, j) + node(i + 1, j + 1))) < 0.0) == corner[0]) {
-        // The middle belongs to corners 0 and 2: separate corners 1 and 3, as listed; else rotate.
+        // The middle belongs to corners 0 and 2, so corners 1 and 3 are separated, as listed.
+        // Otherwise rotate.
       } else if (crossed.size() == 4) {
         crossed = {3, 0, 1, 2};
       }
@@ -400,7 +401,7 @@ struct Profile {
   double refined_contact(const Vector2d& centre, double contact) const;
 };
 
-/// The wall point that limits the position most, refined by golden section.
+/// The wall point that limits the position most, refined by golden section search.
 /// @param least in: first_touch(phi, phi); out: smallest distance on the grid of samples
 double Profile::nearest_contact(double phi, double& least) const {
   double contact = phi;
@@ -433,9 +434,9 @@ double Profile::nearest_contact(double phi, double& least) const {
   return 0.5 * (low + high);
 }
 
-/// A minimum is known only to the square root of rounding, which is too coarse for the normal. The
-/// direction from wall to centre is the wall's normal, so the secant method on the tangency
-/// condition refines it.
+/// The minimum is accurate only to the square root of rounding, too coarse for the normal. The
+/// direction from wall to centre is normal to the wall; the secant method solves this tangency
+/// condition.
 double Profile::refined_contact(const Vector2d& centre, double contact) const {
   const auto tangency = [&](double theta) {
     const double h = 1e-4;

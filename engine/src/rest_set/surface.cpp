@@ -261,7 +261,7 @@ class Cutter {
       const Vector3d b = place(piece.triangle, Plane(0, 1)) - p0;
       to.part.area += area_of(piece.polygon) * a.cross(b).norm();
       const auto consider = [&](const Plane& p) {
-        // For several forces: the worst of those under which it rests.
+        // With several forces: the worst of the forces under which the component rests.
         double worst = 0.0;
         for (std::size_t k = 0; k < cones_.size(); ++k) {
           if (!piece.mask[k]) continue;

@@ -188,7 +188,7 @@ class PathFollower {
     enter(EventKind::play_closed, stage, BlockMotion::stick, 0);
   }
 
-  /// Touches a soft stop, or separates from it, and moves on.
+  /// Moves the block to the edge of a soft stop and changes its region.
   void pass_soft_stop(int side) {
     open_.end_displacement = side * model_.clearance(side);
     enter(open_.region == 0 ? EventKind::stop_reached : EventKind::stop_left, open_.stage,
@@ -217,7 +217,7 @@ class PathFollower {
     return last_slide_ * force >= 0.0 ? Stage::S3 : Stage::S4;
   }
 
-  /// Whether ΔT is before the end of the branch or already passed. False for NaN: no such event.
+  /// Whether ΔT is before the end of the branch, or already passed. False for NaN: no such event.
   bool is_due(double temperature_change) const {
     return heating_ * (branch_->end - temperature_change) > 0.0;
   }
@@ -441,8 +441,8 @@ PathPoint point_at(const SpringSlider& model, const thermal::Program& program,
       std::minmax(segment.start_temperature_change, segment.end_temperature_change);
   const double change = std::clamp(program.temperature_change(time), lowest, highest);
   const double x = displacement(model, segment, change);
-  // During sliding the block carries exactly the friction limit; the difference of x and x_T would
-  // not give that.
+  // During sliding the force on the block is exactly the friction limit; the difference of x and
+  // x_T is less accurate.
   if (segment.moves()) {
     const SpringSlider pressed = in_region(model, segment.region);
     return {change, x,

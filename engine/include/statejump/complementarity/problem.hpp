@@ -39,7 +39,8 @@ struct Problem {
 ///        are not finite, mu < 0
 void validate(const Problem& problem);
 
-/// u = W r + q. @throws kernel::OutOfRange if `reactions` has another size than q
+/// u = W r + q.
+/// @throws kernel::OutOfRange if `reactions` has another size than q
 Eigen::VectorXd velocities(const Problem& problem, const Eigen::VectorXd& reactions);
 
 /// Error of reactions as a solution; 0 for an exact one.
@@ -56,8 +57,8 @@ struct Merit {
   double largest() const { return natural_map > scaled ? natural_map : scaled; }
 };
 
-/// Merit of reactions. @throws kernel::OutOfRange as validate(), and if `reactions` has another
-/// size than q
+/// Merit of reactions.
+/// @throws kernel::OutOfRange as validate(), and if `reactions` has another size than q
 Merit merit(const Problem& problem, const Eigen::VectorXd& reactions);
 
 }  // namespace statejump::complementarity

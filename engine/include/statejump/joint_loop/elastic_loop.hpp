@@ -80,31 +80,34 @@ linkage::State loaded_state(const linkage::Linkage& model, double contact_angle 
 ///     F·u4 = −k_T2 e2,     (r1 F_t − M)/L2 − F·u4' = 0          tip of BC
 ///     AC + L2 u4 − L1 u2 = (R2 − R1 + δ) n                      closure
 ///
-/// and one line for friction. In slip it is F_t = ±μ F_N. Else the slide of the step ∫ (R2 − R1 +
-/// δ) dψ + r1 dθ4 − r2 dθ2 equals that of the spring, or 0. Its integrand is evaluated at the mean
-/// of the step's ends, so one increment is of third order and the path of second order. In slip the
-/// state depends only on ΔT. Elongation and depth as unknowns avoid the rounding of positions times
-/// E A, 1e-16.
+/// and one row for friction. In slip it is F_t = ±μ F_N. Otherwise the slide of the step ∫ (R2 − R1
+/// + δ) dψ + r1 dθ4 − r2 dθ2 equals the deflection of the spring, or 0. Its integrand is the mean
+/// of both ends of the step, so the error of an increment is of third order and that of the path of
+/// second order. In slip the state depends only on ΔT. Elongation and depth as unknowns avoid a
+/// rounding of 1e-16 E A, which differences of positions would have.
 ///
 /// Newton's method uses the analytic Jacobian. It has converged when force rows are below 1e-12 of
 /// the joint force (plus the rounding of K_M θ/L) and rows in metres below 4 ε (a + l1 + l2). One
 /// further iteration removes rounding. A step without convergence is halved.
 ///
-/// Partial slip is one step of kernel::partial_slip_step() per increment, from a contact loaded at
-/// a constant ratio of forces, with difference quotients as derivatives. The law then decides stick
-/// and slip at the end of an increment; events are samples. The path is of second order.
+/// Partial slip is one step of kernel::partial_slip_step() per increment, with difference quotients
+/// as derivatives. It starts from a contact loaded at a constant ratio of forces. The law then
+/// decides stick and slip at the end of an increment, so events are samples. The path is
+/// second-order accurate.
 ///
-/// Else slip starts when |F_t| reaches μ F_N. It ends when the slip rate, from the derivative of
-/// the equations by ΔT, changes sign. Both are roots within a step. With μ = 0 the contact always
-/// slips. The path ends with the contact force, at the last point where F_N exceeds 4e-13 K_M/l:
-/// for smaller forces rounding determines the direction.
+/// Without partial slip, slip starts when |F_t| reaches μ F_N. It ends when the slip rate, from the
+/// derivative of the equations with respect to ΔT, changes sign. Both events are roots within a
+/// step. With μ = 0 the contact always slips. The path ends with the contact force, at the last
+/// point where F_N exceeds 4e-13 K_M/l: for smaller forces rounding determines the direction.
+///
 /// Of other friction laws only μ is used; damping and masses have no influence. Radii may expand.
-/// Limits: those of linkage::Linkage and of Hertz's contact. Throws std::invalid_argument for a
-/// model, program or option out of range, a normal law other than Hertz's, a tangential velocity
-/// other than `material`, radii without clearance somewhere in the program, and |contact_angle| >
-/// atan μ. Also for a spring that is absent or unloaded at the start, because the position is then
-/// undetermined. Throws std::runtime_error with temperature and residual if equilibrium is not
-/// found.
+/// Limits: those of linkage::Linkage and of Hertz's contact.
+///
+/// Throws std::invalid_argument for a model, program or option out of range, a normal law other
+/// than Hertz's, a tangential velocity other than `material`, radii without clearance somewhere in
+/// the program, and |contact_angle| > atan μ. Also for a spring that is absent or unloaded at the
+/// start, because the position is then undetermined. Throws std::runtime_error with temperature and
+/// residual if equilibrium is not found.
 ElasticLoop elastic_loop(const linkage::Linkage& model, const thermal::Program& program,
                          const ElasticLoopOptions& options = {}, double contact_angle = 0.0);
 

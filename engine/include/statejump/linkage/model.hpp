@@ -15,10 +15,10 @@ namespace statejump::linkage {
 struct ThermalLink {
   double stress_free_length = 0.0;  ///< l0 at ΔT = 0 [m], > 0
   double mass = 0.0;                ///< m of the whole link [kg], > 0
-  double young_modulus = 0.0;       ///< E [Pa], > 0; also of the joint's half that it carries
+  double young_modulus = 0.0;       ///< E [Pa], > 0; also of its half of the joint
   double cross_section_area = 0.0;  ///< A [m²], > 0
   double thermal_expansion = 0.0;   ///< α [1/K], any finite value
-  double poisson_ratio = 0.3;       ///< ν [-], in (-1, 0.5]; of the joint's half that it carries
+  double poisson_ratio = 0.3;       ///< ν [-], in (-1, 0.5]; also of its half of the joint
 };
 
 /// One rib of the umbrella antenna, deployed: the paper's section 4 (Figs 10 and 11).
@@ -42,8 +42,8 @@ struct ThermalLink {
 /// validate() once.
 struct Linkage {
   double frame_length = 0.0;               ///< a = |AC| [m], > 0; the frame does not expand
-  ThermalLink link_ab;                     ///< carries the bearing
-  ThermalLink link_bc;                     ///< carries the journal
+  ThermalLink link_ab;                     ///< has the bearing
+  ThermalLink link_bc;                     ///< has the journal
   double journal_radius = 0.0;             ///< R1 at ΔT = 0 [m], > 0
   double bearing_radius = 0.0;             ///< R2 at ΔT = 0 [m], > R1
   double journal_thermal_expansion = 0.0;  ///< [1/K], any finite value; 0: R1 constant

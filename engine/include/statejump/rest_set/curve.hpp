@@ -35,7 +35,8 @@ using PlaneGradient = std::function<Eigen::Vector2d(const Eigen::Vector2d&)>;
 /// Curves Γ = 0 inside a box by marching squares. Roots on grid lines are found by bisection,
 /// points between by Newton's method along the gradient. N = −∇Γ/|∇Γ|. Features smaller than a cell
 /// are missed.
-/// @param low,high corners of the box [m]  @param cells along its longer side, 4 to 4000
+/// @param low,high corners of the box [m]
+/// @param cells along its longer side, 4 to 4000
 /// Throws std::invalid_argument for an invalid box, a value of Γ that is not finite, a vanishing
 /// gradient on the curve, or no curve.
 std::vector<Curve> implicit_curves(const PlaneFunction& gamma, const PlaneGradient& gradient,
@@ -44,7 +45,9 @@ std::vector<Curve> implicit_curves(const PlaneFunction& gamma, const PlaneGradie
 
 /// Curve r(θ) = c (1 + ε cos nθ) as configuration curve, free inside. For n² ε + ε > 1 it is not
 /// convex: several positions share a normal, and rest sets have several components.
-/// @param clearance c [m], > 0  @param amplitude ε, |ε| < 1  @param lobes n, 1 to 1000
+/// @param clearance c [m], > 0
+/// @param amplitude ε, |ε| < 1
+/// @param lobes n, 1 to 1000
 /// @param samples nodes, at least 16 n
 Curve lobed_curve(double clearance, double amplitude, int lobes, int samples = 720);
 

@@ -33,10 +33,10 @@ struct RestComponent {
 ///
 ///    angle(−F, N(x)) ≤ atan μ.
 ///
-/// This is balance of forces: at μ = 0 it contains crests of S as well as troughs. Moments are
-/// assumed to be carried elsewhere.
+/// This is the balance of forces: at μ = 0 the set contains crests of S as well as troughs. Moments
+/// are assumed to be supported elsewhere.
 struct RestSet {
-  std::vector<RestComponent> parts;  ///< none: it rests nowhere
+  std::vector<RestComponent> parts;  ///< empty: the component rests nowhere
   double area = 0.0;                 ///< sum over the parts [m²]
   double length = 0.0;               ///< sum over the parts [m]
   /// Largest distance between two positions [m], also of different components. No state jump of
@@ -94,7 +94,8 @@ RestStudy rest_in_socket(double clearance, const std::vector<Eigen::Vector3d>& f
 /// is in the sum if F·y >= 0 for all of these, which is decided at the corners and the two nearest
 /// points of that lens. Bisection finds the arc. For μ >= 1 wall and shoulder can clamp the
 /// cylinder under any force, and the whole rim is included.
-/// @param clearance c [m], > 0  @param axial_play b: from the middle to either shoulder [m], > 0
+/// @param clearance c [m], > 0
+/// @param axial_play b: from the middle to either shoulder [m], > 0
 RestStudy rest_in_bore(double clearance, double axial_play,
                        const std::vector<Eigen::Vector3d>& forces, double mu);
 

@@ -47,7 +47,8 @@ Mesh welded(const Mesh& mesh, double tolerance);
 
 /// Mesh of Γ(x, y, z) = 0 in a box, Γ < 0 where the centre is free. Marching tetrahedra, roots on
 /// edges by bisection, normals −∇Γ. Triangles are flat: areas have an error of second order.
-/// @param low,high corners of the box [m]  @param cells along its longest side, 2 to 400
+/// @param low,high corners of the box [m]
+/// @param cells along its longest side, 2 to 400
 Mesh implicit_surface(const SpaceFunction& gamma, const SpaceGradient& gradient,
                       const Eigen::Vector3d& low, const Eigen::Vector3d& high, int cells = 40);
 

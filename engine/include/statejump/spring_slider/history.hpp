@@ -18,18 +18,18 @@ struct History {
   Eigen::VectorXd friction_force;      ///< Force of the ground on the block [N]
   Eigen::VectorXd stop_force;          ///< Force of a stop on the block [N]; see SpringSlider
   Eigen::VectorXd elastic_energy;      ///< Energy F²/(2 k_T) in the link [J]
-  Eigen::VectorXd preload_energy;  ///< k_p x²/2 + P x [J], and what makes all energy 0 at the start
+  Eigen::VectorXd
+      preload_energy;  ///< k_p x²/2 + P x [J], plus a constant; all energy is 0 at the start
   Eigen::VectorXd friction_dissipation;  ///< Heat of friction since the start, ∫ f |dx| [J]
   Eigen::VectorXd thermal_work;          ///< Work of the temperature since the start [J]
   std::vector<Stage> stage;
 };
 
 /// The path at `times` [s], in any order; after its end the last state holds. Every entry is
-/// evaluated from the path's closed forms, so it does not depend on the other times. At an event
-/// the stage is the one after it, at the end of the program the last one. Throws
-/// std::invalid_argument for a time that is negative, not finite or in an omitted cycle. The
-/// energies satisfy thermal_work = elastic_energy + preload_energy + friction_dissipation within
-/// rounding; see thermal_work() for the reason.
+/// evaluated from closed forms, so it does not depend on the other times. At an event the stage is
+/// the one after it, at the end of the program the last one. The energies satisfy thermal_work =
+/// elastic_energy + preload_energy + friction_dissipation to rounding; see thermal_work(). Throws
+/// std::invalid_argument for a time that is negative, not finite or in an omitted cycle.
 History sample(const Path& path, const Eigen::Ref<const Eigen::VectorXd>& times);
 
 }  // namespace statejump::spring_slider

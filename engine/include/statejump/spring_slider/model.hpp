@@ -31,9 +31,9 @@ namespace statejump::spring_slider {
 /// A cycle that ends sliding in sense s leaves the block with D = s f: the state jump is
 /// (D0 − s f)/(k + k_p), unless P presses the block on a stop at the start.
 ///
-/// Against a rigid stop, equilibrium leaves R and W undetermined within −f <= R <= f. The model
-/// assumes the smallest stop force, |W| = max(0, |D| − f): friction keeps its value from the
-/// arrival of the block, and the stop carries the remainder.
+/// At a rigid stop, equilibrium leaves R and W undetermined within −f <= R <= f. The model assumes
+/// the smallest stop force, |W| = max(0, |D| − f): friction keeps its value from the arrival of the
+/// block, and the stop supports the remainder.
 ///
 /// A stop of stiffness k_s is compliant, W = −k_s (x − s c) beyond the clearance of side s. There
 /// the block slides and sticks as between the stops, with an additional spring:

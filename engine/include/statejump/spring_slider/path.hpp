@@ -35,8 +35,8 @@ enum class BlockMotion : unsigned char { stick, slide, stop, play };
 enum class EventKind : unsigned char {
   first_slip,     ///< The block starts to slide for the first time.
   slip,           ///< It starts to slide again, away from the stops.
-  stop_reached,   ///< A stop begins to carry force: the block arrives, or the stop is loaded again.
-  stop_unloaded,  ///< The stop's force falls to zero; friction keeps the block in place.
+  stop_reached,   ///< A stop force starts to act: the block arrives, or the stop is loaded again.
+  stop_unloaded,  ///< The stop force falls to zero; friction holds the block in place.
   stop_left,      ///< The block starts to slide away from a stop, or separates from a soft one.
   reversal,       ///< The temperature rate changes sign while the block slides; the block sticks.
   force_sign_change,  ///< The axial force passes zero during a stick after a slide.
