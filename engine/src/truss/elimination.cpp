@@ -18,7 +18,8 @@ constexpr double equal_fraction = 1.0 - rounding_fraction;
 
 using Sum = std::map<int, double>;
 
-/// Adds a value to a factor. @returns whether the displacement is still in the sum
+/// Adds a value to a factor.
+/// @returns whether the displacement is still in the sum
 bool add(Sum& sum, int place, double value) {
   const auto [at, is_new] = sum.try_emplace(place, value);
   if (is_new) return true;
@@ -109,8 +110,8 @@ class Eliminating {
 
   const Model* model_;
   Elimination made_;
-  std::map<int, std::set<int>>
-      used_in_;  // dependent displacements by the displacements in their sums
+  // dependent displacements by the displacements in their sums
+  std::map<int, std::set<int>> used_in_;
 };
 
 }  // namespace

@@ -20,9 +20,9 @@ namespace {
 constexpr double free_share = 1e-13;
 constexpr int most_modes = 6;
 
-/// Stiffness of joints that the stability check holds, relative to the stiffest element. Their
-/// compliance is a hundredth of that of such an element, and rounding stays below the fraction of
-/// free modes.
+/// Penalty stiffness of closed joints in the stability check, relative to the stiffest element.
+/// Their compliance is a hundredth of that of this element, and rounding stays below the fraction
+/// of free modes.
 constexpr double stiff_joint = 100.0;
 
 /// The nodes that move most in a mode.
@@ -72,8 +72,8 @@ Modes lowest_modes(const Eigen::SparseMatrix<double>& matrix, const Factors& fac
   return {found.eigenvalues(), block * found.eigenvectors()};
 }
 
-/// The stiffness of the truss with held joints, see penalty_stiffness(), plus a fraction of that of
-/// its stiffest element on the diagonal.
+/// The stiffness of the truss with penalty springs in its joints, see penalty_stiffness(), plus a
+/// fraction of that of its stiffest element on the diagonal.
 Eigen::SparseMatrix<double> shifted_stiffness(const System& system, const VectorXd& z, double time,
                                               const Statuses& statuses, JointModel joints,
                                               double held, double slack, double share) {

@@ -126,8 +126,8 @@ enum class Pivoting : unsigned char { block, single };
 
 }  // namespace
 
-/// Smallest fraction of the step at which one of the joints violates its inequality. @pre Each
-/// joint violates it at the end of the step.
+/// Smallest fraction of the step at which one of the joints violates its inequality.
+/// @pre each joint violates it at the end of the step
 Newton::Violation Newton::first_violation(const std::vector<int>& joints, const VectorXd& from,
                                           const VectorXd& to, double from_time, double time,
                                           const StepStart& start, JointModel model,

@@ -39,8 +39,9 @@ struct EventSearch {
   double from_time;  ///< [s]
   double now;        ///< Fraction of the step up to which a change counts as one at its start.
   bool stop;         ///< Whether the solve ends at the first event; false: it continues across it.
-  /// Predictor: unknowns at the end of the step, extrapolated with the rates at its start. It is
-  /// the initial guess of iterations with reused factors, which do not detect events.
+  /// Predictor: unknowns at the end of the step, extrapolated with the rates at its start. Initial
+  /// guess if factors are reused, events are passed, or elements are slack. Iterations with reused
+  /// factors do not detect events.
   VectorXd foreseen;
 };
 
@@ -112,8 +113,8 @@ class Newton {
 
   /// Regularisation that the last solve needed; see factor_regularised().
   Regularisation regularisation() const { return regularisation_; }
-  /// Joints with non-unique reactions, from the factors of the last solve. @pre regularisation() is
-  /// `reactions`
+  /// Joints with non-unique reactions, from the factors of the last solve.
+  /// @pre regularisation() is `reactions`
   std::vector<int> dependent_joints() const;
   /// Traces every iteration from now on; null: none.
   void trace(Tracer* to) { tracer_ = to; }
@@ -195,8 +196,8 @@ struct FoundModes {
   int count = 0;                   ///< Number of modes, may exceed those described; 0: none.
   bool more = false;               ///< There may be more than `count`.
   std::vector<FailureMode> modes;  ///< Nodes with the largest motion in each mode.
-  std::vector<VectorXd>
-      shapes;  ///< Modes of the unknowns; the largest displacement is of order one.
+  /// Modes of the unknowns; the largest displacement is of order one.
+  std::vector<VectorXd> shapes;
   explicit operator bool() const { return count > 0; }
 };
 

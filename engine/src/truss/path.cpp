@@ -167,8 +167,8 @@ Path solve(const Model& model, const Options& options) {
         length / (PathFollower::most_parts * static_cast<double>(options.increments_per_branch));
     follower.slack_level = 0;
     follower.snap_travel = 0.0;
-    double convergent =
-        length;  // longest step for which Newton's method is expected to converge [s]
+    // longest step for which Newton's method is expected to converge [s]
+    double convergent = length;
     for (int k = 0; k <= options.increments_per_branch; ++k) {
       // k = 0: short first step, in which slips turn into sticks after the corner.
       const double target = k == 0 ? times[b] + tolerance

@@ -47,7 +47,8 @@ class RateProblem {
  public:
   explicit RateProblem(const System& system) : system_(&system), at_(0) {}
 
-  /// @param z unknowns at the start of the step, @param target its end
+  /// @param z unknowns at the start of the step
+  /// @param target its end [s]
   /// @param found statuses of a converged solve over the same step; empty: none converged
   /// @param changing joints at a limit, besides slipping joints and those that `found` changes
   RateAnswer solve(const VectorXd& z, double target, const StepStart& start, const Statuses& found,

@@ -142,7 +142,8 @@ void PathFollower::note(NoteKind kind, double when, const std::vector<int>& join
   path.notes.push_back(std::move(made));
 }
 
-/// Notes open joints if their elements are slack. @returns whether they are
+/// Notes open joints if their elements are slack.
+/// @returns whether they are
 bool PathFollower::note_slack(double when, const VectorXd& at, const Statuses& statuses) {
   std::vector<int> open;
   for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {

@@ -122,9 +122,9 @@ using RequestedStatus = std::pair<std::size_t, JointStatus>;
 /// Admissible motions of a group; equal motions are listed once.
 struct Found {
   std::vector<Motion> motions;
-  std::vector<RequestedStatus>
-      requested;         ///< If not empty, the search must be repeated with these statuses.
-  bool examined = true;  ///< Whether all sets were tried.
+  /// If not empty, the search must be repeated with these statuses.
+  std::vector<RequestedStatus> requested;
+  bool examined = true;            ///< Whether all sets were tried.
   std::optional<Choice> singular;  ///< Statuses for which the equations are singular.
 };
 

@@ -49,8 +49,8 @@ struct StepStart {
   VectorXd history;   ///< Memory of all joints, one after the other.
   double time = 0.0;  ///< [s]
   /// Correction of slides, see System::note_slides(). Empty: no joint rolls.
-  Eigen::Matrix3Xd
-      owed;  ///< Quadrature error of the last step's slide that this step corrects [m].
+  /// Quadrature error of the last step's slide that this step corrects [m].
+  Eigen::Matrix3Xd owed;
   Eigen::Matrix3Xd lost;   ///< Quadrature error of the slide in the last step [m].
   double last_step = 0.0;  ///< Duration of the last step [s].
   /// Of open joints [N/m], see System::slack_stiffness(); copied from step to step.

@@ -18,8 +18,8 @@ struct History {
   Eigen::VectorXd friction_force;      ///< Force of the ground on the block [N]
   Eigen::VectorXd stop_force;          ///< Force of a stop on the block [N]; see SpringSlider
   Eigen::VectorXd elastic_energy;      ///< Energy F²/(2 k_T) in the link [J]
-  Eigen::VectorXd
-      preload_energy;  ///< k_p x²/2 + P x [J], plus a constant; all energy is 0 at the start
+  /// k_p x²/2 + P x [J], plus a constant; all energy is 0 at the start
+  Eigen::VectorXd preload_energy;
   Eigen::VectorXd friction_dissipation;  ///< Heat of friction since the start, ∫ f |dx| [J]
   Eigen::VectorXd thermal_work;          ///< Work of the temperature since the start [J]
   std::vector<Stage> stage;

@@ -19,14 +19,14 @@ namespace statejump::truss {
 /// state is a solution.
 struct LocalProblem {
   double time = 0.0;                ///< End of the step [s].
-  double temperature_change = 0.0;  ///< Of the first program there [K].
+  double temperature_change = 0.0;  ///< ΔT of the first program at this time [K].
   complementarity::Problem problem;
-  Eigen::VectorXd reactions;   ///< Of the path [N].
-  Eigen::VectorXd velocities;  ///< Of the path: motions of the step [m].
-  std::vector<int> joints;     ///< Of every contact.
-  /// Stiffness that holds every displacement at the state of the path [N/m]. Needed if the truss
-  /// without contact forces is a mechanism or unstable; else 0. It changes W, and also q, so that
-  /// forces and motions of the path remain a solution.
+  Eigen::VectorXd reactions;   ///< Contact forces of the path [N].
+  Eigen::VectorXd velocities;  ///< Motions of the step of the path [m].
+  std::vector<int> joints;     ///< Joint of every contact.
+  /// Stiffness of springs between all displacements and the state of the path [N/m]. Needed if the
+  /// truss without contact forces is a mechanism or unstable; otherwise 0. The springs change W and
+  /// also q, so that forces and motions of the path remain a solution.
   double proximal_stiffness = 0.0;
 };
 

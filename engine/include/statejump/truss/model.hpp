@@ -17,7 +17,7 @@ namespace statejump::truss {
 /// truss have the same directions.
 class Directions {
  public:
-  /// Those of the coordinates.
+  /// The coordinate directions.
   Directions() : Directions(coordinates()) {}
   // NOLINTNEXTLINE(google-explicit-constructor): a matrix is three directions.
   Directions(const Eigen::Matrix3d& columns)
@@ -58,8 +58,8 @@ struct Constraint {
   std::vector<ConstraintTerm> terms;  ///< At least one.
 
   static constexpr const char* kind = "constraint";  ///< In messages.
-  /// Factors below this fraction of the largest one of their constraint are refused [-]. The
-  /// rounding that elimination leaves of a factor that cancels is below a thousandth of it.
+  /// Factors below this fraction of the largest one of their constraint are rejected [-]. Rounding
+  /// of factors that cancel in the elimination is below a thousandth of it.
   static constexpr double least_factor = 1e-9;
 };
 

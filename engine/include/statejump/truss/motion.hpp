@@ -17,14 +17,14 @@ struct Inertia {
   /// Mass of each link [kg], >= 0. The two nodes carry it. Its mass matrix is constant, and exact
   /// for a body of constant shape; that of a straight rod is m/6 [2 1; 1 2].
   Eigen::VectorXd link_mass;
-  Eigen::VectorXd node_mass;  ///< Of each node besides, a point [kg], >= 0.
+  Eigen::VectorXd node_mass;  ///< Additional point mass of each node [kg], >= 0.
   /// Coefficient c of each link's dashpot on its strain rate, c (L' − l_T') [N s/m], >= 0.
   Eigen::VectorXd link_damping;
   /// Coefficient c_p of each link's moment −c_p θ' against rotation [N m s/rad], >= 0.
   Eigen::VectorXd pin_damping;
   Eigen::VectorXd spring_damping;  ///< c of each spring's dashpot, c L' [N s/m], >= 0.
-  /// 2 ζ √m of each joint's contacts [kg^1/2], >= 0: dashpots c = 2 ζ √(m k) beside the elastic
-  /// laws across and along the surface, with the tangent stiffness k. Rigid laws have none.
+  /// 2 ζ √m of each joint's contacts [kg^1/2], >= 0: dashpots c = 2 ζ √(m k) in parallel with the
+  /// elastic normal and tangential laws, with the tangent stiffness k. Rigid laws have no dashpots.
   Eigen::VectorXd joint_damping = {};
   /// Centre of mass of each link, as fractions of the vector from its first to its second node:
   /// along it, and to the left of it. In space the second fraction is 0. Empty: (1/2, 0).
@@ -70,7 +70,7 @@ struct MotionOptions {
   int most_iterations = 50;
   /// Start of the motion. Empty: the first equilibrium of the quasi-static path, at rest.
   std::optional<MotionStart> start = {};
-  /// How the truss gets to that equilibrium.
+  /// How the truss reaches that equilibrium.
   StartFriction start_friction = StartFriction::stuck;
   std::vector<Drive> drives = {};  ///< In planar trusses.
   /// Node whose velocity is recorded at every step; −1: none.
@@ -80,13 +80,13 @@ struct MotionOptions {
   std::function<bool(double)> progress = {};
 };
 
-/// Quantities of motion, beside the State of the same sample.
+/// Quantities of motion in addition to the State of the same sample.
 struct MovingState {
   Eigen::Matrix3Xd velocity;  ///< Of each node [m/s].
   double kinetic_energy = 0.0;
   double damping_dissipation = 0.0;  ///< Heat of the dashpots since the start [J].
-  double impact_dissipation =
-      0.0;  ///< Work that contacts absorbed along their normals since the start [J].
+  /// Work that contacts absorbed along their normals since the start [J].
+  double impact_dissipation = 0.0;
   double drive_work = 0.0;       ///< Of all drives since the start [J].
   Eigen::VectorXd drive_moment;  ///< Of each drive on its link, mean of the last step [N m].
 };
@@ -95,8 +95,8 @@ struct MovingState {
 /// one of several solutions; all have the same velocities.
 struct Undetermined {
   double time;  ///< Time of the step [s].
-  std::vector<int>
-      joints;  ///< Joints whose reactions can be exchanged without changing velocities.
+  /// Joints whose reactions can be exchanged without changing velocities.
+  std::vector<int> joints;
 };
 
 /// What simulate() returns.
@@ -109,8 +109,8 @@ struct Motion {
   bool complete = true;               ///< False if MotionOptions::progress ended it.
   double time_step = 0.0;             ///< [s]; the shortest one.
   long steps = 0;
-  long rejected_steps =
-      0;  ///< Steps repeated because their error was too large or they had no solution.
+  /// Steps repeated because their error was too large or they had no solution.
+  long rejected_steps = 0;
   /// Number of inexact steps: with a tolerance, steps of the smallest length whose error exceeds
   /// it; with equal steps, steps or parts of steps by damped implicit Euler.
   long inexact_steps = 0;
@@ -122,8 +122,8 @@ struct Motion {
   /// The first step in which a rigid contact stops sliding because its normal force had no solution
   /// or several (Painlevé).
   std::optional<Undetermined> jammed;
-  double negative_dissipation =
-      0.0;  ///< Sum of the negative friction heats of single steps [J], <= 0.
+  /// Sum of the negative friction heats of single steps [J], <= 0.
+  double negative_dissipation = 0.0;
 };
 
 /// Motion of a truss through its temperature programs, after Moreau and Jean [1, 2].
@@ -147,15 +147,15 @@ struct Motion {
 /// + (λ/K)^(2/3) >= 0 ⟂ λ >= 0, at the end of the step. This is implicit Euler in the contact:
 /// steps may be longer than its period, and its impact is then without rebound. A revolute with
 /// Mindlin's stiffness yields tangentially as in the quasi-static solver. The friction of a slider
-/// has a given limit; its stops are rigid contacts. Dashpots act beside the elastic laws: λ = K
-/// δ^1.5 − c u >= 0 across, and c_t u along the surface while the spring sticks. Spring and dashpot
-/// together are within Coulomb's limit of λ.
+/// has a given limit; its stops are rigid contacts. Dashpots act in parallel with the elastic laws:
+/// λ = K δ^1.5 − c u >= 0 along the normal, and c_t u along the surface while the spring sticks.
+/// Spring and dashpot together are within Coulomb's limit of λ.
 ///
 /// **Energies.** Impulses work by the mean velocity of the step. Therefore thermal_work + work of
 /// loads − changes of kinetic and elastic energy − dissipation equals the error of the scheme in
 /// the forces f. The dissipation of a contact is the work on it less its stored energy. If a slide
 /// reverses in a step, the friction heat may be negative by O(h²); `negative_dissipation` adds this
-/// up, together with that of rigid impacts. Across its surface an elastic contact is conservative:
+/// up, together with that of rigid impacts. Along its normal an elastic contact is conservative:
 /// its dissipation there is an error of the scheme, of either sign.
 ///
 /// **Drives.** The angular velocity of a driven link at the end of the step is prescribed by its

@@ -106,8 +106,8 @@ Eigen::Map<const Eigen::MatrixXd> element_output(const Model& model, const State
   return {begin, static_cast<Eigen::Index>(output_width<Type>()), static_cast<Eigen::Index>(count)};
 }
 
-/// Output of a joint at a state, by its key in outputs(): one number or three. @throws
-/// std::out_of_range if the joint has no such output
+/// Output of a joint at a state, by its key in outputs(): one number or three.
+/// @throws std::out_of_range if the joint has no such output
 Eigen::VectorXd output(const Model& model, const State& state, int joint, std::string_view key);
 
 /// What solve() returns.
@@ -121,7 +121,7 @@ struct Path {
   long solves = 0;                     ///< Newton solves.
   long factorizations = 0;
   double largest_force_residual = 0.0;    ///< Over the largest force of its state [-].
-  double largest_closure_residual = 0.0;  ///< Of sticking, stops and contacts [m].
+  double largest_closure_residual = 0.0;  ///< Of sticking joints, stops and contacts [m].
   int unknowns = 0;
 };
 
@@ -179,9 +179,9 @@ struct Path {
 /// increased from zero in small steps (truss/loading.cpp). A note reports a start that moves the
 /// truss by more than a twentieth of its size.
 ///
-/// **Slack elements.** An element that hangs in the play of its joints carries no force, and
-/// statics does not determine its position. It stays at the admissible position nearest to its last
-/// one, as with vanishing dashpots in its pins (truss/system.hpp), until its clearance closes.
+/// **Slack elements.** An element that hangs in the play of its joints has no force, and statics
+/// does not determine its position. It stays at the admissible position nearest to its last one, as
+/// with vanishing dashpots in its pins (truss/system.hpp), until its clearance closes.
 ///
 /// With StartFriction::stuck other joints hold by friction in the reference configuration, within
 /// their limits. With StartFriction::frictionless the start is that of a truss without friction.

@@ -33,7 +33,7 @@ struct TraceRecord {
   long solve = 0;     ///< Newton solve of the path, from 1. A step may need several.
   JointModel joints = JointModel::friction;
   double opening = 1.0;             ///< Fraction of the clearances that is open [-].
-  double time = 0.0;                ///< [s] Where the solve seeks equilibrium.
+  double time = 0.0;                ///< Time of the equilibrium that the solve seeks [s].
   double temperature_change = 0.0;  ///< ΔT of the first program there [K].
   int iteration = 0;                ///< Within the solve, from 1.
   double node_residual = 0.0;       ///< Of the balance of forces at nodes [N].

@@ -44,10 +44,10 @@ constexpr std::size_t socket_far = 3;  ///< Far end of the link that rotates the
 /// Memory of a ball joint; with partial slip the memory of the contact follows it.
 struct BallMemory {
   Eigen::Vector3d offset;  ///< Ball minus socket [m].
-  Eigen::Vector3d
-      ball_direction;  ///< Ball minus far node of the ball's link [m]; zero without link.
-  Eigen::Vector3d
-      socket_direction;      ///< Socket minus far node of the socket's link [m]; zero without link.
+  /// Ball minus far node of the ball's link [m]; zero without link.
+  Eigen::Vector3d ball_direction;
+  /// Socket minus far node of the socket's link [m]; zero without link.
+  Eigen::Vector3d socket_direction;
   Eigen::Vector3d friction;  ///< t [N].
   Eigen::Vector3d axis;  ///< Reference direction of the slip memory in the tangent plane; or zero.
   double ball_radius;    ///< At the contact [m].

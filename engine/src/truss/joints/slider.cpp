@@ -56,7 +56,8 @@ kernel::PartialSlipResponse rub(const Slider& slider, const double* history, dou
                                    {s - history[0], 0.0}, memory);
 }
 
-/// Friction at the slide s [N]. @pre the contact is not rigid
+/// Friction at the slide s [N].
+/// @pre the contact is not rigid
 double friction_at(const Slider& slider, const double* history, double s) {
   if (slider.partial_slip) return rubbing(slider, history, s).force;
   const double f = slider.friction_limit();
@@ -74,7 +75,7 @@ double played(const Slider& slider, double bend) {
   return std::clamp(bend, -0.5 * slider.play, 0.5 * slider.play);
 }
 
-/// Forces of soft stops and play, beside the unknown and against the axis.
+/// Forces of soft stops and play against the axis, in addition to the unknown.
 struct Springs {
   double force = 0.0;      ///< [N]
   double stiffness = 0.0;  ///< [N/m]
@@ -160,7 +161,7 @@ JointStatus after_stop(const Slider& slider, const Trial& trial, const Sense& wa
     return leaves ? JointStatus::stick : way.stop;
   }
   // If the slider was at the stop before, friction helps to hold it there. If it arrived in this
-  // step, friction acts against the stop.
+  // step, friction acts away from the stop.
   if (trial.before == way.stop) {
     return pushed < -(f + trial.force_rounding) ? way.other_slip : way.stop;
   }

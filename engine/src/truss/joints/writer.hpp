@@ -341,8 +341,8 @@ class PlanarWriter {
  private:
   using Directions = Eigen::Matrix<double, 2, 3>;
   JointWriter* to_;
-  std::array<Directions, most_joint_nodes>
-      seen_;  ///< In-plane components of the nodes' free directions.
+  /// In-plane components of the nodes' free directions.
+  std::array<Directions, most_joint_nodes> seen_;
 };
 
 }  // namespace statejump::truss

@@ -97,7 +97,7 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
   for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
     const JointFrame frame =
         std::visit([&](const auto& one) { return one.frame(model); }, model.joints[index(i)]);
-    // Only the pin in place of a ball constrains it; in motion its contact does.
+    // A ball has a bilateral constraint only while the start replaces it by a pin.
     const bool is_ball = std::holds_alternative<BallJoint>(model.joints[index(i)]);
     const auto held =
         is_ball ? 0 : static_cast<int>(std::count(frame.holds.begin(), frame.holds.end(), true));

@@ -20,8 +20,8 @@ class DyadicStepSize {
   bool is_shortest() const { return level_ == most_; }
   bool done() const { return at_ == whole(); }
 
-  /// Accepts the step. The next one is twice as long if `longer` and if it then starts at a
-  /// multiple.
+  /// Accepts the step. The next one is twice as long if `longer` is set and the time is a multiple
+  /// of that length.
   void accept(bool longer);
   /// Halves the next step this many times, down to the shortest step.
   void shorten(int halvings);

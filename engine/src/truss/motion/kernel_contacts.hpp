@@ -72,8 +72,8 @@ class KernelContacts {
     const VectorXd& v;
     double time;   ///< [s]
     double since;  ///< Since the end of the last step [s], > 0.
-    const VectorXd&
-        way;  ///< Slides [m], [m] and rotation [rad] of every contact since the last step.
+    /// Slides [m], [m] and rotation [rad] of every contact since the last step.
+    const VectorXd& way;
   };
   Eigen::Index numbers() const { return 3 * static_cast<Eigen::Index>(all_.size()); }
   /// `Stage::way` that gives pads their friction in a state at rest. Contacts of round parts start

@@ -52,7 +52,7 @@ class Rods {
     double axial_damping;    ///< [N s/m]
     double turning_damping;  ///< [N m s/rad]
   };
-  /// A rod as it is.
+  /// State of a rod.
   struct State;
   inline State state(const Rod& rod, const double* q, const double* v, const Heat& heat) const;
 

@@ -47,8 +47,8 @@ struct SlipAnnuli {
   Law law(const Pressed& by, const Eigen::Vector2d& slide, const Eigen::Vector2d& speed,
           double h) const;
   /// Slide at the kink of the law, on both sides of which the slope falls from k_t to 0 [m]. It is
-  /// zero. If a falling normal force makes all annuli slip, it is the backward slide at which the
-  /// last annulus sticks.
+  /// zero, unless a falling normal force makes all annuli slip. Then it is the backward slide at
+  /// which the last annulus sticks.
   Eigen::Vector2d kink(const Pressed& by) const;
   /// Sets the tangent point to an iterate, or to the kink if the previous point was on the other
   /// side of it. Tangents at the kink, or at too short a slide, underestimate the slide and so

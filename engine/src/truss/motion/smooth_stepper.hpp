@@ -116,8 +116,8 @@ class SmoothStepper {
   VectorXd sticking_damping_;  ///< C with sticking contacts; `stiffness_` is K with them.
   std::vector<Eigen::Index> damping_places_;
   std::vector<Eigen::Index> stiffness_places_;
-  std::vector<Eigen::Index>
-      contact_places_;  ///< Positions of d dᵀ of all contacts, one after the other.
+  /// Positions of d dᵀ of all contacts, one after the other.
+  std::vector<Eigen::Index> contact_places_;
   linear::SparseFactor factor_;
   std::vector<linear::ComplexFactor> pair_factors_;
   double factor_h_ = 0.0;          ///< Step length of the factors [s]; 0: none.

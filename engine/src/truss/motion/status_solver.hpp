@@ -35,8 +35,8 @@ class StatusSolver {
   struct Residual {
     VectorXd right;
     VectorXd momentum;  ///< Residual of the momentum balance without impulses.
-    bool on_laws =
-        false;  ///< Whether constraints, and contacts that are not elastic, satisfy their laws.
+    /// Whether constraints, and contacts that are not elastic, satisfy their laws.
+    bool on_laws = false;
   };
   Residual residual(const StatusFactors& on, TimeStep& step, const StepContacts& contacts,
                     double drift);

@@ -45,7 +45,7 @@ struct LocalContact {
   int tangential = 0;                 ///< Row of the slide.
   int normal = -1;                    ///< Row of the gap; −1: the normal force is given.
   double friction_coefficient = 0.0;  ///< [-]
-  double normal_force = 0.0;          ///< Where it is given [N].
+  double normal_force = 0.0;          ///< [N], if it is given.
 };
 
 constexpr int most_joint_nodes = 4;
@@ -79,8 +79,8 @@ struct Trial {
   JointStatus before = JointStatus::stick;  ///< Status at the start of the step.
   double temperature_change = 0.0;          ///< [K]
   JointModel model = JointModel::friction;
-  double opening =
-      1.0;  ///< Open fraction of the clearances; below 1 only while the start is sought.
+  /// Open fraction of the clearances; below 1 only while the start is sought.
+  double opening = 1.0;
   /// True if the rate of the slide is evaluated: the slide row is then that of a sticking contact.
   bool unslipped = false;
   /// True in motion, where the contacts evaluate soft stops and play: the joint then omits its

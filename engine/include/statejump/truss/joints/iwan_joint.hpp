@@ -42,7 +42,7 @@ struct IwanJoint {
   double slip_force = 0.0;         ///< F_S [N], > 0.
   double exponent = -0.5;          ///< χ, above −1 and at most 0.
   double stiffness_ratio = 1.0;    ///< β, >= 0.
-  int elements = 50;               ///< Of the intervals; the last sliders are one more.
+  int elements = 50;               ///< Number of intervals; the last sliders are one more element.
   double spacing = 1.2;            ///< >= 1; 1: intervals of one length.
 
   /// A spring and its slider.

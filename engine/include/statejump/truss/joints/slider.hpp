@@ -22,23 +22,23 @@ namespace statejump::truss {
 ///
 /// One unknown represents friction and stop together, because statics does not determine how a
 /// rigid wall and rigid friction share a force. With a finite k_t, p = s − λ_f/k_t slides, friction
-/// is λ_f = clamp(k_t (s − p_k); ±f), and the stop carries the remainder.
+/// is λ_f = clamp(k_t (s − p_k); ±f), and the stop supports the remainder.
 ///
 /// With partial slip λ_f is the force of kernel::partial_slip_step() under the constant limit f, in
 /// one step from state to state. One row covers stick and slip. `slip±` then means that the whole
 /// contact slides.
 ///
-/// **Soft stops.** Stops of stiffness k_s push by W(s) = k_s (s − clamp(s; −c−, c+)), beside
-/// friction. W has a potential and no memory, so only friction has statuses: λ is friction, and W
-/// is a spring between the nodes. Friction and stop force are then both determined.
+/// **Soft stops.** Stops of stiffness k_s push by W(s) = k_s (s − clamp(s; −c−, c+)), in parallel
+/// with friction. W has a potential and no memory, so only friction has statuses: λ is friction,
+/// and W is a spring between the nodes. Friction and stop force are then both determined.
 ///
 /// **Play.** A play of width w in series with the contact stiffness k_t moves with the slip. With
-/// the deflection e = s − p the contact carries k_t dz(e), dz(e) = e − clamp(e; ±w/2). It slips at
+/// the deflection e = s − p the contact force is k_t dz(e), dz(e) = e − clamp(e; ±w/2). It slips at
 /// ±f, where |e| = w/2 + f/k_t. Since
 ///
 ///   k_t dz(e) = k_t e − k_t clamp(e; ±w/2),
 ///
-/// it equals a friction λ = k_t e with the limit f + k_t w/2 beside a spring −k_t clamp(e; ±w/2).
+/// it equals a friction λ = k_t e with the limit f + k_t w/2 and a spring −k_t clamp(e; ±w/2).
 /// Statuses, rows and memory are those without play. Slip converts f into heat, not the limit of λ.
 /// At the start the joint is in the middle of its play. A play needs friction, a finite k_t, and no
 /// partial slip.
@@ -74,7 +74,7 @@ struct Slider {
   double dissipation(const Trial& trial, const double* after, double slip) const;
   double elastic_energy(const Trial& trial, const double* now) const;
   void describe(const Trial& trial, double* outputs) const;
-  /// Whether soft stops or a play act as springs beside friction.
+  /// Whether soft stops or a play act as springs in parallel with friction.
   bool has_springs() const { return has_soft_stops() || play > 0.0; }
   bool has_soft_stops() const {
     return stop_stiffness < std::numeric_limits<double>::infinity() &&
