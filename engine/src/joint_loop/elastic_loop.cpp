@@ -247,7 +247,7 @@ class PathFollower {
       }
       return find(next, [this](const Equilibrium& at) { return slip_rate(at); });
     }
-    // Sign of the exceeded limit: at the start the force may be at the other one.
+    // Sign of the exceeded limit; the force at the start may be at the opposite limit.
     const double sign = next.z[ft] < 0.0 ? -1.0 : 1.0;
     if (!(excess(sign, next) > limit_rounding * mu_ * next.normal())) return outcome;
     sign_ = sign;

@@ -48,8 +48,8 @@ struct StepStart {
   Statuses statuses;
   VectorXd history;   ///< Memory of all joints, one after the other.
   double time = 0.0;  ///< [s]
-  /// Correction of slides, see System::note_slides(). Empty: no joint rolls.
-  /// Quadrature error of the last step's slide that this step corrects [m].
+  /// Quadrature error of the last step's slide that this step corrects [m]; see
+  /// System::note_slides(). Empty: no joint rolls.
   Eigen::Matrix3Xd owed;
   Eigen::Matrix3Xd lost;   ///< Quadrature error of the slide in the last step [m].
   double last_step = 0.0;  ///< Duration of the last step [s].

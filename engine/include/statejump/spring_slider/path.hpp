@@ -81,7 +81,7 @@ struct Segment {
   double friction_dissipation;      ///< Heat of friction from the program's start to start_time [J]
   double thermal_work;              ///< Work of the temperature over the same time [J]
   int region = 0;                   ///< Side of the soft stop that the block touches; 0: none.
-  /// Direction in which friction is at its limit, or the stop beyond it; 0: below the limit.
+  /// Direction in which friction is at its limit, also at a loaded stop; 0: below the limit.
   int friction_sign = 0;
   double middle = 0.0;  ///< Of the play at start_time [m].
 

@@ -14,8 +14,8 @@ namespace statejump::truss {
 /// Inertia and dashpots of a truss, beside its Model. A vector has one number for each item; an
 /// empty one means zeros.
 struct Inertia {
-  /// Mass of each link [kg], >= 0. The two nodes carry it. Its mass matrix is constant, and exact
-  /// for a body of constant shape; that of a straight rod is m/6 [2 1; 1 2].
+  /// Mass of each link [kg], >= 0, attached to its two nodes. Its mass matrix is constant, and
+  /// exact for a body of constant shape. For a straight rod it is m/6 [2 1; 1 2].
   Eigen::VectorXd link_mass;
   Eigen::VectorXd node_mass;  ///< Additional point mass of each node [kg], >= 0.
   /// Coefficient c of each link's dashpot on its strain rate, c (L' − l_T') [N s/m], >= 0.
@@ -63,8 +63,8 @@ struct MotionOptions {
   double theta = 0.5;     ///< θ of the scheme, 0.5 to 1.
   /// Allowed error of displacements in one step [m]; 0: equal steps. Otherwise steps are as long as
   /// this error allows, up to the time between samples. The method is backward differentiation. If
-  /// all contacts slip behind springs along fixed directions, it is Radau IIA between changes of
-  /// status.
+  /// all contacts have friction in series with springs along fixed directions, it is Radau IIA
+  /// between changes of status.
   double displacement_tolerance = 0;
   double restitution = 0;  ///< e of Newton's impact law, 0 to 1; of rigid contacts only.
   int most_iterations = 50;

@@ -97,7 +97,8 @@ struct BallJoint {
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;
   JointStatus settled(const Trial& trial, JointStatus status) const;
-  /// Contact problems have one direction of friction. In them the joint keeps its status.
+  /// Contact problems have one direction of friction per contact, so the joint keeps its status in
+  /// them.
   std::optional<LocalContact> contact(const Trial&, JointStatus) const { return {}; }
   /// Index in history() at which the memory of a contact with partial slip begins.
   int slip_memory_begin() const;

@@ -76,7 +76,7 @@ struct IwanJoint {
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;
   JointStatus settled(const Trial&, JointStatus status) const { return status; }
-  /// Its friction is no cone. In contact problems the joint keeps its status.
+  /// Its friction has no cone, so the joint keeps its status in contact problems.
   std::optional<LocalContact> contact(const Trial&, JointStatus) const { return {}; }
   bool slips_smoothly() const { return false; }
   double least_slide() const { return 0.0; }
