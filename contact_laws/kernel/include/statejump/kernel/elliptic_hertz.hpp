@@ -19,8 +19,7 @@ namespace statejump::kernel {
 struct RelativeCurvature {
   double larger;   ///< [1/m]; the short semi-axis of the contact has this direction
   double smaller;  ///< [1/m]; the long semi-axis of the contact has this direction
-  double angle;  ///< direction of `larger` [rad], from direction 1 of body 1 towards direction 1 of
-                 ///< body 2
+  double angle;    ///< of `larger` [rad], from direction 1 of body 1 to direction 1 of body 2
 };
 
 /// Adds the curvatures of two bodies (Johnson 1985, eq. 4.4).

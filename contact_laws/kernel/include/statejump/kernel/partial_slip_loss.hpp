@@ -11,15 +11,12 @@ namespace statejump::kernel::detail {
 
 /// Quantities of one annulus during a step, as components along its slip direction.
 struct SlipAnnulus {
-  double start;  ///< U before the step [m]
-  double slide;  ///< of the two bodies while the annulus is in contact [m]
-  double before,
-      after;  ///< bounds on U [m]: at the start of the annulus's contact, at the end of the step
+  double start;          ///< U before the step [m]
+  double slide;          ///< of the two bodies while the annulus is in contact [m]
+  double before, after;  ///< bounds on U at first contact and at the end of the step [m]
 
   double change() const { return after - before; }
-  double stick() const {
-    return std::max(0.0, before - start);
-  }                                                  ///< slide until U reaches the bound
+  double stick() const { return std::max(0.0, before - start); }  ///< slide until slip
   double speed() const { return slide - change(); }  ///< rate at which U approaches the bound
   double slip() const { return std::max(0.0, start + slide - after); }
   /// Loss per unit of x: slip times the mean of the bound during the slip.

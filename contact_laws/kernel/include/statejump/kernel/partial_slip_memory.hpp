@@ -146,8 +146,7 @@ namespace detail {
 
 /// Weights of the integral of f g over x from xa to xb, where f and g are linear in x^2.
 struct ProductWeights {
-  double weight_aa, weight_ab,
-      weight_bb;  ///< factors of f_a g_a; of f_a g_b and f_b g_a; of f_b g_b
+  double weight_aa, weight_ab, weight_bb;  ///< for f_a g_a; for f_a g_b and f_b g_a; for f_b g_b
   ProductWeights(double xa, double xb) {
     const double d = xb - xa;
     const double q = d / (xb + xa);

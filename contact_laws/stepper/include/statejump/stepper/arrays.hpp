@@ -46,8 +46,7 @@ struct Contact {
   bool renewed = false;  ///< its physics was created after the arrays were filled
   long made = -1;        ///< number of the step in which it became real; -1: not yet
   bool rotates = true;   ///< one of the two bodies rotates or can rotate
-  bool tilted =
-      false;  ///< only if neither body rotates: the axes are tilted by more than the allowed angle
+  bool tilted = false;   ///< only if neither body rotates: axes tilted by more than allowed
   Vector3 axis = Vector3::Zero();  ///< only if neither body rotates: axis of body 2
   ContactGeometry geometry;
   ContactPhysics physics;

@@ -143,8 +143,7 @@ class Batches {
   BatchedArrays arrays_;
   std::vector<Batch> contacts_;
   std::vector<ContactRun> runs_;
-  std::vector<BodyLanes> movers_,
-      bodies_;  // bodies moved together with their contact; other batched bodies
+  std::vector<BodyLanes> movers_, bodies_;  // bodies moved with their contact; other bodies
   std::vector<std::size_t> others_;
   bool useful_ = false;
 };
@@ -210,8 +209,7 @@ inline void Batches::fill_movers() {
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       bodies.load(lane, contacts.body_1[lane], arrays_.bodies[contacts.body_1[lane]],
                   arrays_.newton);
-      if (lane >= contacts.count)
-        bodies.bounded[lane] = 0;  // unused lane: repeated body, moved without a contact
+      if (lane >= contacts.count) bodies.bounded[lane] = 0;  // unused lane: has no contact force
     }
   }
 }

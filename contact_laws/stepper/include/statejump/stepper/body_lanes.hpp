@@ -17,8 +17,7 @@ struct BodyLanes {
   std::size_t count;
   Pack3 position, velocity, permanent_force, bound_position;
   Pack mass, damping, bound_reach;
-  Mask moves_x, moves_y, moves_z, free,
-      held;      // lanes free along an axis; along all axes; along none
+  Mask moves_x, moves_y, moves_z, free, held;  // free to move along an axis, along all, along none
   Mask bounded;  // has a bound: the collider runs again if the body leaves it
 
   void load(std::size_t lane, std::size_t index, const Body& from, const Newton& newton) {

@@ -25,13 +25,12 @@ struct DrivenContact {
 /// End point of one step. The step is a straight line from the current point, and the laws
 /// receive it as a single increment.
 struct DrivenTarget {
-  double depth = 0.0;                  ///< delta [m]; <= 0: the contact is open
-  std::optional<double> normal_force;  ///< F_N [N], >= 0; if given, the depth follows from it
-  double slide_x = 0.0;                ///< body 1 relative to body 2 [m], 0 at the start
-  double slide_y = 0.0;                ///< perpendicular to slide_x [m]
-  std::optional<double>
-      tangential_force;   ///< F_T along x [N], positive in the direction of the slide that causes
-                          ///< it; if given, slide_x follows from it
+  double depth = 0.0;                      ///< delta [m]; <= 0: the contact is open
+  std::optional<double> normal_force;      ///< F_N [N], >= 0; if given, the depth follows from it
+  double slide_x = 0.0;                    ///< body 1 relative to body 2 [m], 0 at the start
+  double slide_y = 0.0;                    ///< perpendicular to slide_x [m]
+  std::optional<double> tangential_force;  ///< F_T along x [N], positive along the slide that
+                                           ///< causes it; if given, slide_x follows from it
   double duration = 0.0;  ///< duration of the step [s]; 0: rates are unknown and count as zero
 };
 
