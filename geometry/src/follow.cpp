@@ -37,9 +37,8 @@ enum Patch {
   patch_size = 16
 };
 
-constexpr double travel_share = 0.05;  // largest travel between searches, fraction of the play
-constexpr double unsafe_share =
-    1e-3;  // the same for a contact in wall not flatter than the journal
+constexpr double travel_share = 0.05;     // largest travel between searches, fraction of the play
+constexpr double unsafe_share = 1e-3;     // the same at wall that is not flatter than the journal
 constexpr double farthest_turn = 0.1;     // [rad], rotation of a normal that is followed at most
 constexpr double one_place = 1 - 0.0001;  // cosine; contacts with normals closer than this are
                                           // considered as one and searched again
