@@ -92,7 +92,7 @@ TEST(IwanJoint, ElementsHaveStiffnessSlipForceAndBackboneOfTheClosedForm) {
         EXPECT_GE(more, -rounding(one));
         largest = std::max(largest, more);
       }
-      // Sampled so finely that the largest is missed by a thousandth of the longest interval.
+      // The samples are so dense that they miss the largest error by at most 1 %.
       EXPECT_LE(largest, one.slack() + rounding(one));
       EXPECT_GE(largest, 0.99 * one.slack());
       // Tangent polygons have a second-order error in the length of the intervals, provided these

@@ -18,7 +18,7 @@ struct JointSample {
   Eigen::Vector3d touching = Eigen::Vector3d::Zero();
 };
 
-/// Two links from A to B and from C to D, where B and D have one position.
+/// Two links, AB and CD, where B and D coincide.
 inline JointSample two_links(Joint joint) {
   JointSample made;
   made.model.programs = {triangle(80.0)};
