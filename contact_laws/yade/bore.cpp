@@ -104,8 +104,7 @@ void MeshBore::check() {
   for (const Vector3r& vertex : mesh_->triangles().vertices) {
     half_box_ = half_box_.cwiseMax(vertex.cwiseAbs());
   }
-  // Collect the edges of single triangles; neighbouring triangles share an edge in opposite
-  // directions.
+  // Collects edges of one triangle only; neighbours have a common edge in opposite directions.
   std::vector<std::array<int, 2>> edges, opposite;
   for (const auto& face : mesh_->triangles().faces) {
     for (std::size_t k = 0; k < 3; ++k) {

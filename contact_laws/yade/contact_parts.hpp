@@ -16,8 +16,7 @@ inline kernel::BodyMotion motion(const yade::State& state) {
 
 using stepper::axis_of;
 
-// Reports of failures, separate functions that keep texts out of the path of every step. Lengths in
-// m.
+// Report failures; separate functions, to keep texts out of the path of every step. Lengths in m.
 [[gnu::cold]] void fail_closed(const char* inner, yade::Real inner_radius, const char* outer,
                                yade::Real outer_radius, const yade::Scene& scene,
                                const yade::Interaction& contact);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds an invalid number of a scene and reports it as a failure with its name. The ranges of
-// links and contacts are in statejump/stepper/checks.hpp. Regular steps do not call these
-// functions.
+// Finds an invalid number of a scene and reports it as a failure with its name. The ranges of links
+// and contacts are in statejump/stepper/checks.hpp. Not called in regular steps.
 #pragma once
 
 #include <optional>

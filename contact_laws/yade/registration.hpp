@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Implements registered.hpp: Python class and serialization of every class. Only module.cpp
-// includes it.
+// Implements registered.hpp: Python class and serialization of all classes. For module.cpp only.
 #pragma once
 
 #include <array>

@@ -19,8 +19,7 @@ namespace statejump::dem {
 namespace {
 
 // Acceleration of a body per unit force with the given arm [1/kg]: by translation along the force,
-// and by rotation if the body can rotate. The arm is zero for a force that does not rotate the
-// body.
+// and by rotation if the body can rotate. A force that does not rotate it has arm 0.
 Real mobility(const yade::State& state, Real arm_squared) {
   Real smallest_inertia = 0;
   for (int i = 0; i < 3; ++i) {

@@ -33,8 +33,7 @@ long steps_ahead(const yade::Scene& scene, long substeps) {
 
 long run(stepper::Scene& arrays, long steps, const stepper::Scene::CreatePhysics& make,
          const stepper::Scene::Observe& observe) {
-  // Energies are summed over all contacts in their order, step by step, so the scene must not be
-  // split.
+  // Energies are summed over all contacts in their order, so the scene must not be split.
   if (arrays.tracks_energy) return arrays.run(steps, make, observe);
   stepper::Partition partition(arrays);
   if (partition.size() == 1) return arrays.run(steps, make, observe);
@@ -125,8 +124,7 @@ class StepsAhead {
       if (done > 0) attempt(done, {});
     }
     if (!arrays_.has_finite_state()) {
-      // YADE's own loop must report the step with the invalid number; repeat only the steps before
-      // it.
+      // YADE's own loop reports the step with the invalid number; repeat the steps before it.
       arrays_ = start_;
       done = 0;
       while (arrays_.run(1, make_) == 1 && arrays_.has_finite_state()) ++done;

@@ -144,8 +144,7 @@ class Reader {
     return true;
   }
 
-  // Calls take_one for every functor of a dispatcher; false means that the functor is not
-  // supported.
+  // Calls take_one for every functor of a dispatcher; it returns false for unsupported ones.
   template <class Take>
   static void read_functors(const py::object& loop, const char* dispatcher, Take&& take_one) {
     const py::object functors(loop.attr(dispatcher).attr("functors"));

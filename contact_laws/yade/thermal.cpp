@@ -51,8 +51,7 @@ void throw_fault(const yade::Scene& scene, const ThermalLink& link) {
                  std::numeric_limits<Real>::quiet_NaN(), when(scene)});
 }
 
-// Throws because the stress-free length at this temperature is not positive or the force is not
-// finite.
+// Throws: the stress-free length at this temperature is not positive or the force not finite.
 [[gnu::cold, gnu::noinline]] void fail_force(const yade::Scene& scene, const ThermalLink& link,
                                              const stepper::LinkStep& step) {
   throw_fault(scene, link);

@@ -178,8 +178,7 @@ struct ThermalLinks : Registered<ThermalLinks, yade::GlobalEngine>, RaisesFailur
   }
 
  private:
-  // @param moment of this step's contacts on the tip [N m]; zero unless the tip rotates with the
-  //        link
+  // @param moment of the contacts on the tip [N m]; zero unless the tip rotates with the link
   void act(ThermalLink& link, const Vector3r& moment);
   std::vector<Vector3r> moments_;
   std::array<int, 4> energy_ids_ = {-1, -1, -1, -1};

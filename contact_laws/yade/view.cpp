@@ -28,8 +28,7 @@ constexpr int sides = 96;
 constexpr Real pi = 3.14159265358979323846;
 
 // Restores YADE's drawing state. The matrix is excluded: YADE saves it around each body, and
-// OpenGL's matrix stack is short. After about thirty pictures YADE has left room for only one more
-// matrix on it.
+// OpenGL's matrix stack is short. After about thirty pictures it has room for only one more.
 class Painter {
  public:
   Painter(const Vector3r& color, Real opacity) {

@@ -97,8 +97,7 @@ struct Minimum {
   double value;
 };
 
-/// Drops minima that rise by less than the prominence before the next lower minimum; the lowest one
-/// always stays.
+/// Drops minima that rise by less than the prominence before a lower one; the lowest always stays.
 void drop_flat(std::vector<Minimum>& minima, const std::vector<double>& values, double prominence) {
   const int count = static_cast<int>(values.size());
   while (minima.size() > 1) {
@@ -121,8 +120,7 @@ void drop_flat(std::vector<Minimum>& minima, const std::vector<double>& values, 
   }
 }
 
-/// Distance of the wall from the journal's centre along a direction in its section, with
-/// derivatives.
+/// Distance of the wall from the journal's centre in a direction of its section; derivatives.
 struct Section {
   const BoreMesh::Impl& m;
   Vector3 centre, axis;
@@ -150,8 +148,7 @@ struct Section {
     return true;
   }
 
-  /// Finds the local minimum between two angles relative to `start`; false if there is no wall at
-  /// `start`.
+  /// Finds the local minimum between two angles relative to `start`; false if `start` has no wall.
   bool minimum(const Vector3& start, double low, double high, int near, Sample& best) const {
     const Vector3 across = cross(axis, start);
     double angle = 0;
@@ -269,8 +266,7 @@ std::vector<BoreContact> find_contacts(const BoreMesh::Impl& m, const Vector3& j
     const double after = distance[(c + 1) % columns];
     if (!(here <= before && here < after) && !(here < before && here <= after)) continue;
     // Between columns the wall may be nearer than at the sample, by the estimate of a parabola.
-    // Linear interpolation between rows adds an error of at most an eighth of the second
-    // difference.
+    // Interpolation between rows adds an eighth of the second difference.
     double below = 0;
     for (const double side : {before, after})
       if (side < infinity) below = std::max(below, side - here);

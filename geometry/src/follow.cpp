@@ -109,8 +109,7 @@ void write_patch(double* patch, const Hit& hit, const Probe& probe, bool is_ball
   patch[at_face] = hit.face;
 }
 
-/// Moves a patch along the smooth wall to the new position of its contact; false if a search is
-/// needed.
+/// Moves a patch on the smooth wall to its contact's new position; false if a search is needed.
 bool refine(const BoreMesh::Impl& m, double* patch, const Probe& probe, bool is_ball, double angle,
             FollowedContact& one) {
   const Vector3 start = ConstVector(patch + at_normal);

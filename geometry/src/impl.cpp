@@ -25,8 +25,7 @@ constexpr int most_steps = 4096;               // largest number of faces that f
 constexpr double prominence_per_mismatch = 4;  // see BoreMesh::prominence()
 constexpr double least_prominence = 1e-12;     // [m]
 
-/// Runs work(begin, end) on parts of 0..count in several threads. The result must not depend on the
-/// split.
+/// Runs work(begin, end) on parts of 0..count in threads. Results must not depend on the split.
 template <class Work>
 void in_parallel(int count, const Work& work) {
   const int threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 8);
@@ -147,9 +146,8 @@ void BoreMesh::Impl::make_jets(int degree) {
       ring.assign(1, v);
       seen[v] = v;
       std::size_t done = 0;
-      // If the first ring alone exceeds most_neighbours, two complete rings are used: part of the
-      // first ring would not determine the surface on the other side, and one ring not the fourth
-      // order.
+      // If the first ring alone exceeds most_neighbours, two complete rings are used: part of a
+      // ring does not determine the other side, and one ring not the fourth order.
       std::size_t taken = most_neighbours;
       for (int rings = 0; rings < 6; ++rings) {
         const std::size_t last = ring.size();
@@ -247,8 +245,7 @@ void BoreMesh::Impl::make_grid() {
       grid.face[cell] = hit.face;
     }
   }
-  // Between samples the wall can be nearer, at most by the largest difference of neighbouring
-  // samples.
+  // Between samples the wall can be nearer, at most by the largest difference of neighbours.
   double least = std::numeric_limits<double>::infinity(), largest_step = 0;
   for (int r = 0; r < grid.rows; ++r)
     for (int c = 0; c < grid.columns; ++c) {
@@ -263,8 +260,7 @@ void BoreMesh::Impl::make_grid() {
   make_reach();
 }
 
-/// Each sample represents the wall half-way to its neighbours, or all the way if a neighbour is
-/// missing.
+/// A sample represents the wall half-way to its neighbours, all the way if one of them is missing.
 void BoreMesh::Impl::make_reach() {
   grid.reach.assign(grid.radius.size(), 0);
   for (int cell = 0; cell < static_cast<int>(grid.radius.size()); ++cell) {
@@ -282,8 +278,7 @@ void BoreMesh::Impl::make_reach() {
 
 /// Rejects facets that are too coarse to determine the surface between them. At 95 % of the edges
 /// the uncertainty must be below a fiftieth of the radius, which is the whole clearance of a wide
-/// joint. At the others, such as sharp edges, it must be below half a radius. No polynomial may
-/// diverge.
+/// joint. Elsewhere, as at sharp edges, the limit is half a radius. No polynomial may diverge.
 void BoreMesh::Impl::refuse_coarse(const std::string& name) const {
   const double usual = (prominence - least_prominence) / prominence_per_mismatch;
   const double allowed = 0.02 * wall.radius;
@@ -355,8 +350,7 @@ Hit BoreMesh::Impl::follow(const Vector3& point, const Vector3& direction, int s
     const Vector3 a = jet[c[0]].origin - point;
     const Vector3 b = jet[c[1]].origin - point;
     const Vector3 d = jet[c[2]].origin - point;
-    // Signed volumes. Both faces of an edge compute the same number, so no line passes between
-    // them.
+    // Signed volumes: equal for both faces of an edge, so no line passes between them.
     const std::array<double, 3> volume{direction.dot(cross(b, d)), direction.dot(cross(d, a)),
                                        direction.dot(cross(a, b))};
     const double sum = volume[0] + volume[1] + volume[2];
@@ -488,8 +482,7 @@ bool BoreMesh::Impl::descend(const Vector3& query, Hit& hit) const {
       }
       blend(target, hit.normal, next);
       const double now = (query - next.point).norm();
-      // The tolerance admits the last quadratic steps, which change the distance by less than
-      // rounding.
+      // Accepts the last quadratic steps, which change the distance by less than rounding.
       if (now <= distance * (1 + 4e-16) + 1e-17) {
         const bool last = move.norm() <= 1e-13 * wall.radius;
         hit = next;

@@ -82,8 +82,7 @@ struct BoreMesh::Impl {
   void blend(const Vector3& point, const Vector3& direction, Hit& hit) const;
   /// blend() without normal and curvature.
   double blended_parameter(const Vector3& point, const Vector3& direction, const Hit& hit) const;
-  /// Nearest point of the smooth wall, from a start on it; false if the foot point is outside the
-  /// wall.
+  /// Nearest point of the smooth wall, from a start on it; false if the iteration leaves the wall.
   bool descend(const Vector3& query, Hit& hit) const;
 
   Triangles mesh;

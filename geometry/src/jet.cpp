@@ -127,8 +127,7 @@ Jet fit_jet(const Vector3& origin, const Vector3& normal, const Vector3& along,
   Jet jet;
   jet.origin = origin;
   jet.normal = normal;
-  // With axes along those of the surface, coefficients that the neighbours do not determine are
-  // small.
+  // Along the axes of the surface, coefficients that the neighbours do not determine are small.
   const Vector3 projected = along - along.dot(normal) * normal;
   if (projected.squaredNorm() > 0.01) {
     jet.tangent_v = projected.normalized();

@@ -34,8 +34,7 @@ struct Jet {
   JetHit hit(const Vector3& point, const Vector3& direction, double guess) const;
 };
 
-/// Fits a jet to the neighbours of a vertex by least squares; the surface passes through the
-/// vertex.
+/// Fits a jet to the neighbours of a vertex by least squares; it passes through the vertex.
 ///
 /// Columns are scaled by 0.05^(degree - 1), about the ratio of the stencil size to the radius of
 /// curvature. If the neighbours do not determine all coefficients, this favours the lower powers.

@@ -33,8 +33,7 @@ std::vector<Loop> border_loops(const Triangles& mesh, const Neighbours& neighbou
 /// Rejects the first pair of faces that intersect (CGAL, exact predicates).
 void check_self_intersection(const Triangles& mesh, const std::string& name);
 
-/// Neighbours among the given faces only, as indices in `faces`; -1 if a neighbour is not among
-/// them.
+/// Neighbours among the given faces only, as indices in `faces`; -1 for other neighbours.
 Neighbours restricted(const Neighbours& neighbours, const std::vector<int>& faces, int face_count);
 
 inline Vector3 cross(const Vector3& a, const Vector3& b) {

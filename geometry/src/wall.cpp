@@ -67,8 +67,7 @@ std::vector<Weighted> corners(const Triangles& mesh, const std::vector<Face>& fa
   return result;
 }
 
-/// Kasa's fit |p|^2 = 2 c p + k, linear in c and k; for a cylinder in the plane perpendicular to
-/// the axis.
+/// Kasa's fit |p|^2 = 2 c p + k, linear in c and k; for a cylinder in its cross-section.
 Round linear_fit(const std::vector<Weighted>& points, const Vector3& axis, SurfaceKind kind) {
   Vector3 mean = Vector3::Zero();
   double total = 0;
@@ -141,8 +140,7 @@ Vector3 axis_of_normals(const std::vector<Face>& faces, const std::vector<int>& 
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum).eigenvectors().col(0);
 }
 
-/// Area-weighted mean cosine of the angle between the normals and the direction to the axis
-/// (centre).
+/// Area-weighted mean cosine between the normals and the direction to the axis (centre).
 double inward(const std::vector<Face>& faces, const std::vector<int>& chosen, const Round& round,
               SurfaceKind kind) {
   double sum = 0, total = 0;

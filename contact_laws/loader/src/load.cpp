@@ -52,8 +52,7 @@ bool is_in_the_project(laws::LawKind kind, const std::string& name) {
   return false;
 }
 
-/// Replaces each parameter by the program's own of that name. @return the first unknown name, or an
-/// empty string
+/// Replaces each parameter by the program's own of that name. @return first unknown name
 std::string adopt_parameters(laws::LawInfo& info) {
   namespace known = laws::parameter;
   for (const laws::LawParameter*& parameter : info.parameters) {

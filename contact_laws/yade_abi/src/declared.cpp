@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Converts the compiled declarations into data. The only source file of the guard that includes
-// them.
+// Converts the compiled declarations into data. Only this file of the guard includes them.
 #include <cxxabi.h>
 
 #include <cstdlib>

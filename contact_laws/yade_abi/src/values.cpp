@@ -21,8 +21,7 @@ namespace py = boost::python;
 using Offsets = std::vector<std::size_t>;
 using SharedPointer = boost::shared_ptr<void>;  // all boost::shared_ptr have the same layout
 
-// Address of the YADE object behind a Python object, as the named class; null if it is of another
-// class.
+// Address of the YADE object behind a Python object, as the named class; null for other classes.
 char* place_of(const py::object& object, const std::string& class_name) {
   const auto* type =
       static_cast<const std::type_info*>(symbol("_ZTIN4yade" + mangled_name(class_name) + "E"));
@@ -345,8 +344,7 @@ class Search {
            "body");
   }
 
-  // Lets the library add an interaction between the two bodies, and searches for it in the
-  // container.
+  // Lets the library add an interaction of both bodies and searches for it in the container.
   void interactions() {
     const auto* list = member("BodyContainer", "body");
     if (!list) return;
@@ -367,8 +365,7 @@ class Search {
       if (read_as<Word>(before.data() + i) == 0) count.push_back(i);
     }
     expect_at("InteractionContainer", "currSize", count);
-    // The list begins with a pointer to its array; the array begins with a pointer to the
-    // interaction.
+    // The list begins with a pointer to its array, the array with one to the interaction.
     const Word table = table_pointer("Interaction");
     Word found = 0;
     expect_at("InteractionContainer", "linIntrs",

@@ -28,15 +28,13 @@ void read_off(std::string_view content, Reading& reading) {
       reading.refuse_line(words.line(), "should hold the numbers of vertices and faces");
   }
   words.skip_line();  // the number of edges
-  // The shortest vertex is "0 0 0", the shortest face "3 0 1 2", each with a line end: 6 and 8
-  // bytes.
+  // The shortest vertex is "0 0 0", the shortest face "3 0 1 2", with line ends 6 and 8 bytes.
   const std::uint64_t length = content.size() + 1;
   if (counts[0] > length / 6 || counts[1] > (length - 6 * counts[0]) / 8)
     reading.refuse("it declares " + std::to_string(counts[0]) + " vertices and " +
                    std::to_string(counts[1]) + " faces, which do not fit into its " +
                    std::to_string(content.size()) + " bytes");
-  // One line per vertex. Only its first three numbers are used; normal, colour or texture may
-  // follow.
+  // One line per vertex. Normal, colour or texture may follow the three coordinates.
   for (std::uint64_t i = 0; i < counts[0]; ++i) {
     if (!words.next(word)) reading.refuse("it ends before its last vertex");
     Eigen::Vector3d point;

@@ -30,8 +30,7 @@ class Reading {
   }
 
   void add_point(const Eigen::Vector3d& point) { points_.push_back(point); }
-  /// Call it if coordinates are 32-bit floats: the same vertex may then differ by rounding between
-  /// faces.
+  /// Call it for 32-bit coordinates: the same vertex may then differ by rounding between faces.
   void has_floats() { floats_ = true; }
   /// @param corners indices from 0, checked only at the end. Polygons with fewer than three corners
   ///        are left out: some programs write edges and points in this way.
@@ -59,8 +58,7 @@ class Reading {
                        " vertices");
       std::array<int, 3> face{};
       for (std::size_t k = 0; k < 3; ++k) face[k] = number[static_cast<std::size_t>(fans_[f][k])];
-      // Leave out facets with two equal corners, which some exporters write; the surface does not
-      // change.
+      // Leaves out facets with two equal corners, which exporters write; the surface is the same.
       if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])
         ++result.removed;
       else

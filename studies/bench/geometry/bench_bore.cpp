@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cost of a bore given by triangles, by number of faces, compared with the closed form of a round
-// one.
+// Cost of a bore given by triangles, by number of faces, and of the closed form of a round one.
 //
 //     build/bin/geometry_bench --benchmark_counters_tabular=true   (wherever the build puts it)
 #include <benchmark/benchmark.h>

@@ -17,8 +17,7 @@ using testing::random_problem;
 /// Status of one contact in two dimensions.
 enum class Guess { open, stick, slide_plus, slide_minus };
 
-/// Reactions for given statuses if these are consistent. This reference uses no code of the
-/// solvers.
+/// Reactions for given statuses if these are consistent; uses no code of the solvers.
 std::optional<Eigen::VectorXd> with_statuses(const Problem& problem,
                                              const std::vector<Guess>& guesses) {
   const Eigen::MatrixXd& w = std::get<Eigen::MatrixXd>(problem.delassus);
@@ -103,8 +102,7 @@ TEST(TwoContacts, give_one_of_the_enumerated_solutions) {
       EXPECT_LT(nearest, 1e-5 * problem.q.norm()) << to_string(method) << ", problem " << k;
     }
   }
-  // Friction up to 1.5 makes some problems ambiguous; otherwise the reference found only one
-  // solution.
+  // Friction up to 1.5 must make some problems ambiguous and the reference must find that.
   EXPECT_GT(several, 0);
 }
 

@@ -103,8 +103,7 @@ TEST(Parts, BlockSystemSolvesItsEquations) {
 }
 
 TEST(Parts, ContactThatDoesNotApproachCarriesNothing) {
-  // With friction of 4, coupling could also hold the contact without any load: that is a second
-  // solution.
+  // With friction of 4, coupling could also hold it without any load: a second solution.
   BlockMatrix w = BlockMatrix::Identity() * 3.0;
   w(0, 1) = w(1, 0) = 1.0;
   for (const double apart : {0.0, 1e-3}) {
@@ -141,8 +140,7 @@ TEST(Parts, LemkeSolvesByItself) {
     int pivots = 0;
     const auto reactions = lemke(scaled, 200, pivots);
     ASSERT_TRUE(reactions) << run;
-    // Tolerance: some twenty pivots on a table with entries of order 1, whose condition numbers
-    // multiply.
+    // Some twenty pivots on a table with entries of order 1; their condition numbers multiply.
     EXPECT_LT(Iterate(scaled, *reactions).merit, 1e-9) << run;
     EXPECT_GT(pivots, 0);
     // Contacts that separate even without friction carry no reaction and need no pivot.

@@ -236,8 +236,7 @@ TEST(BoreContacts, AtTheEndOfAWallThatNarrowsThere) {
 }
 
 TEST(BallContacts, OnePlaceIsOneContact) {
-  // If grid rows are much closer than columns, an oblique valley of the distance has two minima in
-  // the samples.
+  // If grid rows are much closer than columns, an oblique valley of the distance has two minima.
   BoreShape shape{bearing_radius, 5e-3};
   shape.lobes = {{8, 1e-4, 0.3}, {7, 6e-5, 1.1}};
   const BoreMesh mesh(bore_triangles(shape, 150, 5));

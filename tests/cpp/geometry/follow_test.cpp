@@ -235,8 +235,7 @@ TEST(FollowedContacts, AWallThatIsNotFlatterThanTheJournalIsSearchedAnew) {
 }
 
 TEST(FollowedContacts, ALabelStaysWithItsPlaceWhenAnotherComesFirst) {
-  // Pressed towards a lobe's widest point, the journal touches both flanks; the deeper contact
-  // comes first.
+  // Towards a lobe's widest point, the journal touches both flanks; the deeper contact is first.
   const BoreMesh mesh(bore_triangles(lobed({{3, 4e-5, 0}}), 240, 10));
   std::vector<double> track;
   std::vector<FollowedContact> found;

@@ -41,8 +41,7 @@ void expect_refused(MeshFormat format, const std::string& prefix,
   }
 }
 
-/// Binary STL of two triangles with a common edge. `moved` shifts the shared vertices of the second
-/// one.
+/// Binary STL of two triangles with a common edge. `moved` shifts its vertices in the second one.
 std::string two_facets(float moved) {
   const float corners[2][4][3] = {{{0, 0, 1}, {0, 0, 0}, {5, 0, 0}, {0, 3, 0}},
                                   {{0, 0, 1}, {5 + moved, 0, 0}, {5, 3, 0}, {0, 3 + moved, 0}}};

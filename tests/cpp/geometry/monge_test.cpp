@@ -103,8 +103,7 @@ TEST(JetFit, CurvatureIsTheChangeOfTheNormal) {
       const auto after = at(du, dv), before = at(-du, -dv);
       const Vector3d way = (after.first - before.first) / (2 * step);
       const Vector3d turn = (after.second.normal - before.second.normal) / (2 * step);
-      // Error of central differences: step^2 times third derivatives of order 10, plus rounding
-      // over step.
+      // Central differences: step^2 times third derivatives of order 10, plus rounding/step.
       EXPECT_NEAR((turn + at(0, 0).second.bend * way).norm(), 0, 2e-8) << i;
     }
   }

@@ -275,8 +275,7 @@ TEST(SmoothWall, SharpEdgesAlongTheBoreDoNotReachIntoItsSides) {
       worst = std::max(worst, std::abs(found.distance));
     }
   // A round bore with facets of this angle has 2 pi / facet = 195 around and an error of 2e-13 m.
-  // Beside the edge the fit is one-sided: 1e-10 m is ample, but a fit across the edge would exceed
-  // it.
+  // Beside the edge the fit is one-sided: 1e-10 m is ample, a fit across the edge exceeds it.
   EXPECT_LT(worst, 1e-10);
 }
 

@@ -27,8 +27,7 @@ using Eigen::Vector2d;
 constexpr auto rigid = TangentialCompliance::rigid;
 constexpr auto mindlin = TangentialCompliance::mindlin;
 
-/// Umbrella whose torsion spring is stress-free off the ideal flare angle, so it always loads the
-/// joint.
+/// The torsion spring is stress-free off the ideal flare angle, so it always loads the joint.
 linkage::Linkage biased(double mu, double bias = 0.05, double stiffer = 1.0) {
   linkage::Linkage model = umbrella();
   model.law.friction = kernel::laws::friction_law(mu > 0.0 ? "mindlin" : "none");
@@ -40,8 +39,7 @@ linkage::Linkage biased(double mu, double bias = 0.05, double stiffer = 1.0) {
   return model;
 }
 
-/// Model without default values that could hide errors: paper's radius, expanding radii, unequal
-/// links.
+/// No default values that could hide errors: paper's radius, expanding radii, unequal links.
 linkage::Linkage expanding(double mu) {
   linkage::Linkage model = biased(mu, -0.05);
   model.law.normal = kernel::laws::normal_law("hertz_paper");
@@ -109,8 +107,7 @@ TEST(ElasticLoop, PointsAreEquilibriaByVirtualWork) {
       for (const ElasticJointPoint& point : loop.points) {
         EXPECT_GT(point.normal_force, 0.5);
         EXPECT_LT(out_of_balance(model, point), 1e-7);
-        // With a single contact point the joint force is parallel to AC, for elastic and for rigid
-        // links.
+        // With a single contact point the joint force is parallel to AC, also for elastic links.
         EXPECT_NEAR(std::atan2(point.tangential_force, point.normal_force), point.contact_angle,
                     1e-12);
         EXPECT_LE(std::abs(point.tangential_force),
@@ -134,7 +131,7 @@ TEST(ElasticLoop, LoadedStateIsAtRestForTheDynamics) {
       model.axial_damping_ratio = 0.1;
       const thermal::Program hold = heating(0.02, 0.0);
       const linkage::State end = simulate(model, hold, state, {2000, 0}).samples.back().state;
-      // Rounding of positions by 1e-17 m leaves an unbalanced force of k_T times that, 1e-10 N. It
+      // Rounding of positions, 1e-17 m times k_T, leaves an unbalanced force of 1e-10 N. It
       // displaces the softest mode, rotation of the contact angle with about F/c = 1e4 N/m, by
       // 1e-14 m.
       EXPECT_LT((end.bearing_centre - state.bearing_centre).norm(), 1e-13);
@@ -185,8 +182,7 @@ TEST(ElasticLoop, EnoughFrictionLeavesNoJump) {
   }
   // No drift: the rolled arc is measured from the start of rolling, not accumulated step by step.
   EXPECT_NEAR(elastic_loop(biased(0.6), heating(), {100000, rigid}).theta2_jump(), 0.0, 1e-15);
-  // The Mindlin spring leaves a small jump: it keeps its force on loading and its slide on
-  // unloading.
+  // The spring leaves a small jump: it keeps its force on loading, its slide on unloading.
   const ElasticLoop loop = elastic_loop(biased(0.6), heating(), {2000, mindlin});
   EXPECT_GT(std::abs(loop.theta2_jump()), 1e-10);
   EXPECT_LT(std::abs(loop.theta2_jump()), 1e-8);
@@ -251,8 +247,7 @@ TEST(ElasticLoop, StepsMayBeLongerThanTheRollBetweenTwoLimits) {
         const ElasticJointPoint& event = loop.events[i];
         EXPECT_EQ(event.slipping(), i % 2 == 1 || i == 4u * cycles);
         if (i < 8) continue;
-        // φ is accurate to 1e-14. φ and F_t/F_N change by 4e-3 per kelvin, so ΔT is accurate to
-        // 1e-11 K.
+        // φ is accurate to 1e-14. φ and F_t/F_N change by 4e-3 per kelvin, so ΔT to 1e-11 K.
         EXPECT_NEAR(event.temperature_change, loop.events[i - 4].temperature_change, 1e-10);
       }
     }
@@ -261,8 +256,7 @@ TEST(ElasticLoop, StepsMayBeLongerThanTheRollBetweenTwoLimits) {
 
 TEST(ElasticLoop, IncrementsAreOfSecondOrder) {
   // The cycle ends in a roll, so its whole path matters. Each halving of the step divides the error
-  // by 4. The shortened last step before slip changes this ratio by one part in N, the steps up to
-  // slip.
+  // by 4. The shortened step before slip changes this ratio by 1/N for N steps up to slip.
   for (const TangentialCompliance compliance : {rigid, mindlin}) {
     Eigen::Array2d values[4];
     for (int i = 0; i < 4; ++i) {
@@ -409,8 +403,7 @@ TEST(ElasticLoop, SlipMayEndWithinABranch) {
       const int last = static_cast<int>(end) - 1;
       ASSERT_EQ(loop.points[last].temperature_change, last);
       // Extrapolates ΔT at zero rate of plastic slide, by a parabola through three steps. The
-      // changing radii change the slope of the rate by α ΔT R/c, about 1e-3 per kelvin: third-order
-      // error 1e-4 K.
+      // changing radii change its slope by α ΔT R/c, 1e-3 per kelvin: third-order error 1e-4 K.
       Eigen::Matrix3d powers;
       Eigen::Vector3d heats;
       for (int i = 0; i < 3; ++i) {
@@ -424,8 +417,7 @@ TEST(ElasticLoop, SlipMayEndWithinABranch) {
       const double expected = powers.partialPivLu().solve(heats)[0];
       std::printf("slip ends at %.9f K, from the slide %.9f K\n", end, expected);
       EXPECT_NEAR(end, expected, 2e-4);
-      // The end is a root of the rate, not of increments, so only rounding remains: 1e-18 m/K by
-      // 1e-12 m/K².
+      // A root of the rate, not of increments: only rounding, 1e-18 m/K by 1e-12 m/K².
       EXPECT_NEAR(run(model, 7, compliance).events[1].temperature_change, end, 1e-5);
     }
     // δ/c = 1e-7 relative to a slope change of α ΔT = 1e-3 over 50 K: 5e-3 K if nothing cancels.
@@ -462,8 +454,7 @@ TEST(ElasticLoop, SeparatesWhereTheForceVanishes) {
                   2e-8);
     }
   }
-  // With more friction the joint rolls there. The elastic loop differs by the depth, δ/c = 2.5e-4
-  // of the angle.
+  // With more friction the joint rolls there. Depth causes a difference δ/c = 2.5e-4 of the angle.
   for (const TangentialCompliance compliance : {rigid, mindlin}) {
     const RigidLoop rolls = rigid_loop(biased(0.6, bias), heating(1.0, -100.0));
     const ElasticLoop rolling =
@@ -502,8 +493,7 @@ TEST(ElasticLoop, SlowDampedDynamicsTendsToIt) {
         2.0 * error[2] - error[1]);
     EXPECT_NEAR(error[0] / error[1], 2.0, 2.0 * std::abs(error[0] / jump));
     EXPECT_NEAR(error[1] / error[2], 2.0, 2.0 * std::abs(error[1] / jump));
-    // Error without the leading term. If the cycle ends in a roll, it distinguishes the two
-    // compliances.
+    // Error without the leading term. After a final roll it distinguishes the compliances.
     const double rest = error[1] * error[1] / std::abs(jump);
     EXPECT_LT(std::abs(2.0 * error[2] - error[1]), rest);
     if (loop.events.back().motion == JointMotion::roll) {
@@ -516,8 +506,7 @@ TEST(ElasticLoop, SlowDampedDynamicsTendsToIt) {
 
 TEST(ElasticLoop, SlowDampedDynamicsCreepsAsMuchWithPartialSlip) {
   // Without gross slip nothing lags behind the friction limit: the error is A/T^2 + B/T^3 + ...
-  // After Richardson extrapolation less than a quarter of the last error remains, as for the B
-  // term.
+  // Richardson extrapolation leaves less than a quarter of the last error, the B term.
   linkage::Linkage model = with_partial_slip(biased(0.4));
   model.axial_damping_ratio = 0.1;
   model.pin_damping = 0.1;

@@ -40,8 +40,7 @@ TEST(RigidLoop, PointsAreEquilibria) {
     EXPECT_NEAR((point.journal_centre - Eigen::Vector2d(frame, 0.0)).norm(), 0.1 * growth, 1e-16);
     EXPECT_NEAR(point.eccentricity.norm(), 1e-4, 1e-16);
     EXPECT_LE(std::abs(point.contact_angle), std::atan(0.3));
-    // Moments of both links about their pins, with force (f, 0) at the contact point of the
-    // bearing.
+    // Moments of both links about their pins; force (f, 0) at the bearing's contact point.
     const double height =
         point.bearing_centre.y() + model.bearing_radius * point.eccentricity.y() / 1e-4;
     const double f = point.spring_moment / height;

@@ -127,8 +127,7 @@ TEST(ContactLaw, TangentialDamping) {
   EXPECT_NEAR(response.damping_dissipation, damping * speed * speed * 1e-6, 1e-20);
   // The history stores only the spring force.
   EXPECT_EQ(history.tangential_force, undamped_history.tangential_force);
-  // Fast but still sticking: the sum is limited to the Coulomb limit; the remaining viscous part
-  // dissipates.
+  // Fast but sticking: the sum is limited to the Coulomb limit; the rest still dissipates.
   response = hertz_mindlin(parameters, kinematics(1e-6, Vector3(0, 0.2, 0.1)), history);
   EXPECT_FALSE(history.slipping);
   EXPECT_NEAR(response.tangential_force.norm(), 0.3 * response.normal_force, 1e-13);
@@ -248,8 +247,7 @@ TEST(ContactLaw, DampingRatioOfASmallOscillation) {
   EXPECT_GE(peaks, 5);
 }
 
-// Leapfrog with a lagged damping force is bounded just below the critical step and diverges just
-// above it.
+// Leapfrog with a lagged damping force is bounded below the critical step, diverges above it.
 TEST(ContactLaw, CriticalTimeStepIsTheStabilityLimit) {
   const double mass = 0.3;
   for (const double stiffness : {0.0, 2e5, 4e7}) {

@@ -58,8 +58,7 @@ TEST(EllipticHertz, AgreesWithJohnsonByArithmeticGeometricMean) {
     const double larger = 3.9;
     const EllipticShape shape = elliptic_shape({larger, larger / ratio, 0});
     const Reference expected = reference(larger, static_cast<long double>(larger / ratio));
-    // Near the circle the reference loses digits: K - E is 1e-2 of K at ratio 1.01, which leaves
-    // 1e-16.
+    // Near the circle the reference loses digits: K - E is 1e-2 of K at ratio 1.01: 1e-16.
     EXPECT_NEAR(shape.short_axis / shape.long_axis, expected.axes, 1e-12 * expected.axes);
     EXPECT_NEAR(shape.long_axis, expected.long_axis, 1e-12 * expected.long_axis);
     EXPECT_NEAR(shape.stiffness, expected.stiffness, 1e-12 * expected.stiffness);
@@ -145,8 +144,7 @@ TEST(EllipticHertz, MonotonicInTheRatio) {
 }
 
 TEST(EllipticHertz, RelativeCurvatures) {
-  // Journal in a bore with parallel axes: line contact. At a right angle: curvatures 1/R1 and
-  // -1/R2.
+  // Journal in a bore, parallel axes: line contact. At a right angle: 1/R1 and -1/R2.
   const RelativeCurvature line = relative_curvature(200, 0, -196, 0, 0);
   EXPECT_DOUBLE_EQ(line.larger, 4);
   EXPECT_DOUBLE_EQ(line.smaller, 0);

@@ -18,8 +18,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // Two ways to evaluate one product formula differ by about ten roundings of 1.1e-16.
 constexpr double rounding = 2e-15;
 
-// Paper, Table 2 with R1 = 5 mm and c = 0.1 mm. Expected values: 40-digit arithmetic, rounded to
-// double.
+// Paper, Table 2 with R1 = 5 mm and c = 0.1 mm. Expected values in 40-digit arithmetic.
 TEST(Hertz, PaperTable2Stiffness) {
   const ElasticPair pair = elastic_pair(70e9, 0.3, 70e9, 0.3);
   EXPECT_NEAR(pair.effective_young_modulus, 38461538461.538461538, rounding * 3.9e10);

@@ -291,8 +291,7 @@ TEST(Transport, SpecialCases) {
 }
 
 // A journal rolls around its bearing a hundred times in small steps. All normals lie in one plane
-// (no holonomy), so the force must return to its initial value, in the plane and with full
-// magnitude.
+// (no holonomy), so the force must return to its initial value, with full magnitude.
 TEST(Transport, DoesNotDriftOverManySteps) {
   Vector3 force(0, 3, 4);
   Vector3 normal = Vector3::UnitX();

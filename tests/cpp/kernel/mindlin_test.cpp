@@ -195,8 +195,7 @@ TEST(Mindlin, UnloadingCreatesNoEnergy) {
   }
 }
 
-// During continued sliding, friction does no positive work under decreasing, constant or rising
-// load.
+// While sliding, friction does no positive work under decreasing, constant or rising load.
 TEST(Mindlin, FrictionPowerIsNotPositiveInSliding) {
   ContactHistory history;
   const Vector3 slide(1e-6, 2e-6, 0);

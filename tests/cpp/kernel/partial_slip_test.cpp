@@ -70,8 +70,7 @@ double cattaneo(double share) {
 }
 
 TEST(PartialSlip, OneDirectionNeedsNoMorePointsThanItHasPieces) {
-  // Slipping annuli follow one bound, sticking ones another line: pieces from many steps are
-  // merged.
+  // Slipping annuli follow one bound, sticking ones another: pieces of many steps are merged.
   for (const int steps : {1, 50}) {
     Contact contact = pressed();
     contact.in_steps(usual_depth, {0.6 * Contact::gross(usual_depth), 0.0}, steps);
@@ -157,8 +156,7 @@ TEST(PartialSlip, AsManyPointsAsFitStay) {
 }
 
 TEST(PartialSlip, AtConstantLoadAPointThatSaysHardlyAnythingStays) {
-  // A corner of 1e-13 of the bound: above rounding, below the threshold used when the contact
-  // grows.
+  // A corner of 1e-13 of the bound: above rounding, below the threshold of a growing contact.
   const double edge = Contact::stiffness(usual_depth);
   const double limit = mu * Contact::normal(usual_depth);
   const double bound = 1.5 * limit / edge;
@@ -183,8 +181,7 @@ TEST(PartialSlip, LoadingUnloadingReloadingAtConstantLoad) {
     Contact contact = pressed();
     EXPECT_NEAR(contact.in_steps(usual_depth, {0.6 * gross, 0.0}, steps), limit * cattaneo(0.6),
                 tolerance);
-    // Masing's rule from the reversal point: twice the slide, twice the force (Mindlin, Deresiewicz
-    // 1953)
+    // Masing's rule from the reversal: twice slide and force (Mindlin, Deresiewicz 1953)
     for (const double back : {0.3, 0.7}) {
       EXPECT_NEAR(contact.in_steps(usual_depth, {(0.6 - back) * gross, 0.0}, steps),
                   limit * (cattaneo(0.6) - 2.0 * cattaneo(0.5 * back)), tolerance);
@@ -206,8 +203,7 @@ TEST(PartialSlip, LoadingUnloadingReloadingAtConstantLoad) {
 
 TEST(PartialSlip, NestedReversalsFollowMasingHoweverManyPointsStick) {
   // Each branch is twice the loading curve from its reversal point. Deep in the nest most points
-  // only move with the slide. Then all reversals are passed again: a closed loop is erased from the
-  // memory.
+  // only move with the slide. Then back over all reversals: a closed loop is erased.
   const double limit = mu * Contact::normal(usual_depth);
   const double gross = Contact::gross(usual_depth);
   constexpr int turns = 14;
@@ -531,8 +527,7 @@ TEST(PartialSlip, RandomHistoriesAgainstManyPunches) {
 }
 
 TEST(PartialSlip, RandomHistoriesInThePlane) {
-  // one step per turn: each a straight path in a new direction; chords of 1e-4 of the force per
-  // piece
+  // one step per turn: a straight path in a new direction; chords of 1e-4 of the force per piece
   const Difference one = against_punches(200, 30, 400, 1, true);
   EXPECT_LE(one.mean_square, 5e-4);
   EXPECT_LE(one.worst, 4e-3);

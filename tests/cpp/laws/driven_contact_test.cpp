@@ -83,8 +83,7 @@ TEST(DrivenContact, ForcesAreTurnedIntoDepthAndSlide) {
   EXPECT_EQ(let_go.depth, 0.0);
 }
 
-/// The contact closes at depth 0: earlier slide does not count. Half of this path is without
-/// contact.
+/// The contact closes at depth 0: earlier slide does not count. Half of this path is in the air.
 TEST(DrivenContact, LossAndReturnOfContact) {
   const DrivenContact contact = stuck();
   const double depth = 1e-6;

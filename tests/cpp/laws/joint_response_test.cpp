@@ -54,8 +54,7 @@ JointLaw law_of(const char* normal, const char* dissipation, const char* frictio
   return law;
 }
 
-// k_t = 4 (G*/E*) 2 E* a compared with 8 G* a: a few roundings, propagated by the step of the
-// spring.
+// k_t = 4 (G*/E*) 2 E* a compared with 8 G* a: a few roundings, propagated by the spring.
 TEST(JointResponse, DefaultLawsAreHertzMindlin) {
   const JointLaw law = law_of("hertz_internal", "none", "mindlin", "material");
   RandomJoint joint;
@@ -285,8 +284,7 @@ TEST(RadiusEnergyChange, ClosesAFiniteChangeForEveryLaw) {
     }
     const double expected = state(steps).elastic_energy - state(0).elastic_energy;
     EXPECT_GT(expected, 0.1 * state(0).elastic_energy);
-    // Trapezoidal rule: error V''' h^3/12 per step, h/delta = 0.3/200, i.e. (h/delta)^2/12 of the
-    // whole.
+    // Trapezoidal rule: error V''' h^3/12 per step, h/delta = 0.3/200, (h/delta)^2/12 of all.
     EXPECT_NEAR(work, expected, 1e-6 * expected) << name;
   }
 }

@@ -102,8 +102,7 @@ TEST_P(EveryNormalLaw, IsMonotoneAndConsistent) {
     const double h = 1e-5;
     const double slope = (force(depth * (1 + h)) - force(depth * (1 - h))) / (2 * h * depth);
     expect_relative(slope, state.stiffness, 2e-8, "dF/d(delta)");
-    // x = depth s^2 removes the square root of Hertz's force; a logarithm remains, 61 points
-    // suffice
+    // x = depth s^2 removes Hertz's square root; a logarithm remains, 61 points suffice
     const double energy = boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
         [&](double s) { return 2.0 * s * depth * force(depth * s * s); }, 0.0, 1.0, 8, 1e-12);
     expect_relative(energy, state.elastic_energy, 1e-10, "energy");
@@ -267,8 +266,7 @@ TEST(Dissipation, WhatIsPreparedAnswersTheSame) {
 TEST(Dissipation, ExactRestitutionReturnsWhatIsAsked) {
   for (const double e : {1.0, 0.999, 0.9, 0.8, 0.6, 0.4, 0.2, 0.1}) {
     const double a = damping_ratio(dissipation_law("exact_restitution"), {e, 1.0});
-    // Simpson's rule with many steps; below e = 0.1 the upper limit is too close to the pole at a e
-    // = 1
+    // Simpson's rule with many steps; below e = 0.1 the limit is too close to the pole a e = 1
     const auto depth = [a](double from, double to) {  // w(v): integral of v/(1 + a v) dv
       const int n = 200000;
       const double h = (to - from) / n;

@@ -175,8 +175,7 @@ TEST(ObliqueImpact, FiniteElementsOfASteelSphere) {
     std::printf("%-20s rms over mu v_n: contact point %.3f, spin %.3f\n", law, rms[i][0],
                 rms[i][1]);
   }
-  // tolerance of some hundredths for mesh and reading; the simple spring is at least four times
-  // less accurate
+  // tolerance of some hundredths for mesh and reading; the simple spring is four times worse
   EXPECT_LE(rms[1][0], 0.08);
   EXPECT_LE(rms[1][1], 0.06);
   EXPECT_GE(rms[0][0], 4.0 * rms[1][0]);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Laws accessed through a table of functions, as in shared objects; here the table is built in this
-// file.
+// Laws accessed through a table of functions, as in shared objects; here built in this file.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -303,8 +302,7 @@ TEST(UserLaws, TableSaysWhatItIs) {
   EXPECT_STREQ(table.name, "doubling");
   EXPECT_STREQ(table.kernel, "a hash");
   EXPECT_EQ(table.info, &Doubling::info);
-  // The number encodes the sizes as digits of base 31, modulo 2^32; here computed from the last
-  // digit.
+  // The number encodes the sizes as digits of base 31, modulo 2^32; here from the last digit.
   std::uint32_t expected = 0;
   std::uint32_t weight = 1;
   for (const std::size_t size :

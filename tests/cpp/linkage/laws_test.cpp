@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every law of the catalogue in the dynamics of the rib, and the adaptive method against fixed
-// steps.
+// Every law of the catalogue in the dynamics of the rib; adaptive steps compared with fixed ones.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -42,9 +41,8 @@ TEST(LinkageLaws, AccountClosesForEveryCombination) {
           }
           const linkage::Run fine = run(model, 40000);
           ASSERT_GT(fine.contacts, 0) << which;
-          // Impact speed and slip limit are located only to a step, so the energy balance is of
-          // second order in ω h = 0.0125. ω = 1e4 rad/s is the frequency of journal and links in
-          // contact.
+          // Impact speed and slip limit are located only to a step: energy balance of second order
+          // in ω h = 0.0125. ω = 1e4 rad/s is the frequency of journal and links in contact.
           const double scale = fine.samples.back().account.dissipation();
           EXPECT_LT(std::abs(fine.energy_residue), 1.6e-4 * scale) << which;
           EXPECT_EQ(fine.samples.back().account.impact_dissipation > 0.0, dissipation != "none")
@@ -135,8 +133,7 @@ TEST(LinkageLaws, RunThatStartsInContactSaysSo) {
 }
 
 TEST(LinkageLaws, DepthOutsideTheRangeStopsWithTheInstant) {
-  // Johnson's formula is valid up to 4 e^-2 ΔR = 0.54 ΔR; a journal that arrives at this speed
-  // exceeds it.
+  // Johnson's formula is valid up to 4 e^-2 ΔR = 0.54 ΔR; the fast journal exceeds it.
   const Linkage model = with_laws({"johnson", "none", "none", "material"});
   State state = initial_state(model, Start::rest, 0.0);
   state.journal_velocity = {200.0, 0.0};
@@ -203,8 +200,7 @@ TEST(LinkageAdaptive, FirstContactAndEnergy) {
     EXPECT_EQ(result.samples.size(), 2u);
   }
   // The error per step is proportional to the tolerance, and the step length to its power -1/5.
-  // Over three decades the residue should decrease by 250, less the effect of random contact
-  // phases.
+  // Over three decades the residue decreases by 250, less an effect of random phases.
   double coarse = 0.0;
   for (const double tolerance : {1e-7, 1e-10}) {
     const Linkage model = umbrella();

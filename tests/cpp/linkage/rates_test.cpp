@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Right-hand side of the ODE at single states: forces are derivatives of the energy, powers balance
-// it.
+// Right-hand side of the ODE at single states: forces derive from the energy, powers balance it.
 #include "linkage/rates.hpp"
 
 #include <gtest/gtest.h>
@@ -60,8 +59,7 @@ TEST(LinkageRates, ForcesAreTheSlopesOfTheEnergy) {
         const Energy e = energy(model, there, change);
         return e.axial + e.contact + e.torsion;
       };
-      // Central differences of fourth order; Hertz's force is smooth at 30 steps from the edge of
-      // contact.
+      // Central differences of fourth order; Hertz's force is smooth 30 steps from the edge.
       const double h = 1e-8;
       const double slope =
           (8.0 * (moved(h) - moved(-h)) - (moved(2.0 * h) - moved(-2.0 * h))) / (12.0 * h);
@@ -103,8 +101,7 @@ TEST(LinkageRates, PowersCloseTheAccountAtEveryInstant) {
       const double lost = rate[detail::axial_heat] + rate[detail::pin_heat] +
                           rate[detail::friction_heat] + rate[detail::impact_heat];
       const double scale = std::abs(rate[detail::thermal_work]) + lost;
-      // Rounding of energies of 1 J, 1e-16 J, over the step; plus the second-order error of the
-      // difference.
+      // Rounding of energies of 1 J, 1e-16 J, over the step; and second-order error.
       EXPECT_NEAR(power, rate[detail::thermal_work] - lost, 1e-7 + 1e-6 * scale) << friction;
       EXPECT_GT(rate[detail::axial_heat], 0.0);
       EXPECT_GT(rate[detail::pin_heat], 0.0);

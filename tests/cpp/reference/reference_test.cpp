@@ -358,8 +358,7 @@ TEST(Reference, EveryLawInFiftyDigits) {
     };
     const Big condition = r.normal.condition;
     note(c.names.normal + " force", state.force - r.normal.force, condition * r.normal.force);
-    // At the turning point of F, k is infinite: there the error of k, and of damping, is the
-    // square.
+    // At the turning point of F, k is infinite: the error of k and of damping is the square.
     note(c.names.normal + " stiffness", state.stiffness - r.normal.stiffness,
          condition * condition * r.normal.stiffness);
     note(c.names.normal + " energy", state.elastic_energy - r.normal.energy,

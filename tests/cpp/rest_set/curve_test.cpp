@@ -105,8 +105,7 @@ TEST(RestOnCurve, TwoForces) {
   }
 }
 
-/// Number of parts and length of the rest set of a lobed bore under F, counted in fine steps around
-/// it.
+/// Number of parts and length of the rest set of a lobed bore under F, counted in fine steps.
 std::pair<int, double> counted(double eps, const Vector2d& force, double mu) {
   const int n = 200000;
   const Curve curve = lobed_curve(c, eps, 3);

@@ -143,8 +143,7 @@ TEST(RestInSocket, Cap) {
   EXPECT_EQ(rest_in_socket(c, {{0, 0, 1}, {0, 1, 3}}, 0.0).any.parts.size(), 2u);
 }
 
-/// Area of the intersection of two caps of angular radius a at the angular distance g (unit
-/// sphere).
+/// Area of the intersection of two caps of angular radius a at angular distance g, unit sphere.
 double two_caps(double a, double g) {
   // Two sectors minus the kite between axes and corners, by spherical excess.
   const double half = std::acos(std::tan(0.5 * g) / std::tan(a));          // at the axis

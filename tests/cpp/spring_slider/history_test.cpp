@@ -72,9 +72,8 @@ TEST(SpringSliderHistory, EnergyBalances) {
     const Eigen::VectorXd residue =
         h.thermal_work - h.elastic_energy - h.preload_energy - h.friction_dissipation;
     // All terms are sums of a few dozen products of relative accuracy 1e-15. The largest is the
-    // elastic energy at the stop or the friction work. 1e-13 of it is a safe tolerance and far
-    // below the smallest term that could be missing, ½ (E A/l_T²)(x − x_T)² l̇_T, which is 1e-5 of
-    // it.
+    // elastic energy at the stop or the friction work. 1e-13 of it is a safe tolerance, far below
+    // the smallest possibly missing term, ½ (E A/l_T²)(x − x_T)² l̇_T: 1e-5 of it.
     const double scale = std::max({h.friction_dissipation.maxCoeff(), h.elastic_energy.maxCoeff(),
                                    h.preload_energy.maxCoeff()});
     EXPECT_LE(residue.cwiseAbs().maxCoeff(), 1e-13 * scale);

@@ -341,8 +341,7 @@ TEST(SpringSliderPath, CyclesThatAreLeftOutAreComputed) {
 }
 
 TEST(SpringSliderPath, MemoryOfALongProgramIsThatOfTheTimes) {
-  // For any number of cycles the same segments are stored; per cycle only one number remains, its
-  // end.
+  // For any number of cycles the same segments are stored; per cycle only its end remains.
   const auto kept = [](int cycles) {
     const thermal::Program program = cycle(thermal::Shape::sine, cycles);
     const Eigen::Vector2d ends(0.0, program.duration());
@@ -479,8 +478,7 @@ TEST(SpringSliderPath, PlayWiderThanTheClearanceLeavesTheStopsFree) {
 namespace {
 
 /// Block in its play after one step. Its position depends only on the middle p of the play: it is
-/// the position with D = 0 if that lies within the play, else an end of the play, with or without
-/// slip.
+/// the position with D = 0 if that lies within the play, else an end of the play.
 struct Played {
   double x;
   double middle;
@@ -490,8 +488,7 @@ Played moved_in_play(const SpringSlider& model, double change, double middle) {
   const double k = EA / (l0 * (1.0 + model.thermal_expansion * change));
   const double grown = model.thermal_expansion * l0 * change;
   const double soft = std::isinf(model.stop_stiffness) ? 0.0 : model.stop_stiffness;
-  // Position at which friction has to carry the load `level`; the load decreases piecewise linearly
-  // with x.
+  // Position at which friction has to carry the load `level`, which decreases with x.
   const auto at_load = [&](double level) {
     const double stiffness = k + model.preload_stiffness;
     const double x = (k * grown - model.preload_force - level) / stiffness;

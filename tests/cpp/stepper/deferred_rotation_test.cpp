@@ -19,8 +19,7 @@ Quaternion about_z(double angle) {
   return Quaternion(std::cos(angle / 2), 0, 0, std::sin(angle / 2));
 }
 
-// Quotient, root and both components are rounded a few times each, and directions are unit only to
-// 2^-53.
+// Quotient, root and both components are rounded a few times; directions are unit to 2^-53.
 constexpr double rounding = 8 * 0x1p-53;
 
 TEST(Link, TheTurnInThePlaneIsThatOfTheAngle) {
@@ -71,8 +70,7 @@ TEST(Link, ATurnThatWaitsChangesNoBit) {
 }
 
 TEST(Link, ATurnThatWaitedIsMadeUpForWhereItsLinkLeavesThePlane) {
-  // Pushed along z, the tip rotates about z in its first step and is out of the plane in the
-  // second.
+  // Pushed along z, the tip rotates about z in its first step and leaves the plane in the second.
   expect_same_bits(
       [](Scene& scene) {
         tip(scene, 0).blocked &= ~4U;

@@ -65,8 +65,7 @@ inline double pressed() {
   return clearance + depth(radius * (radius + clearance) / clearance);
 }
 
-/// Independent joints: a journal pressed into a fixed bearing, both thermally expanding. Not
-/// prepared.
+/// Independent joints: a journal pressed into a fixed bearing, both expanding. Not prepared.
 /// @param spread range of the load directions over the joints [rad]
 /// @param offset initial distance of the journals from their bearings' centres [m]
 inline Scene crowd(std::size_t joints, double spread = 0, double offset = pressed()) {

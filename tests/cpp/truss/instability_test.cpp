@@ -185,8 +185,7 @@ TEST(Instability, SlipThatTheTrussOvertakesEndsThePathAtTheLimitPoint) {
   }
   ASSERT_GT(inner, 1e-3);
   ASSERT_LT(inner, 0.04);
-  // Slip starts 0.9 K before it becomes unstable; without event location, a longer increment skips
-  // both.
+  // Slip starts 0.9 K before it becomes unstable; without location, a longer increment skips both.
   expect_end(footed(stiffness), footed_at(stiffness, inner), 1e-6, 50);
 }
 

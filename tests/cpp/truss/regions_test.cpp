@@ -123,8 +123,7 @@ TEST(Regions, ShareNoNodeThatMovesHoweverNodesAreNumbered) {
   EXPECT_EQ(links, index(bars));
   EXPECT_EQ(joints, index(bars));
   EXPECT_EQ(loaded, 1u);
-  // The search proceeds in both directions along the row: a cut leaves one or two bars between
-  // regions.
+  // The search proceeds in both directions along the row: a cut leaves one or two bars between.
   EXPECT_LE(bars_of(found.between).size(), 2 * (found.apart.size() - 1));
 }
 
@@ -204,8 +203,7 @@ TEST(Regions, PathsHaveTheSameBitsWithAnyNumberOfThreads) {
     beyond += std::get<Slider>(model.joints[index(k - 1)]).friction_force;
     jump += 0.5 / (70e9 * 9e-6) * beyond;
   }
-  // Closures are solved to 1e-13 of the largest displacement, that of a bar heated by 100 K: 1.2 mm
-  // per bar.
+  // Closures are solved to 1e-13 of the largest displacement, 1.2 mm per bar at 100 K.
   for (int r = 0; r < rows; ++r) {
     EXPECT_NEAR(moved[0](0, r * (bars + 1) + bars), jump, 1e-13 * bars * 1.2e-3);
   }

@@ -37,8 +37,7 @@ double jump(const Path& path) {
   return along(path.states.back()) - along(path.states.front());
 }
 
-/// Newton's tolerances at both ends of a path: closures 1e-13 of 1.2 mm; forces 1e-12 of 200 N over
-/// k, 1.6e-16 m.
+/// Newton's tolerances at both ends: closures 1e-13 of 1.2 mm; forces 1e-12 of 200 N/k, 1.6e-16 m.
 constexpr double close = 2.0 * (1.2e-16 + 1.6e-16);
 
 TEST(StartChoice, BarStartsStuckOrWithoutFriction) {

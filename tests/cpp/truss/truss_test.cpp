@@ -94,8 +94,7 @@ TEST(Truss, SliderBetweenTwoNodesHoldsAcrossItsAxis) {
   EXPECT_NEAR(std::abs(number(model, end, "slider_force_N")), 30.0, 1e-9);
 }
 
-/// Energy residue of the path (heat, elastic energy, thermal work since the start) relative to the
-/// heat.
+/// Energy residue (heat, elastic energy, thermal work since the start) relative to the heat.
 double relative_residue(const Path& path) {
   const State& start = path.states.front();
   const State& end = path.states.back();
@@ -106,8 +105,7 @@ double relative_residue(const Path& path) {
 }
 
 TEST(Truss, ElasticSliderBendsBeforeItSlips) {
-  // Bar and contact are springs in series until friction reaches f: (E A/l_T) (l0 α ΔT − s) = k_t
-  // s.
+  // Bar and contact are springs in series up to friction f: (E A/l_T) (l0 α ΔT − s) = k_t s.
   Model model = bar();
   const double stiffness = 1e7;
   slider(model).tangential_stiffness = stiffness;
@@ -278,8 +276,7 @@ TEST(Truss, SlipThatTurnsRoundWithinAStepIsLocated) {
   ASSERT_EQ(fine_turns.size(), 3u);  // one in each branch, and one at the corner between them
   for (const int increments : {1, 2, 5, 8, 30}) {
     for (const bool locate : {true, false}) {
-      // Without location, a whole branch shows nothing: the block has the same position at both
-      // ends.
+      // Without location, a whole branch shows no event: its ends have equal positions.
       if (!locate && increments == 1) continue;
       options.locate_events = locate;
       options.increments_per_branch = increments;
@@ -601,8 +598,7 @@ TEST(Truss, ProgramsNeedNotLastEquallyLongToTheLastBit) {
 }
 
 TEST(Truss, CornersThatNearlyCoincideAreOne) {
-  // Eight cycles of 0.15 s have 16 corners; the ends of four cycles of 0.3 s coincide with some, to
-  // rounding.
+  // Eight cycles of 0.15 s have 16 corners; the ends of four of 0.3 s nearly coincide with some.
   ASSERT_NE(3 * 0.3 + 0.15, 7 * 0.15);
   for (const bool longer_first : {false, true}) {
     const Model model =

@@ -103,9 +103,8 @@ class BoreMesh {
   /// read_triangles(), then the constructor.
   static BoreMesh read(const std::string& file, const BoreOptions& options = {});
 
-  /// Nearest point of the smooth wall. @param query [m]
-  /// Limit: for a query equally near to two parts of the wall, e.g. on the axis, either may be
-  /// returned.
+  /// Nearest point of the smooth wall. If two parts of the wall are equally near, as for a query on
+  /// the axis, either may be returned. @param query [m]
   WallPoint closest_point(const Eigen::Vector3d& query) const;
 
   /// All separate contacts of a journal with the wall, and gaps below `maximum_gap`, deepest first.
@@ -134,8 +133,7 @@ class BoreMesh {
                                          const std::vector<BoreContact>& previous = {}) const;
 
   /// Radii of the smooth wall [m] around the fitted axis at the axial position z [m] from the
-  /// wall's middle, at angles 2 pi i/count from axis_x() towards axis_y(). NaN at angles without
-  /// wall.
+  /// wall's middle, at angles 2 pi i/count from axis_x() towards axis_y(). NaN without wall.
   std::vector<double> section_radii(double z, int count) const;
 
   const Triangles& triangles() const;    ///< scaled and flipped, otherwise as given

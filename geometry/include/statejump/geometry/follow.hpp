@@ -60,8 +60,7 @@ Followed follow_contacts(const BoreMesh& mesh, const Probe& probe, double patch_
                          std::vector<double>& track, std::vector<FollowedContact>& found);
 
 /// Sets the label of a followed contact; later calls return it. While no contact has a label >= 0,
-/// a contact that begins triggers a search, so that the result does not depend on the earlier
-/// state.
+/// a contact that begins triggers a search, so that results do not depend on the past.
 /// @param index index in `found`
 void set_label(std::vector<double>& track, std::size_t index, int label);
 

@@ -18,11 +18,10 @@ struct Triangles {
 
 /// Reads OFF, STL (text or binary), PLY or OBJ, selected by the extension of the name.
 ///
-/// The file may be untrusted: pipes, devices and files of more than 2 GiB are rejected, and
-/// so are counts that exceed the size of the file. Equal vertices are merged (STL shares no
-/// vertices), and 32-bit float vertices also if they differ only by rounding. Polygons are split
-/// into triangles; faces of fewer than three vertices are left out. Vertices and faces keep their
-/// order.
+/// The file may be untrusted: pipes, devices and files of more than 2 GiB are rejected, and so are
+/// counts that exceed the size of the file. Equal vertices are merged (STL shares no vertices), and
+/// 32-bit float vertices also if they differ only by rounding. Polygons are split into triangles;
+/// faces of fewer than three vertices are left out. The order is kept.
 /// @throws MeshFailure if there is no such file, the extension is unknown, the content is not of
 ///         that
 ///         format (with the line of a text file), a corner does not exist, a vertex is not finite,
@@ -53,8 +52,7 @@ struct BoreShape {
 double bore_radius(const BoreShape& shape, double theta, double z);
 
 /// Mesh of a bore whose vertices lie on the shape, with `around` facets around and `along` rows of
-/// quadrilaterals, each of two triangles. Normals point to the axis (for a ring: out of the
-/// material).
+/// quadrilaterals, each of two triangles. Normals point to the axis (out of a ring's material).
 /// @param around >= 3, @param along >= 1
 /// @throws std::invalid_argument when an argument is out of its range
 Triangles bore_triangles(const BoreShape& shape, int around, int along);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For each element type a model for the tests that every type must pass. A new type adds its own
-// model.
+// For each element type a model for the tests that every type must pass. A new type adds its own.
 #pragma once
 
 #include <Eigen/Geometry>

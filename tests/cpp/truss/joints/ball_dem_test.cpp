@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Drives the contact of the DEM, with its own kinematics, along the paths of the quasi-static
-// solver.
+// Drives the DEM's contact, with its own kinematics, along the paths of the quasi-static solver.
 #include <gtest/gtest.h>
 
 #include <algorithm>

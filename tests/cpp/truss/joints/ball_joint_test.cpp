@@ -77,8 +77,7 @@ TEST(BallJoint, FrictionTurnsIntoANewSlideAsATractrix) {
     }
     EXPECT_GT(turning, 20);
   }
-  // The rods deform by a thousandth of the contact's deflection; the number of increments does not
-  // matter.
+  // The rods deform by a thousandth of the contact's deflection; increments do not matter.
   EXPECT_LT(error[0], 1e-3);
   EXPECT_NEAR(error[1], error[0], 1e-6);
 }
@@ -95,8 +94,7 @@ TEST(BallJoint, OpensAndClosesWhereTheRodThatPressesItIsAsLongAsTheWay) {
                  {"Y", 3, 1, 1e9, 10.0, 0.0, 0, 1.0},
                  {"Z", 4, 1, 1e9, pressed, expansion, 0, 1.0}};
   const Path path = solve(model);
-  // Near zero load friction slips before the contact opens: the deflection persists while the bound
-  // vanishes.
+  // Near zero load friction slips before the contact opens: deflection remains, the bound vanishes.
   const JointStatus expected[] = {JointStatus::stick, JointStatus::slip_plus, JointStatus::open,
                                   JointStatus::stick};
   ASSERT_GE(path.events.size(), 3u);
@@ -104,8 +102,7 @@ TEST(BallJoint, OpensAndClosesWhereTheRodThatPressesItIsAsLongAsTheWay) {
     EXPECT_EQ(path.events[i].before, expected[i]);
     EXPECT_EQ(path.events[i].after, expected[i + 1]);
   }
-  // The lateral rods carry the fraction c/L of the force from an elongation c²/(2 L) = 5e-8 m:
-  // below 1e-5 K.
+  // Lateral rods carry the fraction c/L of a force from elongation c²/(2 L) = 5e-8 m: < 1e-5 K.
   const double change = ((10.0 + joint_of(model).radial_clearance) / pressed - 1.0) / expansion;
   EXPECT_NEAR(path.events[1].temperature_change, change, 1e-5);
   EXPECT_NEAR(path.events[2].temperature_change, change, 1e-5);
@@ -126,9 +123,8 @@ TEST(BallJoint, EnergyIsKeptWhateverTheIncrements) {
       for (const State& state : path.states) work = std::max(work, std::abs(state.thermal_work));
       return std::abs(relative_residue(path)) * path.states.back().joint_dissipation.sum() / work;
     };
-    // Step halving by time and the location of single events may each lose the tolerance, with the
-    // same sign. The scale is the largest work, which is less than twice the scale used by the
-    // solver.
+    // Step halving and event location may each lose the tolerance, with the same sign. The scale is
+    // the largest work, less than twice the solver's scale.
     EXPECT_LT(lost(), 2.0 * options.energy_tolerance);
     // Without step halving more energy is lost.
     options.energy_tolerance = 1.0;

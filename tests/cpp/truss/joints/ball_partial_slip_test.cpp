@@ -160,8 +160,7 @@ TEST(BallPartialSlip, FrictionTurnsWithPartsThatTurnAboutTheNormal) {
       const Matrix3d back = Eigen::AngleAxisd(-angle, Vector3d::UnitZ()).toRotationMatrix();
       const Vector3d now = back * friction(model, state);
       if (rubbed.isZero(0.0)) rubbed = now;
-      // The struts yield to the friction moment by a thousandth of the slide, and their levers
-      // change.
+      // The struts yield to the friction moment by a thousandth of the slide.
       EXPECT_LT((now - rubbed).norm(), 4e-3 * rubbed.norm()) << angle << " rad";
       turned = std::max(turned, angle);
       EXPECT_EQ(state.joint_status[0], JointStatus::stick);

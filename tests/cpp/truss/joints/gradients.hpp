@@ -75,8 +75,7 @@ inline void check_gradients(const Model& model, const Eigen::VectorXd& z,
     };
     const Eigen::VectorXd difference = (residual(0.3 + step) - residual(0.3 - step)) / (2 * step);
     for (int i = 0; i < system.unknowns(); ++i) {
-      // Relative truncation error (ω step)²/6 of the program; rounding of forces of 100 N over the
-      // step.
+      // Relative truncation error (ω step)²/6 of the program; rounding of 100 N over the step.
       const double rounded = i < system.displacements() ? 2e-14 / step : 2e-17 / step;
       EXPECT_NEAR(heating[i], difference[i], 1e-7 * std::abs(heating[i]) + 4 * rounded)
           << to_string(status) << " row " << i;

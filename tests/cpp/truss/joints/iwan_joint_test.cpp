@@ -95,8 +95,7 @@ TEST(IwanJoint, ElementsHaveStiffnessSlipForceAndBackboneOfTheClosedForm) {
       // The samples are so dense that they miss the largest error by at most 1 %.
       EXPECT_LE(largest, one.slack() + rounding(one));
       EXPECT_GE(largest, 0.99 * one.slack());
-      // Tangent polygons have a second-order error in the length of the intervals, provided these
-      // shrink.
+      // Tangent polygons have a second-order error in the length of the intervals.
       if (spacing == 1.0 && before > 0.0) {
         EXPECT_LT(one.slack(), before / 2.6);
       }
@@ -181,8 +180,7 @@ TEST(IwanJoint, HeatOfSmallCyclesGoesWithTheForceToThreePlusChi) {
     }
     forces.push_back(0.5 * (force(model, *top) - force(model, end)));
     heats.push_back(end.joint_dissipation[0] - start.joint_dissipation[0]);
-    // ∫ 4 φ (u − φ) R φ^χ up to u. Interval lengths are a twentieth of their reach: second-order
-    // error.
+    // ∫ 4 φ (u − φ) R φ^χ up to u. Intervals are a twentieth of their reach: second order.
     const double amplitude = 0.5 * (slide(model, *top) - slide(model, end));
     share = std::pow(amplitude / last, chi + 1.0);
     const double closed = 4.0 * one.tangent_stiffness / (1.0 + one.stiffness_ratio) * share *

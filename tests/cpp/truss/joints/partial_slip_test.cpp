@@ -43,8 +43,7 @@ double first_loading(double slide) {
   return friction * (1.0 - std::pow(1.0 - std::min(slide / gross, 1.0), 1.5));
 }
 
-/// Heat [J] of a steady cycle between forces +-T (Mindlin and Deresiewicz 1953), t = T/f, 8 G* a =
-/// k_t.
+/// Heat [J] of a cycle between forces +-T (Mindlin and Deresiewicz 1953), t = T/f, 8 G* a = k_t.
 double heat_of_cycle(double t) {
   return 7.2 * friction * friction / stiffness *
          (1.0 - std::pow(1.0 - t, 5.0 / 3.0) -

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For each joint type a sample for the tests that every type must pass. A new type adds its own
-// sample.
+// For each joint type a sample for the tests that every type must pass. A new type adds its own.
 #pragma once
 
 #include <type_traits>

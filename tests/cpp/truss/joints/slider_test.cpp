@@ -27,8 +27,7 @@ TEST(Slider, GradientsAreThoseOfItsForces) {
   slider.clearance_minus = 1e-4;
   slider.clearance_plus = 2e-4;
   const double rigid = std::numeric_limits<double>::infinity();
-  // With partial slip, z is 1.5 times the gross slip 30 N/(1e7 N/m) beyond `before`, or a fraction
-  // of it.
+  // With partial slip, z is 1.5 times or a fraction of the gross slip 30 N/(1e7 N/m) from `before`.
   const auto check = [&](const std::vector<JointStatus>& statuses) {
     model.joints = {slider};
     const detail::System system(model);

@@ -13,8 +13,7 @@ complementarity::Problem two_contacts(const Eigen::Vector4d& velocity) {
 }
 
 TEST(ContactProblem, WorstContactIsTheOneThatLacksMostOfAVelocity) {
-  // Arguments: impulses, and velocities without impulses. Comments: violations of the contacts as
-  // velocities.
+  // Arguments: impulses, velocities without impulses. Comments: violations as velocities.
   const auto worst = [](const Eigen::Vector4d& impulses, const Eigen::Vector4d& velocity) {
     return worst_contact(two_contacts(velocity), impulses);
   };
@@ -25,8 +24,7 @@ TEST(ContactProblem, WorstContactIsTheOneThatLacksMostOfAVelocity) {
   EXPECT_EQ(worst({0.3, 0.0, 2.0, 0.0}, {9.0, 0.0, 9.0, 0.0}), 0);
   // Tensile impulses: 4 times 0.3 and 0.25 times 8.
   EXPECT_EQ(worst({-0.3, 0.0, -8.0, 0.0}, {3.0, 0.0, 9.0, 0.0}), 1);
-  // Normal equilibrium at 1 and 4; friction exceeds its bound by 0.2 and 4, i.e. 0.8 and 1 as
-  // velocities.
+  // Normal equilibrium at 1 and 4; friction beyond its bound by 0.2 and 4: velocities 0.8 and 1.
   EXPECT_EQ(worst({1.0, 0.7, 4.0, 6.0}, {-4.0, -9.0, -1.0, -9.0}), 1);
   // Zero friction although the contacts slide at 1 and 0.9, and friction could stop both.
   EXPECT_EQ(worst({10.0, 0.0, 100.0, 0.0}, {-40.0, 1.0, -25.0, 0.9}), 0);

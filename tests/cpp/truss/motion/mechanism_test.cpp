@@ -97,8 +97,7 @@ TEST(MotionMechanism, DrivenLinkFollowsItsProgramAndTakesItsMoment) {
         mass * length * length / 3.0 * rate + 9.81 * mass * 0.5 * length * std::cos(turned);
     EXPECT_NEAR(motion.moving[k].drive_moment[0], moment, 1e-3 * 80.0) << time;
   }
-  // The work of the drive equals the rod's energy, except for elastic energy and losses of its
-  // elongation.
+  // The work of the drive equals the rod's energy, except for energy and loss of its elongation.
   const double raised = 9.81 * mass * 0.5 * length * std::sin(drive.turned_at(0.1));
   const double has = 0.5 * mass * length * length / 3.0 * 1600.0 + raised;
   EXPECT_NEAR(motion.moving.back().drive_work, has, 1e-4 * has);

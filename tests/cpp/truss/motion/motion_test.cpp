@@ -89,8 +89,7 @@ TEST(Motion, DoublePendulumConvergesAtSecondOrderToItsOwnEquations) {
 }
 
 TEST(Motion, FreeChainKeepsItsMomenta) {
-  // No external forces: momentum is conserved to rounding, angular momentum and energy to the
-  // order.
+  // No external forces: momentum is conserved, angular momentum and energy to second order.
   Model model = double_pendulum();
   model.nodes[0].freedoms = 2;
   for (Node& one : model.nodes) one.load.setZero();
@@ -212,8 +211,7 @@ TEST(Motion, ContactProblemsAreSolvedOnlyWhereBranchesAreNotFound) {
       EXPECT_LT(motion.factorizations, motion.steps / 4);
     }
   }
-  // Here the iteration fails when the bar with elastic friction reaches its stop; the merit is
-  // reported.
+  // The iteration fails when a bar with elastic friction reaches its stop; the merit is reported.
   Model heated = bar(0.1);
   std::get<Slider>(heated.joints[0]).tangential_stiffness = 1e6;
   options = {};
@@ -398,8 +396,7 @@ TEST(Motion, SlidesThatCannotGoOnAreNamed) {
     EXPECT_EQ(jams.jammed->joints, std::vector<int>{0});
     EXPECT_NEAR(jams.jammed->time, h, 1e-3 * h);  // immediately
     EXPECT_NEAR(lost(jams, -1.0), speed, 1e-3 * speed);
-    // Just below that mu, and in the other direction, it continues to slide: forces are large but
-    // finite.
+    // Below that mu, and in the other direction, it slides on: forces are large but finite.
     const Motion slides = first_step(1.3, -1.0, steps);
     EXPECT_FALSE(slides.jammed) << steps;
     EXPECT_LT(lost(slides, -1.0), 1e3 * h);

@@ -125,8 +125,7 @@ TEST(MotionRegularised, BallMovesAsTheJournalDoesInAPlane) {
 }
 
 TEST(MotionRegularised, MeetsTheMotionBySets) {
-  // Two schemes for one law. The remaining difference is the first-order error of the implicit
-  // steps.
+  // Two schemes for one law. Implicit steps have a first-order error.
   const Model model = testing::tripod();
   const Inertia inertia = tripod_inertia();
   MotionOptions options;

@@ -100,8 +100,7 @@ Motion quick(const Model& model, long steps, bool by_sets) {
                  : simulate_regularised(model, rib_inertia(), law, options);
 }
 
-/// Expects nonsmooth time stepping to converge to this state. @param end returns the result of so
-/// many steps
+/// Expects nonsmooth time stepping to converge to this state. @param end result of so many steps
 template <class End>
 void expect_to_go_to(const State& exact, End&& end, double coarse) {
   const double off = apart(end(4000), exact);

@@ -21,8 +21,7 @@ TEST(SmoothSteps, RadauIntegratesPolynomialsAndIsPutTogetherFromItsModes) {
   for (const int stages : {3, 5, 7}) {
     SCOPED_TRACE(stages);
     const detail::Radau radau(stages);
-    // The coefficients are computed in long double and rounded to double; they are sums of terms up
-    // to 1.
+    // Coefficients are computed in long double and rounded to double: sums of terms up to 1.
     for (int k = 0; k < 2 * stages - 1; ++k) {
       const VectorXd power = radau.c.array().pow(k);
       EXPECT_NEAR(radau.a.row(stages - 1).dot(power), 1.0 / (k + 1), 1e-15) << k;
@@ -139,8 +138,7 @@ struct Reached {
   int changes = 0;
 };
 
-/// Integration by equal three-stage steps (order 5), except for steps that a status change
-/// shortens.
+/// Equal three-stage steps (order 5), except for steps that a status change shortens.
 Reached stepped(double bound, double damping, double seconds, int steps) {
   const Model model = rubbing_pendulum(bound, seconds);
   Inertia inertia;

@@ -119,8 +119,7 @@ JointContact round_contact(const BodyMotion& inner, double inner_radius, const B
 /// infinitely long. Tilt of the journal relative to the axis is ignored.
 /// @param journal_radius R1 [m], @param bearing_radius R2 [m], 0 < R1 < R2
 /// @param axis unit, the bearing's axis, either direction
-/// @return for concentric bodies a gap of -c; the normal is then some unit vector perpendicular to
-///         the axis
+/// @return for concentric bodies a gap of -c with any unit normal perpendicular to the axis
 /// @throws std::invalid_argument when not 0 < R1 < R2
 inline RevoluteContact revolute_contact(const BodyMotion& journal, double journal_radius,
                                         const BodyMotion& bearing, double bearing_radius,

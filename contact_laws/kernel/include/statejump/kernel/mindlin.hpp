@@ -19,8 +19,7 @@ struct ContactHistory {
   PartialSlipMemory memory{};                 ///< only for a law with partial slip
 };
 
-/// Elastic energy [J] of a contact's friction: of the partial-slip memory if there is one, else of
-/// the spring.
+/// Elastic energy [J] of a contact's friction: of the memory if there is one, else of the spring.
 inline double elastic_energy(const ContactHistory& history) {
   if (history.memory.size() > 0) return elastic_energy(history.memory);
   const double stiffness = history.tangential_stiffness;

@@ -170,8 +170,7 @@ class PartialSlipStep {
     return size > 0.0 ? (1.0 / size) * v : Tangent{1.0, 0.0};
   }
 
-  /// Adds the piece between two knots: annuli inside the bound keep U, others are projected onto
-  /// the bound.
+  /// Adds the piece between two knots: annuli outside the bound are projected onto it.
   void add_piece(const Knot& a, const Knot& b) {
     if (a.outside && b.outside && is_chord_of_bound(a, b)) {
       slip(a, b);
@@ -516,8 +515,7 @@ class PartialSlipStep {
 /// of springs then only approximates the half-space, whose annuli interact perpendicular to the
 /// slide. If the slip direction of a piece changes, chords approximate U(x). During the slide that
 /// erases the memory, each chord changes the force by at most 1e-4 of the limit. The loss of such a
-/// piece is the mean of U times its slip. It is nearly always positive; a negative value counts as
-/// zero.
+/// piece is the mean of U times its slip. A rare negative value counts as zero.
 ///
 /// @param stiffness k = 8 G* a [N/m], a the contact radius at the end of the step; <= 0: the
 ///        contact is lost

@@ -16,8 +16,7 @@ namespace statejump::kernel {
 /// damping this is omega dt < 2, dt = 2 sqrt(m/k); with damping alone dt = 2 m/c. To resolve the
 /// oscillation, use 0.1 to 0.3 of this step.
 /// @param mass m [kg], > 0; for the relative motion of two bodies m1 m2/(m1 + m2). If the bodies
-/// can rotate, the effective mass of tangential motion is smaller: 1/(1/m + arm_1^2/I1 +
-/// arm_2^2/I2).
+///        can rotate, tangential motion has the smaller mass 1/(1/m + arm_1^2/I1 + arm_2^2/I2).
 /// @param stiffness_sum k [N/m], >= 0, sum of all springs that act on this motion
 /// @param damping_sum c [N s/m], >= 0, sum of all dashpots that act on this motion
 /// @return +infinity without springs and dashpots, NaN if an argument is NaN

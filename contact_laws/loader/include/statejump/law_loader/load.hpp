@@ -25,8 +25,7 @@ void load_user_laws();
 /// One sentence for each unusable object.
 std::vector<std::string> problems();
 
-/// The entry that load_user_laws() makes of one file; its name is empty if the file contains no
-/// law.
+/// The entry that load_user_laws() makes of one file; the name is empty if there is no law in it.
 kernel::laws::LoadedLaw inspect(const std::filesystem::path& file);
 
 }  // namespace statejump::law_loader

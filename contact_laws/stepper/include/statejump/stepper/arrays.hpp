@@ -14,8 +14,7 @@
 
 namespace statejump::stepper {
 
-/// Thermal strain shared by all bodies with the same current strain that are set by the same
-/// engines.
+/// Thermal strain shared by bodies that have the same strain now and that the same engines set.
 struct Strain {
   double strain = 0;  ///< [-]
   double rate = 0;    ///< rate over the last step [1/s]

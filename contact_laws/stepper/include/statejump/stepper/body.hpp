@@ -46,8 +46,7 @@ struct Body {
   bool rotates = false;  ///< its orientation changes or can change
   bool moves = false;    ///< any part of its state changes or can change
   // A link that rotates its tip in the plane overwrites the tip's orientation; it needs only the
-  // sign (half space) of the old quaternion. So the integrator may skip the rotation before the
-  // link.
+  // half space of the old quaternion. So the integrator may skip the rotation.
   bool rotation_deferrable = false;  ///< only such a link and round joints read the orientation
   bool rotation_deferred = false;    ///< the rotation of the last step was skipped
 };
@@ -78,8 +77,7 @@ inline void damp(double damping, double time_step, const Vector3& velocity, Vect
   }
 }
 
-/// Whether normalization, the only effect of a rotation without spin, leaves the orientation
-/// unchanged.
+/// Whether normalization, all that a rotation without spin does, keeps the orientation.
 inline bool is_normalized(const Quaternion& orientation) {
   Quaternion normalized = orientation;
   normalized.normalize();

@@ -240,8 +240,7 @@ BoreStep find_in_bore(const BoreProbe& probe, const BoreWall& wall,
   return {keep || next > 0 ? BoreSearch::contact : BoreSearch::apart};
 }
 
-/// Applies the law at every contact of a pair. The list of physics gets the order of the list of
-/// geometries.
+/// Applies the law at every contact of a pair. Physics get the order of the geometries.
 /// @param step steps one contact from its geometry and physics; returns false if it is open
 /// @return whether any contact touches
 template <class Geometry, class Physics, class Step>

@@ -81,8 +81,7 @@ struct ThermalLength {
   double expanded() const { return length * thermal_stretch; }
 };
 
-/// Energies of one contact in one step [J]; elastic is the stored energy, the others are
-/// increments.
+/// Energies of one contact in one step [J]; elastic is stored, the others are increments.
 struct ContactEnergy {
   double elastic;
   double friction;

@@ -176,8 +176,7 @@ struct LanesNormal {
   LanesNormal normal;
   normal.contact_radius = root(geometry.radius * geometry.depth);
   const Pack stiffness = 2.0 * at.young * normal.contact_radius;
-  // The root is not positive without overlap. A stiffness below the stable one implies both moduli
-  // > 0.
+  // The root is not positive without overlap. A stable stiffness implies both moduli > 0.
   deferred |=
       at.real & ~((normal.contact_radius > 0.0) & are_below(stiffness, at.stable_stiffness));
   normal.elastic_force = 2.0 / 3.0 * stiffness * geometry.depth;

@@ -141,8 +141,7 @@ inline Quaternion smallest_rotation(const Vector3& from, const Vector3& to) {
   const double scalar = 1 + from.dot(to);
   if (!(scalar > opposite)) {
     // (2 cos(angle/2), 2 sin(angle/2) axis); for opposite vectors any perpendicular axis is valid.
-    // Eigen's FromTwoVectors would decompose a matrix here, code that every source file would
-    // compile.
+    // Eigen's FromTwoVectors decomposes a matrix here, which is slow to compile.
     const Vector3 sum = from + to, difference = to - from;
     Vector3 axis = sum.cross(difference);
     if (!(axis.squaredNorm() > 0)) axis = difference.unitOrthogonal();
@@ -177,8 +176,7 @@ inline Quaternion rotation_in_plane(const Vector3& from, const Vector3& to,
   return {w * scale, 0, 0, z * scale};
 }
 
-/// Rotates the tip with its link and returns the force on the tip [N] that balances the tip's
-/// moment.
+/// Rotates the tip with its link and returns the force on the tip [N] that carries its moment.
 ///
 /// The contacts of this step load the tip with a moment M. A couple of forces +-(M x u) / L
 /// replaces it, except for its part along the link: u L x (M x u) / L = M - (M.u) u.
@@ -266,8 +264,7 @@ struct Torsion {
 };
 
 /// Largest component of a link's unit direction along the axis for which the spring counts as
-/// planar. Rounding in a rotated plane is far smaller; the neglected terms are of the order of its
-/// square.
+/// planar. Rounding in a rotated plane is far smaller; neglected terms are its square.
 constexpr double largest_tilt = 1e-6;
 
 inline bool is_planar(const Span& span, const Vector3& axis) {
@@ -317,8 +314,7 @@ inline double inverse_inertia(const Span& span, double inverse_mass) {
   return inverse_mass / (span.length * span.length);
 }
 
-/// Force on the tip [N] by which a couple applies a moment [N m] to a link; the root gets the
-/// opposite.
+/// Force on the tip [N] of a link loaded by a moment [N m]; the root gets the opposite force.
 inline Vector3 couple(const Span& span, const Vector3& axis, double moment) {
   const Vector3 across = axis.cross(span.direction);
   return moment / span.length * across;

@@ -79,8 +79,7 @@ inline double largest_stiffness(const Prismatic& joint) {
   return std::max(joint.stiffnessAcross, sticks + stop);
 }
 
-/// Damping coefficient that belongs to largest_stiffness() [N s/m]. @param mass 1/(1/m1 + 1/m2)
-/// [kg]
+/// Damping coefficient [N s/m] at largest_stiffness(). @param mass 1/(1/m1 + 1/m2) [kg]
 inline double largest_damping(const Prismatic& joint, double mass) {
   return kernel::viscous_damping(joint.dampingRatio, mass, largest_stiffness(joint));
 }

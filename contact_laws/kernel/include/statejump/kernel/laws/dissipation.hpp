@@ -97,9 +97,8 @@ struct FloresDissipation {
 ///    a - ln(1 + a) = -a e - ln(1 - a e),   chi/K = a/v0.
 ///
 /// With q = -ln(1 - a e), a = (1 - exp(-q))/e, Newton's method finds the nonzero root of a (1 + e)
-/// - ln(1 + a) - q from above. The function is concave there, so the steps do not overshoot. The
-/// initial q follows from a < 1/e for e <= 0.5 and from a e < 3/2 (1 - e) otherwise. No constant is
-/// fitted.
+/// - ln(1 + a) - q from above. The function is concave there: no overshoot. The initial q follows
+/// from a < 1/e for e <= 0.5 and from a e < 3/2 (1 - e) otherwise. No constant is fitted.
 ///
 /// e = 0 would need an infinite damper; e < 1e-6 is replaced by 1e-6, which is the largest error of
 /// this law. For small e, a = 1/e and the force rises 1/e times as fast. An explicit integrator

@@ -18,13 +18,11 @@ enum class Trait : unsigned {
   holds_static_load = 1U << 0,
   /// no force at all
   frictionless = 1U << 1,
-  /// receives the slide of the step and keeps a history; without it, a function of the current
-  /// velocity
+  /// receives the slide of the step and keeps a history; otherwise a function of the velocity
   has_memory = 1U << 2,
   /// needs the axis of a bearing: not available in a socket or on a flat face
   needs_axis = 1U << 3,
-  /// accepts a negative bearing radius (wall that bulges towards the journal): uses signed
-  /// curvature
+  /// accepts a negative bearing radius (a bulging wall): uses signed curvature
   accepts_bulging_wall = 1U << 4,
   /// Hertz's point contact F = 4/3 E* sqrt(R) delta^1.5, with 1/R = 1/R1 - 1/R2 if
   /// accepts_bulging_wall is set and 1/R = 1/R1 + 1/R2 otherwise

@@ -79,8 +79,7 @@ inline NormalState from_hertz(const HertzState& state) {
 ///    dF/d(delta) = pi E* L/(u - 1)
 ///    integral of F d(delta) = F f/(4 pi E*) (2u - 1)
 ///
-/// At u = 1 (delta = 4 dR e^(s-1)) the stiffness is infinite and F(delta) reaches its turning
-/// point.
+/// At u = 1 (delta = 4 dR e^(s-1)) the stiffness is infinite: F(delta) has its turning point.
 inline NormalState logarithmic_line_contact(double depth, const NormalGeometry& geometry,
                                             const NormalMaterial& material, double scaled_limit) {
   const double modulus = pi * material.effective_young_modulus;
@@ -208,8 +207,7 @@ struct Esdu78035 {
 
 namespace detail {
 
-/// Functions of Persson's contact at t = tan(epsilon/2)^2, in units of E* dR (line force) and dR
-/// (depth).
+/// Persson's contact at t = tan(epsilon/2)^2, in units of E* dR (line force) and dR (depth).
 struct PerssonPoint {
   double load_divisor;  ///< X; f = 2 pi t (1 + t)/X
   double compliance;    ///< C = pi d(delta)/df

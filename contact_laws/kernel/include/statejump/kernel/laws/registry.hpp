@@ -18,8 +18,7 @@
 namespace statejump::kernel::laws {
 
 /// The catalogue. To add a law, write one type with an `info` and add it here; names, listing and
-/// look-up use these lists. The last type of each list holds laws from shared objects, see
-/// user_law.hpp.
+/// look-up use these lists. The last type of each list holds user laws, see user_law.hpp.
 using NormalLaw =
     std::variant<HertzPaper, HertzInternal, Johnson, Esdu78035, Persson, UserNormalLaw>;
 using DissipationLaw = std::variant<NoDissipation, LankaraniNikravesh, HuntCrossley,

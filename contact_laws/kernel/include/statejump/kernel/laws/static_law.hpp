@@ -41,8 +41,7 @@ struct StaticJointLaw {
         contact_length(law.contact_length) {}
 };
 
-/// Precompiled combinations: the default laws of the cases. Each entry adds the code size of one
-/// contact step.
+/// Precompiled combinations: the default laws of the cases. Each adds the code of one contact step.
 using PrecompiledJointLaws =
     std::tuple<StaticJointLaw<HertzInternal, NoDissipation, MindlinFriction, MaterialVelocity>>;
 
@@ -61,8 +60,7 @@ decltype(auto) with_precompiled_law(const JointLaw& law, Act&& act) {
 
 }  // namespace detail
 
-/// Calls act with the law converted to its type in PrecompiledJointLaws; with `law` itself if there
-/// is none.
+/// Calls act with the law as one of PrecompiledJointLaws, or with `law` itself if it is none.
 template <class Act>
 decltype(auto) with_precompiled_law(const JointLaw& law, Act&& act) {
   return detail::with_precompiled_law<0>(law, act);

@@ -10,8 +10,7 @@ namespace statejump::kernel::laws {
 
 /// A tangential velocity law has two parts. The first is the velocity v of body 1 (journal)
 /// relative to body 2 (bearing) [m/s] that friction uses. The second are the forces and moments on
-/// the two centres caused by a contact force F. The two parts are transposes of each other: for all
-/// motions
+/// the two centres caused by a contact force F. They are transposes of each other: for all motions
 ///
 ///    F . v = force_1 . v_C + torque_1 . omega_1 + force_2 . v_D + torque_2 . omega_2,
 ///

@@ -52,8 +52,7 @@ struct UserLawTable {
 
 inline constexpr std::uint32_t user_law_version = 1;
 
-/// Hash of the sizes of all types in the table. A difference means an incompatible compiler or
-/// version.
+/// Hash of the sizes of all types in the table, to detect incompatible compilers and versions.
 constexpr std::uint32_t exchanged_sizes() {
   std::uint32_t all = 0;
   for (const std::size_t size :
@@ -94,8 +93,7 @@ constexpr LawKind kind_of() {
                        : LawKind::tangential_velocity;
 }
 
-/// Calls a function of the law and returns the text of its exception: no exception may leave the
-/// object.
+/// Calls a function of the law; returns the text of its exception, which must not leave the object.
 template <class Function>
 ErrorText guarded(Function&& function) {
   thread_local std::string text;
@@ -188,8 +186,7 @@ class UserLawValue {
   void throw_if(ErrorText error) const {
     if (error) fail(error);
   }
-  /// Rejects a result that is not finite or not `good`, for example negative where that has no
-  /// meaning.
+  /// Rejects a result that is not finite or not `good`, for example not positive.
   void require_result(bool good, const char* what, double value) const {
     if (good && std::isfinite(value)) return;
     char text[96];
