@@ -74,7 +74,8 @@ Fault fault_of_motion(const yade::Scene& scene, int id, const yade::State& state
   return std::nullopt;
 }
 
-// Mass and inertia must be > 0 in free dofs and >= 0 in blocked ones.
+// The mass must be > 0 if the body can translate, an inertia if it can rotate about that axis;
+// otherwise they may be 0.
 Fault fault_of_inertia(const yade::Scene& scene, int id, const yade::State& state) {
   constexpr unsigned translations = 7;
   const bool moves = (state.blockedDOFs & translations) != translations;

@@ -303,7 +303,7 @@ class Search {
            "forces");
   }
 
-  // A dispatcher stores its scene in its functors; the scene of this dispatcher is null.
+  // A dispatcher stores its scene in its functors; this one gets a fresh, empty scene.
   void functor() {
     const auto action = function<void(void*)>("_ZN4yade15BoundDispatcher6actionEv");
     const Place functor = make("Bo1_Sphere_Aabb", "Functor");

@@ -56,8 +56,8 @@ TEST(PartialSlipPlane, AlongOneDirectionItIsTheLine) {
   }
 }
 
-/// Force of a row of annuli that return radially to their bounds. Only valid if the contact has
-/// neither grown nor shrunk in the step, so that the points of the memory are the whole state.
+/// Force of a row of annuli that return radially to their bounds. Annuli that enter or leave the
+/// contact need no state other than the points of the memory.
 Tangent of_rings(double k, double most, const Tangent& slide, const PartialSlipMemory& memory,
                  int rings) {
   const double slope = 1.5 * most / (k * k * k);

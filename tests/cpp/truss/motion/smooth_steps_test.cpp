@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Radau steps of fourth and higher order between changes of status.
+// Steps of high order (Radau methods) between changes of status.
 #include "motion/smooth_stepper.hpp"
 
 #include <gtest/gtest.h>
