@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Blocked motions of a body and its effective mass.
+// Blocked dofs and inverse mass of a body.
 #pragma once
 
 #include "yade_api.hpp"
@@ -10,7 +10,7 @@ namespace statejump::dem {
 constexpr unsigned int all_translations_blocked = 7;
 constexpr unsigned int all_rotations_blocked = 56;
 
-// 1/m [1/kg]; 0, as for infinite mass, for a body that cannot move or has no mass.
+// 1/m [1/kg]; 0 (infinite mass) for a body that cannot translate or has no mass.
 inline yade::Real inverse_mass(const yade::State& state) {
   const bool fixed = (state.blockedDOFs & all_translations_blocked) == all_translations_blocked;
   return fixed || !(state.mass > 0) ? 0 : 1 / state.mass;

@@ -104,7 +104,7 @@ void MeshBore::check() {
   for (const Vector3r& vertex : mesh_->triangles().vertices) {
     half_box_ = half_box_.cwiseMax(vertex.cwiseAbs());
   }
-  // Edges of one triangle only; neighbouring triangles have a common edge in opposite directions.
+  // Collects edges of one triangle only; neighbours have a common edge in opposite directions.
   std::vector<std::array<int, 2>> edges, opposite;
   for (const auto& face : mesh_->triangles().faces) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -227,13 +227,13 @@ bool BoreContacts::find(const stepper::BoreProbe& probe, const MeshBore& bore,
     return false;
   }
   stepper::BoreStep step;
-  // The wall's geometry and the kernel must not throw out of YADE's loop.
+  // The wall's geometry and the kernel throw; no exception may reach YADE's loop.
   try {
     step = stepper::find_in_bore(
         probe, {*bore.mesh(), bore.expanded(1), bore.thermalStrainRate, patchAngle}, motion(state1),
         motion(state2), state2.se3.orientation, state1.se3.position - state2.se3.position - shift2,
         force || contact->isReal(), scene.dt,
-        // A pair is real only with physics.
+        // The interaction becomes real only when it also has physics.
         [&]() -> BoreGeom& {
           if (!contact->geom) contact->geom = boost::make_shared<BoreGeom>();
           return static_cast<BoreGeom&>(*contact->geom);
@@ -292,7 +292,7 @@ bool Ig2_Ball_MeshBore_BoreGeom::go(const yade::shared_ptr<yade::Shape>& shape1,
 
 void Law2_BoreGeom_BorePhys_JointLaw::check() {
   build(class_name);
-  // A measured wall has no centre for the axis.
+  // A measured wall has no centre for an axis.
   using kernel::laws::TangentialVelocityLaw;
   using kernel::laws::Trait;
   if (kernel::laws::has(law().tangential_velocity, Trait::needs_axis)) {

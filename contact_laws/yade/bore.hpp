@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bores and cups given by a triangle mesh: shape, contacts and law. The geometry is that of
-// statejump/geometry, the law of one contact that of joint.hpp.
+// Bores and cups given by a triangle mesh: shape, contact search and law. The geometry is computed
+// by statejump/geometry, the law at one contact is that of joint.hpp.
 #pragma once
 
 #include <array>
@@ -74,7 +74,7 @@ struct MeshBore : RegisteredIndexable<MeshBore, ThermalShape> {
 
  private:
   const geometry::BoreMesh& made() const;
-  std::optional<geometry::BoreMesh> mesh_;  // by check()
+  std::optional<geometry::BoreMesh> mesh_;  // made by check()
   std::vector<std::array<int, 2>> rim_;
   Vector3r half_box_ = Vector3r::Zero();
 };
@@ -98,7 +98,7 @@ struct BoreGeom : RegisteredIndexable<BoreGeom, yade::GenericSpheresContact> {
   std::vector<yade::shared_ptr<JointGeom>> contacts;
   std::vector<int> previous;
   std::vector<Real> known;
-  Real strain_change = 0;  // of the wall in this step, relative; set in every step, so not saved
+  Real strain_change = 0;  // of the wall in this step [-]; set in every step, so not saved
 
   BoreGeom() { createIndex(); }
   boost::python::dict pyDict() const override;
@@ -150,7 +150,7 @@ struct BorePhys : RegisteredIndexable<BorePhys, JointPhys> {
   }
 };
 
-// Contacts of a pair; the two functors differ in the body that they accept.
+// Contact search of a pair; the two functors that use it differ in the accepted body.
 class BoreContacts {
  public:
   Real patchAngle = 2e-4;

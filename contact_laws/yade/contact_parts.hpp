@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shared by the geometry and law functors of all joints.
+// Functions shared by the geometry and law functors of all joints.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ inline kernel::BodyMotion motion(const yade::State& state) {
 
 using stepper::axis_of;
 
-// Failures, separate from the path of every step, which stays short and has no text. Lengths in m.
+// Report failures; separate functions, to keep texts out of the path of every step. Lengths in m.
 [[gnu::cold]] void fail_closed(const char* inner, yade::Real inner_radius, const char* outer,
                                yade::Real outer_radius, const yade::Scene& scene,
                                const yade::Interaction& contact);
@@ -25,7 +25,7 @@ using stepper::axis_of;
 [[gnu::cold]] void fail_tilted(const yade::Scene& scene, const yade::Interaction& contact);
 [[gnu::cold]] void fail_unstable(yade::Real effective_mass, yade::Real stiffness,
                                  const yade::Scene& scene, const yade::Interaction& contact);
-// "time 0.5 s, temperature change 40 K": all changes imposed by thermal engines, if any.
+// "time 0.5 s, temperature change 40 K": with all changes imposed by thermal engines, if any.
 std::string when(const yade::Scene& scene);
 
 }  // namespace statejump::dem

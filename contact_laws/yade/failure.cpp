@@ -23,7 +23,7 @@ Failure first_failure;
 std::optional<Failure> thrown_failure;
 const yade::Scene* failed_scene = nullptr;
 long failed_iteration = 0;
-// YADE makes a run, and a single step, in a separate thread.
+// Per thread, because YADE makes a run, and a single step, in a separate thread.
 thread_local const yade::Scene* looked_at = nullptr;
 
 bool raised_by_an_engine(const yade::Scene& scene) {
@@ -70,7 +70,7 @@ void record_failure(Failure failure) {
   failed_iteration = scene->iter;
   failed = true;
   if (raised_by_an_engine(*scene)) return;
-  // No engine will raise it: print it and end the run.
+  // No engine will throw the failure: print it and end the run.
   std::cerr << "statejump_yade: " << first_failure.sentence() << std::endl;
   scene->stopAtIter = scene->iter + 1;
 }
@@ -80,7 +80,7 @@ namespace {
 void throw_recorded_failure() {
   const std::lock_guard<std::mutex> lock(message_mutex);
   failed = false;
-  // A failure of an earlier scene or run is obsolete.
+  // Ignore a failure of another scene or an earlier run.
   const yade::Scene* scene = yade::Omega::instance().getScene().get();
   const long since = scene->iter - failed_iteration;
   if (scene != failed_scene || since < 0 || since > 1) return;

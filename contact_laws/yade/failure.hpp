@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Errors inside YADE's interaction loop.
 //
-// The loop runs the functors in an OpenMP parallel region. An exception that leaves this region
-// would end the process. So a functor records the first failure here. The next engine of the plugin
-// that runs outside the region (one that RaisesFailures) throws it, within the same or the next
-// step. This is the only shared state of the plugin, because functors know no engine.
+// The loop runs the functors in an OpenMP parallel region; an exception that leaves this region
+// ends the process. So a functor records the first failure here. The next engine of the plugin that
+// runs outside the region (derived from RaisesFailures) throws it, in the same or the next step.
+// This is the only shared state of the plugin; it is needed because functors know no engine.
 #pragma once
 
 #include <limits>
@@ -14,8 +14,8 @@
 
 namespace statejump::dem {
 
-// Base of engines whose action() starts with begin(). Deriving from it tells record_failure() that
-// an engine will raise the failure.
+// Base of engines whose action() starts with begin(). record_failure() looks for this base class to
+// find out whether an engine of the scene will throw the failure.
 class RaisesFailures {
  public:
   RaisesFailures() = default;
@@ -29,34 +29,34 @@ class RaisesFailures {
   static void begin(const yade::Scene& scene);
 };
 
-// A failure as fields. Scripts use the fields, with the part's name in their model, and do not
+// A failure as fields, so that scripts can insert the name of the part in their model and need not
 // parse the sentence.
 struct Failure {
-  // Type of the part: it has two bodies or one; the scene has none.
+  // Type of the failed part. It has two bodies or one; the scene has none.
   enum class Part : unsigned char { contact, link, torsion_spring, prismatic_joint, body, scene };
   Part part = Part::contact;
   int id1 = -1;
-  int id2 = -1;  // of a torsion spring: the tips of its two links
-  // The sentence around the name of a link, spring, prismatic joint or body. For a contact, which
-  // is named at the end, and for the scene the whole sentence is in `before`.
+  int id2 = -1;  // for a torsion spring, id1 and id2 are the tips of its two links
+  // Text before and after the name of a link, spring, prismatic joint or body. For a contact, which
+  // is named at the end, and for the scene, `before` contains the whole sentence.
   std::string before = {};
   std::string after = {};
   yade::Real time = 0;  // [s]
-  // If the time step is too long: the largest that this part allows [s].
+  // Only if the time step is too long: the largest stable step of this part [s].
   yade::Real stable_time_step = std::numeric_limits<yade::Real>::quiet_NaN();
-  std::string when = {};  // text with time and temperature changes
+  std::string when = {};  // time and temperature changes as text
   std::string sentence() const;
 };
 
 // For functors: records the first failure of a step; an engine throws it.
 void record_failure(Failure failure);
-// For functors: a failure of a contact. If one of its numbers is NaN, the failure reports that
-// number.
+// For functors: records a failure of a contact. If one of its numbers is invalid, the failure
+// reports that number instead of the sentence.
 void record_failure(const std::string& sentence, const yade::Scene& scene,
                     const yade::Interaction& contact);
 // For engines: throws std::runtime_error with the sentence.
 [[noreturn]] void throw_failure(Failure failure);
-// The last thrown failure that was not yet taken, as a dict: part, bodies (two ids, one or none),
+// Returns and removes the last thrown failure, as a dict: part, bodies (two ids, one or none),
 // before, after, time, stable_time_step (None if the step is not the cause), sentence. None if
 // there is no failure.
 boost::python::object take_failure();

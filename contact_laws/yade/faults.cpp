@@ -37,7 +37,7 @@ std::string text_of(const Vector3r& value) {
   return "(" + text_of(value[0]) + ", " + text_of(value[1]) + ", " + text_of(value[2]) + ")";
 }
 
-// " is nan kg, allowed is above 0"
+// Example: " is nan kg, allowed is above 0".
 template <class Value>
 std::string wrong(const Value& value, const std::string& unit, const std::string& allowed) {
   return " is " + text_of(value) + unit + ", allowed is " + allowed;
@@ -48,7 +48,7 @@ Failure failure(const yade::Scene& scene, Part part, int id1, int id2, std::stri
   return {part, id1, id2, std::move(before), std::move(after), scene.time, no_step, when(scene)};
 }
 
-// "the mass of body 3 is nan kg, allowed is above 0"
+// Example: "the mass of body 3 is nan kg, allowed is above 0".
 template <class Value>
 Failure of_body(const yade::Scene& scene, int id, const std::string& name, const Value& value,
                 const std::string& unit, const std::string& allowed) {
@@ -74,7 +74,8 @@ Fault fault_of_motion(const yade::Scene& scene, int id, const yade::State& state
   return std::nullopt;
 }
 
-// Zero if the body cannot move or rotate, else > 0.
+// The mass must be > 0 if the body can translate, an inertia if it can rotate about that axis;
+// otherwise they may be 0.
 Fault fault_of_inertia(const yade::Scene& scene, int id, const yade::State& state) {
   constexpr unsigned translations = 7;
   const bool moves = (state.blockedDOFs & translations) != translations;
@@ -93,9 +94,9 @@ Fault fault_of_inertia(const yade::Scene& scene, int id, const yade::State& stat
   return std::nullopt;
 }
 
-// Permanent forces are known after the ForceResetter has run in this step.
+// Permanent forces are only valid after the ForceResetter has run in this step.
 Fault fault_of_forces(const yade::Scene& scene, int id) {
-  auto& forces = const_cast<yade::ForceContainer&>(scene.forces);  // its readers are not const
+  auto& forces = const_cast<yade::ForceContainer&>(scene.forces);  // its getters are not const
   if (forces.lastReset != scene.iter || !forces.getPermForceUsed()) return std::nullopt;
   const Vector3r& force = forces.getPermForce(id);
   if (!stepper::is_finite(force)) {
@@ -113,7 +114,7 @@ Fault fault_of_body(const yade::Scene& scene, int id) {
   if (!scene.bodies->exists(id)) return std::nullopt;
   const yade::Body& body = *body_at(scene, static_cast<std::size_t>(id));
   const yade::State& state = *body.state;
-  // Causes come before their effects.
+  // Checks causes before their effects, so that the cause is reported.
   if (Fault fault = fault_of_inertia(scene, id, state)) return fault;
   if (Fault fault = fault_of_forces(scene, id)) return fault;
   if (Fault fault = fault_of_motion(scene, id, state)) return fault;

@@ -22,8 +22,8 @@ void GuidePlanes::action() {
     throw std::invalid_argument("GuidePlanes: " + std::to_string(ids.size()) + " ids, but " +
                                 std::to_string(normals.size()) + " normals");
   }
-  // All forces are read before the first is added, because adding one makes YADE require another
-  // sum.
+  // Read all forces before adding the first: after an addition, YADE requires another sum over
+  // threads before it returns a force.
   scene->forces.sync();
   std::vector<Vector3r> held(ids.size());
   for (std::size_t i = 0; i < ids.size(); ++i) {

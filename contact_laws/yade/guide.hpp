@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bodies constrained to planes of any direction.
+// Constrains bodies to planes of any orientation.
 #pragma once
 
 #include <vector>

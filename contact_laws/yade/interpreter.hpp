@@ -5,7 +5,7 @@
 
 namespace statejump::dem {
 
-// The interpreter's lock; a running simulation does not hold it.
+// Holds Python's global interpreter lock (GIL), which a running simulation does not hold.
 class Interpreter {
  public:
   Interpreter() : state_(PyGILState_Ensure()) {}

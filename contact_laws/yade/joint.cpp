@@ -42,7 +42,7 @@ kernel::BodyMotion shifted(const yade::State& state, const Vector3r& shift) {
   return moved;
 }
 
-// Additional fields that YADE's recorders read from a contact.
+// Sets the additional fields that YADE's recorders read from a contact.
 bool finish(const yade::State& state1, Real radius_1, Real radius_2,
             const yade::Interaction& contact) {
   auto& geometry = static_cast<JointGeom&>(*contact.geom);

@@ -29,7 +29,7 @@ struct JointGeom : RegisteredIndexable<JointGeom, yade::GenericSpheresContact> {
   Vector3r relativeVelocity = Vector3r::Zero();
   Real journalRadius = 0;
   Real bearingRadius = std::numeric_limits<Real>::infinity();
-  // Recomputed in every step before use, so not saved.
+  // Recomputed in every step before use, so not saved in O.save.
   Vector3r arm1 = Vector3r::Zero();
   Vector3r arm2 = Vector3r::Zero();
   Vector3r previousNormal = Vector3r::Zero();
@@ -84,7 +84,7 @@ struct JointPhys : RegisteredIndexable<JointPhys, yade::FrictPhys> {
   Real impactSpeed = 0;
   Real dissipationSlope = 0;
   Real frictionSlope = 0;
-  // Values of the last step, for the trapezoidal rule of the thermal work; updated only while
+  // Values of the last step, for the trapezoidal rule of the thermal work; updated only if
   // O.trackEnergy is on.
   Real previousElasticForce = 0;
   Real previousElasticEnergy = 0;
@@ -285,14 +285,14 @@ struct Law2_JointGeom_JointPhys_HertzMindlin
   JointEnergies energies_;
 };
 
-// Documentation of an attribute, from the catalogue: the laws of a kind with their descriptions;
-// the meaning of a parameter and the laws that read it.
+// Documentation of an attribute, generated from the catalogue: for a law attribute, the laws of
+// that kind with their descriptions; for a parameter, its meaning and the laws that read it.
 template <class Law>
 const char* law_docs();
 const char* parameter_docs(const kernel::laws::LawParameter& parameter);
 
-// Common part of all laws chosen by name: attributes, checks and the step of one contact. A law
-// derives from it and adds law_attributes() to its own.
+// Common part of all law functors with named laws: attributes, checks and the step of one contact.
+// A functor derives from it and adds law_attributes() to its own attributes.
 class NamedJointLaw {
  public:
   std::string normalLaw = kernel::laws::HertzInternal::info.name;
@@ -348,14 +348,14 @@ class NamedJointLaw {
   void build(const char* class_name);
   // The law of the last build().
   const kernel::laws::JointLaw& law() const { return named_.law; }
-  // Applies the forces of one contact to its two bodies and adds its energies to O.energy. False if
-  // it is open.
+  // Steps one contact: applies its forces to both bodies and adds its energies to O.energy. False
+  // if it is open.
   bool step(const JointGeom& geometry, JointPhys& physics, const yade::Interaction& contact,
             yade::Scene& scene);
 
  private:
   stepper::NamedLaw named_;  // made by build()
-  std::mutex beginning_;     // of firstContactTime and contacts
+  std::mutex beginning_;     // guards firstContactTime and contacts
   JointEnergies energies_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Entries of the joint contacts in O.energy. Laws run in several threads and share them.
+// Entries of the joint contacts in O.energy. The law functors of all threads share them.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace statejump::dem {
 class JointEnergies {
  public:
   void add(const yade::Scene& scene, const stepper::ContactEnergy& step);
-  // Enters the names, without values.
+  // Adds the names with value 0.
   void name(const yade::Scene& scene);
 
  private:

@@ -44,13 +44,13 @@ struct ContactHost {
   }
 };
 
-// Physics of a new contact of two materials.
-// @param inverse_mass 1/m1 + 1/m2 [1/kg]; @param fail receives a sentence
+// Sets the physics of a new contact between two materials.
+// @param inverse_mass 1/m1 + 1/m2 [1/kg]; @param fail function that receives an error sentence
 template <class Physics, class Fail>
 void fill_physics(const Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys& functor,
                   const ThermalFrictMat& first, const ThermalFrictMat& second, Real inverse_mass,
                   Physics& physics, Fail&& fail) {
-  if (fault_of(first) || fault_of(second)) return fail("");  // record_failure() finds it, too
+  if (fault_of(first) || fault_of(second)) return fail("");  // record_failure() names the fault
   try {
     const kernel::ElasticPair elastic =
         kernel::elastic_pair(first.young, first.poisson, second.young, second.poisson);

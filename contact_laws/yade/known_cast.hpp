@@ -8,7 +8,7 @@
 namespace statejump::dem {
 
 /// dynamic_cast to a class derived from From, null for an object of another class. Caches the
-/// results for the last classes, because dynamic_cast compares class names each time.
+/// results for the last classes seen, because dynamic_cast compares class names in every call.
 template <class To, class From>
 To* known_cast(From* from) {
   struct Answer {

@@ -33,7 +33,7 @@ template <class... Classes>
 struct ClassList {
   static void register_all() {
     (register_factory<Classes>(), ...);
-    // Also runs each class's pyRegisterClass, base classes first.
+    // Also calls pyRegisterClass() of each class, base classes first.
     register_python_classes({Classes::class_name...});
   }
   static boost::python::list names() {
@@ -59,7 +59,7 @@ using OurClasses = ClassList<
 #endif
     >;
 
-// Empty on success, otherwise the sentence that the Python wrapper raises.
+// Returns an empty string on success, otherwise the error sentence that the Python wrapper raises.
 std::string setup(const boost::python::object& wrapper) {
   if (auto difference = yade_abi::difference_from_running_yade(wrapper);
       !difference.sentence.empty()) {
@@ -79,7 +79,7 @@ std::string setup(const boost::python::object& wrapper) {
   return "";
 }
 
-// For two bodies of one material.
+// Penetration depth [m] of two bodies of the same material under a force [N].
 double hertz_depth(double force, double effectiveRadius, double young, double poisson) {
   kernel::require(force >= 0, "force", force, "[0, inf) N");
   kernel::require(effectiveRadius > 0, "effectiveRadius", effectiveRadius, "(0, inf) m");
@@ -88,7 +88,7 @@ double hertz_depth(double force, double effectiveRadius, double young, double po
       force);
 }
 
-// Keyed by the attribute that takes the name.
+// Names of all laws; the keys are the names of the attributes that accept them.
 boost::python::dict law_names() {
   namespace laws = kernel::laws;
   boost::python::dict names;

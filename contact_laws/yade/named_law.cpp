@@ -18,7 +18,7 @@ namespace {
 
 namespace laws = kernel::laws;
 
-// Returns the law of one kind by name, or throws a sentence that lists the known names.
+// Returns the law of one kind by name, or throws an exception that lists the known names.
 template <class Law>
 Law law_by_name(Law (*find)(const std::string&), const char* class_name, const char* attribute,
                 const std::string& name) {
@@ -37,7 +37,7 @@ Law law_by_name(Law (*find)(const std::string&), const char* class_name, const c
   return find(name);
 }
 
-// A sentence that lives until the program ends, as Python's documentation requires.
+// Stores a sentence until the program ends, as Python requires of documentation strings.
 const char* kept(const std::string& sentence) {
   static std::mutex mutex;
   static std::set<std::string> sentences;
@@ -45,7 +45,7 @@ const char* kept(const std::string& sentence) {
   return sentences.insert(sentence).first->c_str();
 }
 
-// Names of the laws of a kind that read a parameter, each after a separator.
+// Appends the names of the laws of one kind that read a parameter, separated by commas.
 template <class Law>
 void add_readers(const laws::LawParameter& parameter, std::string& names) {
   for (const laws::LawInfo& info : laws::law_infos<Law>()) {
@@ -60,7 +60,7 @@ bool on_a_ball(const yade::Scene& scene, const yade::Interaction& contact) {
   return dynamic_cast<const Ball*>(body->shape.get()) != nullptr;
 }
 
-// "a Ball in a MeshBore"
+// Example: "a Ball in a MeshBore".
 std::string pair_of(const yade::Scene& scene, const yade::Interaction& contact, bool outside) {
   const auto shape = [&](int id) {
     return body_at(scene, static_cast<std::size_t>(id))->shape->getClassName();
@@ -122,7 +122,7 @@ void NamedJointLaw::build(const char* class_name) {
   law.restitution = restitution;
   law.smallest_impact_speed = smallestImpactSpeed;
   law.contact_length = contactLength;
-  law.friction_parameters = {0, v0, v1};  // the friction coefficient is that of each contact
+  law.friction_parameters = {0, v0, v1};  // the friction coefficient belongs to each contact
   laws::validate(law);
   prepare(law.dissipation, law.restitution);
   named_.law = law;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Range checks of attributes: one sentence naming class, attribute, value and allowed range.
+// Range checks of attributes. The error names class, attribute, value and allowed range.
 #pragma once
 
 #include <cmath>
@@ -27,7 +27,7 @@ namespace statejump::dem {
                               "' is not allowed: must be " + allowed);
 }
 
-// @param unit in brackets
+// @param unit with brackets, for example "[m]"
 inline void require(stepper::ValueRange allowed, const char* class_name, const char* attribute,
                     double value, const std::string& unit) {
   if (stepper::allows(allowed, value)) return;
@@ -44,7 +44,7 @@ inline void require_not_negative(const char* class_name, const char* attribute, 
   require(stepper::ValueRange::not_negative, class_name, attribute, value, unit);
 }
 
-// Numbers that a script may set: the allowed ones, and 0 for a value not yet set.
+// Checks numbers that a script sets. 0 is always accepted, because it means not yet set.
 template <class Object, std::size_t size>
 void require_settable(const char* class_name, const stepper::Quantities<Object, size>& quantities,
                       const Object& object) {
@@ -55,7 +55,7 @@ void require_settable(const char* class_name, const stepper::Quantities<Object, 
   }
 }
 
-// "above 0 [m/s]", "0 or above [m/s]" or "in (0, 1] [-]".
+// Example: "above 0 [m/s]", "0 or above [m/s]" or "in (0, 1] [-]".
 inline std::string allowed_range(const kernel::laws::LawParameter& parameter) {
   std::ostringstream text;
   const char* excluded = parameter.low_excluded ? "above " : "";

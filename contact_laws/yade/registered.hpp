@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// YADE's requirements for every class besides its physics: a name, a documented attribute list,
-// keyword construction, dict(), serialization and a dispatch index.
+// Implements what YADE requires of every class besides its physics: a name, a documented attribute
+// list, keyword construction, dict(), serialization and a dispatch index.
 //
 // A class derives from Registered<Itself, Base> (or RegisteredIndexable, for Shape, Material, IGeom
 // and IPhys) and defines its name, documentation and attributes once:
@@ -16,8 +16,8 @@
 //   };
 //
 // Python access, O.save/O.load and dict() all follow from that list. registration.hpp implements
-// them with Boost.Python and Boost.Serialization. Only module.cpp compiles it, because compiling it
-// in every source would double the compile time of the plugin.
+// them with Boost.Python and Boost.Serialization. Only module.cpp includes it: including it in
+// every source file would double the compile time of the plugin.
 #pragma once
 
 #include <string>
@@ -44,7 +44,7 @@ constexpr Attribute<Class, Type> attribute(const char* name, Type Class::*member
   return {name, member, doc, false};
 }
 
-// State that the simulation writes and a script can only read; it is saved.
+// Attribute that the simulation writes and a script can only read. It is saved.
 template <class Class, class Type>
 constexpr Attribute<Class, Type> read_only(const char* name, Type Class::*member, const char* doc) {
   return {name, member, doc, true};
@@ -65,13 +65,13 @@ class Registered : public Base {
 
   void pySetAttr(const std::string& key, const boost::python::object& value) override;
 
-  // Called after construction from keywords, after loading and by YADE itself.
+  // Called after construction from keywords, after loading and whenever YADE calls it.
   void callPostLoad() override {
     Base::callPostLoad();
     static_cast<Derived&>(*this).check();
   }
 
-  // Throws std::invalid_argument for values out of range; classes with ranges hide it.
+  // Throws std::invalid_argument for values out of range. A class with ranges hides this function.
   void check() const {}
 
   void pyRegisterClass(boost::python::object scope) override;
@@ -89,8 +89,8 @@ class Registered : public Base {
   }
 };
 
-// A class that takes part in YADE's multiple dispatch. Derived must call createIndex() in its
-// constructor.
+// Base of classes that take part in YADE's multiple dispatch. Derived must call createIndex() in
+// its constructor.
 template <class Derived, class Base>
 class RegisteredIndexable : public Registered<Derived, Base> {
  public:

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Implements registered.hpp: Python class and serialization of every class. Included once, by
-// module.cpp.
+// Implements registered.hpp: Python class and serialization of all classes. For module.cpp only.
 #pragma once
 
 #include <array>
@@ -35,8 +34,8 @@ void archive_value(Archive& archive, const char* name, Type& value) {
   archive& boost::serialization::make_nvp(name, value);
 }
 
-// The radius of a flat face is infinite and an unset time is NaN. An XML archive writes these
-// values but cannot read them.
+// Numbers are text in XML archives. The radius of a flat face is infinite and an unset time is NaN;
+// an XML archive writes such numbers but cannot read them.
 template <class Archive>
 void archive_value(Archive& archive, const char* name, Real& value) {
   if constexpr (std::is_same_v<Archive, boost::archive::xml_oarchive>) {
@@ -53,7 +52,7 @@ void archive_value(Archive& archive, const char* name, Real& value) {
   }
 }
 
-// Component by component, because YADE's serialization of vectors is not part of its interface.
+// By component, because YADE's serialization of vectors is not part of its interface.
 template <class Archive>
 void archive_value(Archive& archive, const char* name, Vector3r& value) {
   static constexpr const char* components[3] = {"_x", "_y", "_z"};
@@ -63,7 +62,7 @@ void archive_value(Archive& archive, const char* name, Vector3r& value) {
   }
 }
 
-// Lists of triples as one list of numbers, for the same reason.
+// Archives a list of triples as one list of numbers, for the same reason.
 template <class Archive, class Triple, class Number>
 void archive_triples(Archive& archive, const char* name, std::vector<Triple>& list,
                      std::vector<Number> flat) {
@@ -90,7 +89,7 @@ void archive_value(Archive& archive, const char* name, std::vector<std::array<in
   archive_triples(archive, name, value, std::vector<int>());
 }
 
-// The Python type that a script must assign to an attribute.
+// Description of the Python type that an attribute accepts, for messages.
 template <class Type>
 constexpr const char* what_it_takes() {
   if constexpr (std::is_same_v<Type, bool>) return "True or False";
@@ -112,7 +111,7 @@ Type value_of(const char* class_name, const char* attribute, const boost::python
   const boost::python::extract<Type> given(value);
   try {
     if (given.check()) return given();
-  } catch (const boost::python::error_already_set&) {  // an item of a list
+  } catch (const boost::python::error_already_set&) {  // an item of a list has the wrong type
     PyErr_Clear();
   }
   const std::string text = boost::python::extract<std::string>(value.attr("__repr__")());
@@ -183,12 +182,12 @@ void Registered<Derived, Base>::pyRegisterClass(boost::python::object scope) {
   entry.def("__init__", py::raw_function(&detail::keyword_constructor<Derived>, 1));
   for_each_attribute([&](const auto& a) {
     using Type = std::decay_t<decltype(std::declval<Derived&>().*a.member)>;
-    Type Derived::*const member = a.member;  // also valid if a base unknown to Python has it
+    Type Derived::*const member = a.member;  // also valid for a member of a base unknown to Python
     const auto get = py::make_getter(member, py::return_value_policy<py::return_by_value>());
     if (a.read_only) {
       entry.add_property(a.name, get, a.doc);
     } else {
-      // Checked as on construction; a rejected value leaves the old one.
+      // Checks the value as the constructor does; if it is rejected, the old value remains.
       const auto set = [member, name = a.name](Derived& self, const py::object& value) {
         const Type old = self.*member;
         self.*member = detail::value_of<Type>(Derived::class_name, name, value);
@@ -233,7 +232,7 @@ void register_factory() {
 
 }  // namespace statejump::dem
 
-// Exports a class, with everything registered for it, under its name in O.save.
+// Exports a class to O.save under its name and instantiates everything registered for it.
 #define STATEJUMP_EXPORT_AS(Class, Name) \
   BOOST_CLASS_EXPORT_GUID(Class, Name)   \
   template class statejump::dem::Registered<Class, Class::RegisteredBase>;

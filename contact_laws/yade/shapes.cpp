@@ -10,7 +10,7 @@
 namespace statejump::dem {
 namespace {
 
-// Half extents of a cylinder with the given unit axis.
+// Half extents of the bounding box of a cylinder [m].
 Vector3r cylinder_half_extents(const yade::Quaternionr& orientation, Real radius,
                                Real half_length) {
   const Vector3r axis = orientation * Vector3r::UnitZ();

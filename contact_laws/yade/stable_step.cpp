@@ -18,8 +18,8 @@
 namespace statejump::dem {
 namespace {
 
-// Acceleration of a body by a unit force with the given arm [1/kg]: along the force, and through
-// the rotation if the body may rotate. Zero for an arm that does not rotate it.
+// Acceleration of a body per unit force with the given arm [1/kg]: by translation along the force,
+// and by rotation if the body can rotate. A force that does not rotate it has arm 0.
 Real mobility(const yade::State& state, Real arm_squared) {
   Real smallest_inertia = 0;
   for (int i = 0; i < 3; ++i) {
@@ -32,11 +32,11 @@ Real mobility(const yade::State& state, Real arm_squared) {
   return inverse_mass(state) + (smallest_inertia > 0 ? arm_squared / smallest_inertia : 0);
 }
 
-// Sums over the springs and dashpots of each body.
+// Sums stiffness and damping over the springs and dashpots of each body.
 //
-// Let s be the stretch of a spring of stiffness k between two bodies. Then s^2 <= 2 (s1^2 + s2^2)
-// and s_i^2 <= mobility_i * 2 * (kinetic energy per unit rate squared). So the largest eigenvalue
-// is at most the largest sum of 2 k mobility over the springs of one body.
+// Let s be the elongation of a spring of stiffness k between two bodies. Then s^2 <= 2 (s1^2 +
+// s2^2) and s_i^2 <= mobility_i * 2 * (kinetic energy per unit rate squared). So the largest
+// eigenvalue is at most the largest sum of 2 k mobility over the springs of one body.
 class BodySums {
  public:
   explicit BodySums(const yade::Scene& scene)
@@ -71,9 +71,9 @@ class BodySums {
 
   void add(const TorsionSpring& spring) {
     if (!spring.link1 || !spring.link2) return;
-    // The angle is the sum of up to four displacements over their lengths. So its square is at
-    // most the number of moving ends times the sum of the squares; the common factor 2 is applied
-    // later.
+    // The angle is the sum of up to four displacements, each over the length of its link. So its
+    // square is at most the number of moving ends times the sum of the squares. A common factor 2
+    // is applied later.
     const std::array<LinkEnds, 2> links = {ends_of(scene_, *spring.link1),
                                            ends_of(scene_, *spring.link2)};
     int moving = 0;
@@ -135,8 +135,8 @@ class BodySums {
   }
 
   const yade::Scene& scene_;
-  std::vector<Real> stiffness_;  // per mass [1/s2]
-  std::vector<Real> damping_;    // per mass [1/s]
+  std::vector<Real> stiffness_;  // stiffness times mobility [1/s2]
+  std::vector<Real> damping_;    // damping times mobility [1/s]
 };
 
 template <class List>

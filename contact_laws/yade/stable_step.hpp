@@ -6,11 +6,11 @@
 
 namespace statejump::dem {
 
-// Stable time step of the current state [s], on the safe side: the smallest 4 / (c + sqrt(c^2 + 4
-// k)) over the bodies. k is twice the sum of stiffness times mobility (1/m, and arm^2/I if the body
-// may rotate) over the springs of the body; c likewise for damping. Exact for a spring between
-// equal masses, otherwise smaller by a factor of up to sqrt(2). Infinity if nothing acts on a free
-// body.
+// Lower bound of the stable time step [s] in the current state: the smallest 4 / (c + sqrt(c^2 + 4
+// k)) over the bodies. k is twice the sum of stiffness times mobility (1/m, plus arm^2/I if the
+// body can rotate) over the springs of the body; c is the same sum for damping. Exact for a spring
+// between equal masses, otherwise too small by a factor of at most sqrt(2). Infinity if nothing
+// acts on a free body.
 double stable_time_step(const yade::Scene& scene);
 
 }  // namespace statejump::dem

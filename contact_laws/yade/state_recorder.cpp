@@ -14,7 +14,7 @@
 namespace statejump::dem {
 namespace {
 
-// Numbers per object of each type.
+// Columns per object of each type.
 constexpr std::size_t body_width = 9, contact_width = 12, link_width = 4, spring_width = 3,
                       joint_width = 3;
 
@@ -57,7 +57,7 @@ void StateRecorder::check() {
                                   std::to_string(contacts[i + 1]) + " twice");
     }
   }
-  rows_.clear();  // their width has changed
+  rows_.clear();  // discard samples: the number of columns has changed
 }
 
 std::size_t StateRecorder::width() const {

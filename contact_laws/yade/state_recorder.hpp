@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// States of a scene of joints, one row of numbers per sample.
+// Records the state of a scene of joints, one row of numbers per sample.
 #pragma once
 
 #include <cstdint>
@@ -37,11 +37,11 @@ struct StateRecorder : Registered<StateRecorder, yade::GlobalEngine> {
   std::vector<yade::shared_ptr<TorsionSpring>> springs;
   std::vector<yade::shared_ptr<PrismaticJoint>> joints;
 
-  // Values that a scene does not store with its objects. The interpreter's lock is held.
+  // Quantities that a scene does not store with its objects. The caller must hold the GIL.
   struct Sums {
     const stepper::Energies& energies;
     const stepper::StoredEnergies& stored;
-    std::function<Vector3r(std::size_t)> force;  // on a body [N]
+    std::function<Vector3r(std::size_t)> force;  // force on a body [N]
   };
   void sample(const yade::Scene& of, const Sums& sums);
   bool samples(long iteration) const { return iteration % iterPeriod == 0; }
@@ -80,7 +80,7 @@ struct StateRecorder : Registered<StateRecorder, yade::GlobalEngine> {
   std::size_t rows() const { return rows_.size() / width(); }
   boost::python::list scalars() const;
   void add_contacts(const yade::Scene& of, std::size_t strangers);
-  std::unordered_map<std::uint64_t, std::size_t> columns_;  // of contacts, by their bodies
+  std::unordered_map<std::uint64_t, std::size_t> columns_;  // of contacts, by pair of bodies
   std::vector<Real> rows_;
 };
 

@@ -23,7 +23,7 @@ namespace {
 
 constexpr int aspherical = 2;  // bit of Body::flags
 
-// Calls act with the engine as its actual class.
+// Calls act with the engine cast to its actual class.
 template <class Act>
 void as_stage(yade::Engine& engine, Act&& act) {
   if (auto* links = known_cast<ThermalLinks>(&engine)) {
@@ -60,7 +60,7 @@ void scatter_stage(const PrismaticJoints& to, const stepper::Stage& from) {
 
 void scatter_stage(const GuidePlanes&, const stepper::Stage&) {}  // no state
 
-// Copies the attributes of YADE for any contact of two round bodies.
+// Copies the geometry fields that YADE itself uses, for any contact of two round bodies.
 template <class From, class To>
 void copy_place(const From& from, To& to) {
   to.normal = from.normal;
@@ -75,7 +75,7 @@ void resize(std::vector<Entry>& contacts, std::size_t count) {
   while (contacts.size() < count) contacts.push_back(stepper::new_contact<Entry>());
 }
 
-// Geometry and physics of all contacts with a bore, in either direction.
+// Copies geometry of all contacts with a bore, in either direction.
 template <class From, class To>
 void copy_bore_geometry(const From& from, To& to) {
   copy_place(from, to);
@@ -98,7 +98,7 @@ void copy_bore_physics(const From& from, To& to) {
   }
 }
 
-// False if the pair has a state that only YADE's own loop can handle.
+// False if only YADE's own loop can handle the state of this pair.
 bool gather_bore(const yade::Interaction& from, stepper::Bore& to) {
   const auto* geometry = known_cast<const BoreGeom>(from.geom.get());
   const auto* physics = known_cast<const BorePhys>(from.phys.get());
@@ -143,7 +143,7 @@ void scatter_bore(const stepper::Contact& contact, const stepper::Bore& from,
 
 bool JointArrays::gather(stepper::Scene& arrays) {
   arrays = {};
-  if (fault_of_scene(scene_)) return false;  // YADE's own loop reports it
+  if (fault_of_scene(scene_)) return false;  // YADE's own loop reports the fault
   interactions_.clear();
   heated_.clear();
   strains_.clear();
@@ -163,7 +163,7 @@ bool JointArrays::gather(stepper::Scene& arrays) {
     arrays.bore_law = engines_.bore_law->named_law();
     arrays.begun_in_bores = {engines_.bore_law->firstContactTime, engines_.bore_law->contacts};
   }
-  scene_.forces.sync();  // only permanent forces: the others have just been reset
+  scene_.forces.sync();  // cheap: all forces except permanent ones have just been reset
   arrays.bodies.reserve(number_of_bodies(scene_));
   for (std::size_t id = 0; id < number_of_bodies(scene_); ++id) {
     if (!gather_body(id, arrays)) return false;
@@ -184,7 +184,7 @@ bool JointArrays::gather(stepper::Scene& arrays) {
 bool JointArrays::gather_body(std::size_t id, stepper::Scene& arrays) {
   stepper::Body& one = arrays.bodies.emplace_back();
   const auto& pointer = body_at(scene_, id);
-  if (!pointer) return true;  // erased: it rests
+  if (!pointer) return true;  // erased body: at rest
   const yade::Body& body = *pointer;
   const yade::State& state = *body.state;
   const auto which = [id] { return "body " + std::to_string(id); };
@@ -209,7 +209,7 @@ bool JointArrays::gather_body(std::size_t id, stepper::Scene& arrays) {
   if (!one.bounded) return true;
   one.bound_position = body.bound->refPos;
   one.bound_reach = body.bound->sweepLength;
-  return !stepper::left_bound(one);  // else the collider will run
+  return !stepper::left_bound(one);  // otherwise the collider must run
 }
 
 std::size_t JointArrays::program_of(const ThermalProgram& program, stepper::Scene& arrays) {
@@ -255,7 +255,7 @@ std::size_t JointArrays::strain_of(const yade::Body& body, stepper::Scene& array
   return common->second;
 }
 
-// Whether some functor of the scene accepts the pair.
+// Finds dimensions and joint type of a pair. False if no functor of the scene accepts the pair.
 bool JointArrays::find_parts(const yade::Body& one, const yade::Body& two,
                              stepper::Contact& contact) const {
   const yade::Shape* const first = one.shape.get();
@@ -304,7 +304,7 @@ bool JointArrays::find_parts(const yade::Body& one, const yade::Body& two,
   return false;
 }
 
-// The bore, if some functor of the scene accepts the pair as a meshed bore.
+// Returns the bore if a functor of the scene accepts the pair as a contact with a meshed bore.
 std::optional<stepper::Bore> JointArrays::find_bore(const yade::Body& one, const yade::Body& two,
                                                     stepper::Contact& contact) const {
   const auto* hole = known_cast<const MeshBore>(two.shape.get());

@@ -23,9 +23,9 @@ class JointArrays {
   JointArrays(yade::Scene& scene, const JointEngines& engines) : scene_(scene), engines_(engines) {}
 
   // Fills the arrays. False if YADE's own loop must make the next step. Throws
-  // std::invalid_argument for a body that cannot be stepped.
+  // std::invalid_argument for a body that the stepper does not support.
   bool gather(stepper::Scene& arrays);
-  // Writes the changes back. The interpreter's lock is held.
+  // Writes the changed state back to YADE. The caller must hold the GIL.
   void scatter(const stepper::Scene& arrays);
   // Physics of a contact that begins; empty for invalid materials.
   std::optional<stepper::ContactPhysics> physics(std::size_t contact) const;
@@ -51,9 +51,9 @@ class JointArrays {
   yade::Scene& scene_;
   const JointEngines& engines_;
   std::vector<std::size_t> interactions_;  // index of each contact in YADE's container
-  std::vector<std::pair<ThermalShape*, std::size_t>> heated_;  // shapes whose strain an engine sets
-  std::unordered_map<const ThermalShape*, std::size_t> strains_;  // index of their strain
-  // Strains that are and remain equal: by engine, expansion, strain and its rate.
+  std::vector<std::pair<ThermalShape*, std::size_t>> heated_;  // shapes and index of their strain
+  std::unordered_map<const ThermalShape*, std::size_t> strains_;  // index of each shape's strain
+  // Strains that are and remain equal, by heater, expansion coefficient, strain and rate.
   std::map<std::tuple<std::size_t, Real, Real, Real>, std::size_t> common_strains_;
   std::map<const ThermalProgram*, std::size_t> programs_;
 };

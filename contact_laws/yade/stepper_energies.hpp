@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Conversion of O.energy to plain numbers, and back.
+// Transfers O.energy to plain numbers, and back.
 #pragma once
 
 #include <vector>
@@ -9,15 +9,15 @@
 
 namespace statejump::dem {
 
-// Cumulative energies of O.energy. The interpreter's lock is held.
+// Cumulative energies of O.energy. The caller must hold the GIL.
 stepper::Energies read_energies(const yade::Scene& scene);
 void write_energies(const stepper::Energies& energies, const stepper::Energies& before,
                     const yade::Scene& scene);
 
-// Stored energies of the last step. The interpreter's lock is held.
+// Stored energies of the last step. The caller must hold the GIL.
 stepper::StoredEnergies read_stored_energies(const yade::Scene& scene);
 
-// All energies by their names in O.energy; their values have the same order.
+// Names of all energies in O.energy, in the order of the values that append() writes.
 std::vector<const char*> energy_names();
 void append(const stepper::Energies& energies, const stepper::StoredEnergies& stored,
             std::vector<yade::Real>& row);

@@ -24,7 +24,7 @@ std::string type_of(const py::object& object) {
 // YADE engines that the stepper supports.
 enum class Known { resetter, collider, loop, newton, onlooker, time_stepper };
 
-// Position of an engine in a step.
+// Position of an engine in the loop, in the required order.
 enum class Place { resetter, stepper, before, loop, behind, recorder, motion };
 
 class Reader {
@@ -102,7 +102,7 @@ class Reader {
          {"NewtonIntegrator", Known::newton},
          {"PeriodicEngine", Known::onlooker},
          {"TimeStepper", Known::time_stepper}}};
-    // This check runs between any two runs of steps, so most engines are recognised by their names.
+    // This function runs before every run of steps, so it first compares names, which is fast.
     if (class_name == "PyRunner") return Known::onlooker;
     for (const auto& [name, which] : bases) {
       if (class_name == name) return which;
@@ -118,7 +118,7 @@ class Reader {
 
   void stand(Place place, const std::string& name) {
     const bool right = any_ ? place >= last_ : place == Place::resetter;
-    // Only the stepper may follow the forces' reset.
+    // Only the stepper may directly follow the ForceResetter.
     const bool behind_resetter = place != Place::stepper || last_ == Place::resetter;
     const bool stepper_is_there = place <= Place::stepper || seen_stepper_;
     if (!right || !behind_resetter || !stepper_is_there) {
@@ -144,7 +144,7 @@ class Reader {
     return true;
   }
 
-  // Calls take for every functor of a dispatcher; a functor that no branch takes is unknown.
+  // Calls take_one for every functor of a dispatcher; it returns false for unsupported ones.
   template <class Take>
   static void read_functors(const py::object& loop, const char* dispatcher, Take&& take_one) {
     const py::object functors(loop.attr(dispatcher).attr("functors"));
@@ -186,7 +186,7 @@ class Reader {
     if (py::extract<int>(integrator.attr("mask"))() > 0) {
       refuse_scene("NewtonIntegrator.mask must be -1: every body moves");
     }
-    // Versions of YADE differ in whether damping includes the work of gravity.
+    // YADE versions differ in whether numerical damping acts on gravity, and thus in its energy.
     if (scene_.trackEnergy && newton.damping != 0 && !newton.gravity.isZero(0)) {
       refuse_scene("with O.trackEnergy and gravity NewtonIntegrator.damping must be 0");
     }

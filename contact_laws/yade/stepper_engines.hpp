@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The engines of a scene, in the form that the JointStepper needs.
+// The engines of a scene that the JointStepper needs.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,7 @@ namespace statejump::dem {
 
 struct JointEngines {
   std::vector<ThermalExpansionEngine*> heaters;
-  std::vector<yade::Engine*> stages;  // ThermalLinks, TorsionSprings and so on, in their order
+  std::vector<yade::Engine*> stages;  // ThermalLinks, TorsionSprings etc., in their order
   std::vector<StateRecorder*> recorders;
   Ig2_Journal_Bearing_JointGeom* revolute = nullptr;
   Ig2_Ball_Socket_JointGeom* ball = nullptr;
@@ -27,15 +27,15 @@ struct JointEngines {
   Law2_JointGeom_JointPhys_JointLaw* joint_law = nullptr;
   Law2_BoreGeom_BorePhys_JointLaw* bore_law = nullptr;
   stepper::Newton newton;
-  bool exact_rotation = true;  // of aspherical bodies
+  bool exact_rotation = true;  // NewtonIntegrator's exactAsphericalRot
   bool has_collider = false;
 };
 
-// Throws std::invalid_argument: "JointStepper: " and the object that cannot be stepped.
+// Throws std::invalid_argument with "JointStepper: " and the object that it does not support.
 [[noreturn]] void refuse_scene(const std::string& what);
 
-// Reads the engines of a scene, those of YADE through Python. Throws std::invalid_argument for an
-// unknown engine or an unsupported order.
+// Reads the engines of a scene; YADE's own engines through Python. Throws std::invalid_argument for
+// an unsupported engine or order.
 JointEngines joint_engines(const yade::Scene& scene, const yade::Engine& stepper);
 
 }  // namespace statejump::dem

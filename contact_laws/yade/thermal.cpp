@@ -18,7 +18,7 @@
 namespace statejump::dem {
 namespace {
 
-// Names in O.energy; stored as strings, because the tracker takes strings in every step.
+// Names in O.energy; stored as strings, because the tracker needs a std::string in every step.
 const std::string link_elastic = "linkElastic";
 const std::string link_damping = "linkDamping";
 const std::string link_thermal_work = "linkThermalWork";
@@ -41,7 +41,7 @@ void throw_fault(const yade::Scene& scene, const ThermalLink& link) {
                  stable, when(scene)});
 }
 
-// Ends coincide, or their distance is not finite.
+// Throws because the ends coincide or their distance is not finite.
 [[gnu::cold, gnu::noinline]] void fail_length(const yade::Scene& scene, const ThermalLink& link,
                                               Real length) {
   throw_fault(scene, link);
@@ -51,7 +51,7 @@ void throw_fault(const yade::Scene& scene, const ThermalLink& link) {
                  std::numeric_limits<Real>::quiet_NaN(), when(scene)});
 }
 
-// The temperature gives the link no positive length, or its force is not finite.
+// Throws: the stress-free length at this temperature is not positive or the force not finite.
 [[gnu::cold, gnu::noinline]] void fail_force(const yade::Scene& scene, const ThermalLink& link,
                                              const stepper::LinkStep& step) {
   throw_fault(scene, link);
@@ -168,14 +168,14 @@ void ThermalLink::check() const {
 
 void ThermalLinks::action() {
   begin(*scene);
-  // Only a tip that rotates with its link needs the moments of the step. The sum over threads would
-  // cost as much as the rest of this engine.
+  // Only a tip that rotates with its link needs the moments of this step. YADE's sum over threads
+  // costs as much as the rest of this engine.
   bool needs_moments = false;
   for (const auto& link : links) {
     if (!link) throw std::invalid_argument("ThermalLinks.links holds None");
     needs_moments = needs_moments || link->tipTurnsWithLink;
   }
-  // All moments are read before the first force, because adding one makes YADE require another sum.
+  // Read all moments before adding the first force: after an addition, YADE requires another sum.
   moments_.assign(links.size(), Vector3r::Zero());
   if (needs_moments) {
     scene->forces.sync();

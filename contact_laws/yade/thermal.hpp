@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Temperature programs, the engine that applies them to shapes, and expanding links.
+// Temperature programs, the engine that applies them to shapes, and thermally expanding links.
 #pragma once
 
 #include <optional>
@@ -68,16 +68,16 @@ struct ThermalExpansionEngine : Registered<ThermalExpansionEngine, yade::GlobalE
   std::vector<int> ids;
   Real temperatureChange = 0;
 
-  // A body at the time of collection. It is compared before use, which detects a body that a script
-  // has erased or given another shape. Not owned, because Python objects may only be released under
-  // the interpreter's lock, which a running simulation does not hold.
+  // A body as found when the targets were collected. It is compared before use, to detect that a
+  // script erased the body or changed its shape. It holds plain pointers: Python objects may only
+  // be released under the GIL, which a running simulation does not hold.
   struct Target {
     std::size_t id;
     ThermalShape* shape;
     const ThermalFrictMat* material;
-    bool is_shared;  // its shape is that of an earlier body, whose material applies
+    bool is_shared;  // an earlier body has the same shape; the material of that body applies
   };
-  // The current targets.
+  // Targets, collected again if the scene has changed.
   const std::vector<Target>& targets();
 
   void action() override;
@@ -153,7 +153,7 @@ struct ThermalLink : Registered<ThermalLink, yade::Serializable>, stepper::Link 
   }
 };
 
-// The two current ends of a link. Throws if a body is missing or the ends coincide.
+// The two ends of a link at their current positions.
 struct LinkEnds {
   yade::State& root;
   yade::State& tip;
@@ -178,7 +178,7 @@ struct ThermalLinks : Registered<ThermalLinks, yade::GlobalEngine>, RaisesFailur
   }
 
  private:
-  // moment: of the contacts of the step on the tip [N m]; zero unless the tip rotates with the link
+  // @param moment of the contacts on the tip [N m]; zero unless the tip rotates with the link
   void act(ThermalLink& link, const Vector3r& moment);
   std::vector<Vector3r> moments_;
   std::array<int, 4> energy_ids_ = {-1, -1, -1, -1};

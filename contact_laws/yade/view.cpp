@@ -14,8 +14,8 @@
 namespace statejump::dem {
 namespace {
 
-// The flag is private in YADE's own headers, public in the declared ones. Access is not checked in
-// an explicit instantiation, so this works with both.
+// This flag is private in YADE's own headers and public in the declared interface. An explicit
+// instantiation ignores access rights, so this works with both.
 bool& view_has_functors();
 
 template <bool* flag>
@@ -27,16 +27,15 @@ template struct PrivateFlag<&yade::OpenGLRenderer::initDone>;
 constexpr int sides = 96;
 constexpr Real pi = 3.14159265358979323846;
 
-// Restores YADE's drawing state. The matrix is not saved here, because YADE does so around each
-// body. After about thirty pictures, YADE's use of OpenGL's short stack leaves room for only one
-// matrix.
+// Restores YADE's drawing state. The matrix is excluded: YADE saves it around each body, and
+// OpenGL's matrix stack is short. After about thirty pictures it has room for only one more.
 class Painter {
  public:
   Painter(const Vector3r& color, Real opacity) {
     glPushAttrib(GL_ENABLE_BIT | GL_CURRENT_BIT | GL_LINE_BIT | GL_POLYGON_BIT |
                  GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_LIGHTING_BIT);
     glDisable(GL_CULL_FACE);
-    // Both sides of a face look the same and are lit by the given normal.
+    // Both sides of a face look the same, lit according to the given normal.
     glLightModeli(GL_LIGHT_MODEL_TWO_SIDE, GL_FALSE);
     glColorMaterial(GL_FRONT_AND_BACK, GL_AMBIENT_AND_DIFFUSE);
     glEnable(GL_COLOR_MATERIAL);
@@ -66,7 +65,7 @@ void circle(Real radius, Real z) {
   glEnd();
 }
 
-// Lines along the axis; few, so that rotation is visible.
+// Lines on the cylinder parallel to the axis; few, so that rotation is visible.
 void generators(Real radius, Real half_length, int count) {
   glBegin(GL_LINES);
   for (int i = 0; i < count; ++i) {
@@ -77,7 +76,7 @@ void generators(Real radius, Real half_length, int count) {
   glEnd();
 }
 
-// sign: 1 outside, -1 inside of the cylinder, for the light.
+// Cylinder wall. sign of the normal for lighting: 1 seen from outside, -1 from inside.
 void wall(Real radius, Real half_length, Real sign) {
   glBegin(GL_QUAD_STRIP);
   for (int i = 0; i <= sides; ++i) {
@@ -89,7 +88,7 @@ void wall(Real radius, Real half_length, Real sign) {
   glEnd();
 }
 
-// A ring across the axis; a disc for inner radius 0.
+// Ring in the plane at height z; a disc if the inner radius is 0.
 void ring(Real inner, Real outer, Real z) {
   glBegin(GL_QUAD_STRIP);
   glNormal3d(0, 0, z < 0 ? -1 : 1);
@@ -101,7 +100,7 @@ void ring(Real inner, Real outer, Real z) {
   glEnd();
 }
 
-// From the lowest point up to a polar angle. sign: as for wall().
+// Part of a sphere from its lowest point up to a polar angle [rad]. sign: as for wall().
 void sphere(Real radius, Real polar, Real sign) {
   constexpr int rings = 24;
   for (int k = 0; k < rings; ++k) {
@@ -120,7 +119,7 @@ void sphere(Real radius, Real polar, Real sign) {
   }
 }
 
-// One perpendicular to each axis.
+// Three great circles, one perpendicular to each axis.
 void great_circles(Real radius) {
   for (int axis = 0; axis < 3; ++axis) {
     glBegin(GL_LINE_LOOP);
@@ -135,10 +134,10 @@ void great_circles(Real radius) {
   }
 }
 
-// Radius and position of a journal with magnified play.
+// Radius and position of a journal drawn with magnified play.
 struct Drawn {
   Real radius;
-  Vector3r shift;  // in the axes of the journal
+  Vector3r shift;  // in the local axes of the journal
 };
 
 Drawn magnified(const Journal& journal, const yade::State& state) {
@@ -165,7 +164,7 @@ Drawn magnified(const Journal& journal, const yade::State& state) {
   const Vector3r axis = place->se3.orientation * Vector3r::UnitZ();
   const Vector3r centres = state.se3.position - place->se3.position;
   const Vector3r offset = centres - centres.dot(axis) * axis;
-  // A journal far from every bearing belongs to none.
+  // A journal outside of every bearing is not magnified.
   if (!(clearance > 0) || offset.norm() > bearing_radius) return drawn;
   scale = std::min(scale, std::max<Real>(1, 0.7 * bearing_radius / clearance));
   drawn.radius = bearing_radius - scale * clearance;
@@ -203,7 +202,7 @@ void draw(const Journal& journal, const yade::State& state, bool wire) {
     ring(0, drawn.radius, -half);
   }
   glDisable(GL_LIGHTING);
-  if (!wire) glColor3d(0, 0, 0);  // edges, and a mark that rotates with the journal
+  if (!wire) glColor3d(0, 0, 0);  // edges, and a mark that shows the rotation of the journal
   for (const Real z : {-half, half}) circle(drawn.radius, 1.001 * z);
   if (wire) generators(drawn.radius, half, 12);
   glBegin(GL_LINES);
@@ -216,7 +215,7 @@ void draw(const Journal& journal, const yade::State& state, bool wire) {
 
 void draw(const Bearing& bearing, const yade::State&, bool wire) {
   const Real inner = bearing.expanded(bearing.radius);
-  const Real outer = 1.3 * inner;  // the wall thickness is not modelled
+  const Real outer = 1.3 * inner;  // arbitrary, because the wall thickness is not modelled
   const Real half = half_length_of(bearing.expanded(bearing.halfLength), inner);
   {
     const Painter painter(bearing.color, 1);
@@ -239,12 +238,12 @@ void draw(const Ball& ball, const yade::State&, bool wire) {
   const Painter painter(ball.color, 1);
   if (!wire) sphere(radius, pi, 1);
   glDisable(GL_LIGHTING);
-  if (!wire) glColor3d(0, 0, 0);  // great circles that rotate with the ball
+  if (!wire) glColor3d(0, 0, 0);  // great circles show the rotation of the ball
   great_circles(1.001 * radius);
 }
 
 void draw(const Socket& socket, const yade::State&, bool wire) {
-  // The lower half only, so that the inside is visible; the contact uses the whole sphere.
+  // Draws only the lower half, so that the inside is visible; the contact uses the whole sphere.
   const Real radius = socket.expanded(socket.radius);
   {
     const Painter painter(socket.color, 1);
@@ -264,7 +263,7 @@ void draw(const MeshBore& bore, const yade::State&, bool wire) {
   const auto place = [&](const Vector3r& v) -> Vector3r {
     return mesh.centre() + grown * (v - mesh.centre());
   };
-  constexpr std::size_t most = 20000;  // above this number, dots
+  constexpr std::size_t most = 20000;  // larger meshes are drawn as dots
   {
     const Painter edges(bore.color, 1);
     glDisable(GL_LIGHTING);
@@ -302,7 +301,7 @@ void draw(const MeshBore& bore, const yade::State&, bool wire) {
 }
 
 void draw(const Slider& slider, const yade::State&, bool wire) {
-  // The pads are parts of one sphere; the block between them is drawn as their bounding box.
+  // The pads are parts of one sphere; its bounding box is drawn as the slider.
   const Real half = slider.expanded(slider.radius);
   const Painter painter(slider.color, 1);
   if (wire) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);

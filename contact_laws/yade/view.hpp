@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Journals, bearings, balls, sockets, sliders and slots in YADE's 3-D view.
+// Draws journals, bearings, balls, sockets, sliders and slots in YADE's 3-D view.
 #pragma once
 
 #include <type_traits>
@@ -11,12 +11,12 @@
 #ifdef STATEJUMP_HAS_VIEW
 namespace statejump::dem {
 
-// Makes a 3-D view started before the plugin's classes were registered draw them. Otherwise YADE
-// ends with a failed assertion when such a view encounters one of these shapes.
+// Lets a 3-D view that started before the plugin was loaded find the plugin's drawing functors.
+// Without them YADE ends with a failed assertion when such a view draws one of these shapes.
 void refresh_view();
 
-// Magnification of a journal's play in the drawing. YADE constructs the view functors itself, so a
-// script can only change what they share.
+// Magnification of a journal's play in the drawing. It is static, because YADE constructs the view
+// functors itself and scripts cannot access them.
 struct ViewSettings {
   static Real clearance_scale() { return clearance_scale_; }
   static void set_clearance_scale(Real scale);

@@ -21,7 +21,7 @@
 #endif
 #else
 #include "statejump/yade_abi/dispatch.hpp"
-#define STATEJUMP_HAS_VIEW  // Debian's YADE has its 3-D view
+#define STATEJUMP_HAS_VIEW  // the declared interface includes Debian's 3-D view
 #endif
 
 #include <string>
@@ -29,8 +29,8 @@
 
 namespace statejump::dem {
 
-// Functions that the two interfaces offer under different names or access rights. The pointer to a
-// body is null if the body was erased.
+// Functions that the two interfaces offer under different names or access rights. A null pointer
+// to a body means that the body was erased.
 inline std::size_t number_of_bodies(const yade::Scene& scene) {
   return scene.bodies->size();
 }
@@ -51,7 +51,7 @@ inline yade::Interaction& interaction_to_change(const yade::Scene& scene, std::s
 // Creates the Python classes of factory classes, base classes first.
 inline void register_python_classes(const std::vector<std::string>& class_names) {
 #ifdef STATEJUMP_REAL_YADE_HEADERS
-  // The function of the other branch is private; YADE's loader of plugins calls it with this list.
+  // buildDynlibDatabase() is private here; YADE's plugin loader calls it with the pending list.
   auto& pending = yade::ClassFactory::instance().pluginClasses;
   const auto kept = pending;
   pending.assign(class_names.begin(), class_names.end());

@@ -41,7 +41,7 @@ BoreContact contact_at(const BoreMesh::Impl& m, const Hit& hit, const Vector3& n
   return contact;
 }
 
-/// A contact and the wall there.
+/// A contact and the wall point it belongs to.
 struct Candidate {
   BoreContact contact;
   Hit hit;
@@ -67,7 +67,7 @@ std::vector<BoreContact> sort_and_match(std::vector<Candidate>& candidates,
   }
   std::vector<char> taken(previous.size(), 0);
   for (std::size_t round = 0; round < std::min(contacts.size(), previous.size()); ++round) {
-    double best = 0.86602540378443865;  // a twelfth of a turn
+    double best = 0.86602540378443865;  // cos(30 degrees): a twelfth of a turn
     std::size_t which = contacts.size(), whose = 0;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       if (contacts[i].previous >= 0) continue;
@@ -91,14 +91,13 @@ std::vector<Vector3> normals_of(const std::vector<BoreContact>& contacts) {
   return normals;
 }
 
-/// A minimum of values on a ring.
+/// Minimum of values on a ring.
 struct Minimum {
   int index;
   double value;
 };
 
-/// Drops minima whose rise to a lower neighbour is below the prominence; the lowest always stays.
-/// rise(i, j): largest value between index i and the next kept one j.
+/// Drops minima that rise by less than the prominence before a lower one; the lowest always stays.
 void drop_flat(std::vector<Minimum>& minima, const std::vector<double>& values, double prominence) {
   const int count = static_cast<int>(values.size());
   while (minima.size() > 1) {
@@ -121,8 +120,7 @@ void drop_flat(std::vector<Minimum>& minima, const std::vector<double>& values, 
   }
 }
 
-/// Distance of the wall from the journal's centre along a direction in its section, and how that
-/// changes with the angle.
+/// Distance of the wall from the journal's centre in a direction of its section; derivatives.
 struct Section {
   const BoreMesh::Impl& m;
   Vector3 centre, axis;
@@ -150,7 +148,7 @@ struct Section {
     return true;
   }
 
-  /// Local minimum between two angles from a direction; false when the wall ends there.
+  /// Finds the local minimum between two angles relative to `start`; false if `start` has no wall.
   bool minimum(const Vector3& start, double low, double high, int near, Sample& best) const {
     const Vector3 across = cross(axis, start);
     double angle = 0;
@@ -158,7 +156,7 @@ struct Section {
       const Vector3 direction = std::cos(angle) * start + std::sin(angle) * across;
       Sample sample;
       if (!at(direction, near, sample)) {
-        // Beside a gap in the wall: back towards the start.
+        // No wall in this direction: go back towards the start.
         if (angle == 0) return false;
         (angle < 0 ? low : high) = angle;
         angle *= 0.5;
@@ -171,7 +169,7 @@ struct Section {
       (sample.slope > 0 ? high : low) = angle;
       double next = angle - sample.slope / sample.bend;
       if (!(sample.bend > 0) || !(next > low && next < high)) next = 0.5 * (low + high);
-      // Below 1e-10 rad the distance changes by 1e-20 of itself.
+      // A change of 1e-10 rad at a minimum changes the distance by a fraction of only 1e-20.
       if (std::abs(next - angle) < 1e-10) return true;
       angle = next;
     }
@@ -228,8 +226,8 @@ std::vector<BoreContact> find_contacts(const BoreMesh::Impl& m, const Vector3& j
   if (survey) survey->not_flat = infinity;
   if (grid.least - std::hypot(centre_x, centre_y) > limit) return {};
 
-  // Distances of the seeds in the journal's section, rows interpolated. thread_local: no
-  // allocation.
+  // Distances of the grid samples in the journal's section, interpolated between rows.
+  // thread_local, so that repeated calls allocate no memory.
   thread_local std::vector<double> distance, x, y, z;
   for (auto* v : {&distance, &x, &y, &z}) v->resize(columns);
   const bool tilted = lean_x * lean_x + lean_y * lean_y > 0;
@@ -239,7 +237,7 @@ std::vector<BoreContact> find_contacts(const BoreMesh::Impl& m, const Vector3& j
     if (tilted) level -= m.wall.radius * (grid.cosine[c] * lean_x + grid.sine[c] * lean_y);
     const double row = (level - grid.low) / grid.step;
     distance[c] = infinity;
-    // Where there is no wall nothing is known of the border beside.
+    // The wall beside a missing sample is unknown: assume that it is not flatter than the journal.
     if (survey && !(row >= 0 && row <= grid.rows - 1)) survey->not_flat = 0;
     if (!(row >= 0 && row <= grid.rows - 1)) continue;
     const int lower = std::min(static_cast<int>(row), grid.rows - 2);
@@ -267,15 +265,15 @@ std::vector<BoreContact> find_contacts(const BoreMesh::Impl& m, const Vector3& j
     const double before = distance[(c + columns - 1) % columns];
     const double after = distance[(c + 1) % columns];
     if (!(here <= before && here < after) && !(here < before && here <= after)) continue;
-    // Between samples the wall may be nearer by what a parabola makes of them, and by what straight
-    // interpolation between the rows leaves: an eighth of their second difference.
+    // Between columns the wall may be nearer than at the sample, by the estimate of a parabola.
+    // Interpolation between rows adds an eighth of the second difference.
     double below = 0;
     for (const double side : {before, after})
       if (side < infinity) below = std::max(below, side - here);
     if (here - below - 0.01 * m.wall.radius > limit) continue;
     minima.push_back({c, here});
   }
-  if (minima.empty() && lowest <= limit)  // a ring of equal distances
+  if (minima.empty() && lowest <= limit)  // all distances are equal
     minima.push_back(
         {static_cast<int>(std::min_element(distance.begin(), distance.end()) - distance.begin()),
          lowest});
@@ -312,7 +310,7 @@ std::vector<BoreContact> find_contacts(const BoreMesh::Impl& m, const Vector3& j
     contact.axial_curvature = -k.axial;
     result.push_back({contact, best.hit});
   }
-  // Two seeds that ran into one minimum.
+  // Remove contacts of two samples that converged to the same minimum.
   drop_equal(result, [](const Candidate& a, const Candidate& b) {
     return a.contact.normal.dot(b.contact.normal) > 1 - 1e-8;
   });
@@ -326,7 +324,7 @@ std::vector<BoreContact> find_ball_contacts(const BoreMesh::Impl& m, const Vecto
   const Grid& grid = m.grid;
   const int cells = grid.rows * grid.columns;
   const double limit = ball_radius + maximum_gap;
-  // From a centre off the axis (the middle of a socket) no wall is nearer than this.
+  // Lower bound of the distance, from the offset to the axis (for a socket: to the middle).
   const Vector3 offset = ball_centre - m.wall.centre;
   const Vector3 across = m.kind == SurfaceKind::bore
                              ? Vector3(offset - offset.dot(m.wall.axis) * m.wall.axis)
@@ -340,8 +338,9 @@ std::vector<BoreContact> find_ball_contacts(const BoreMesh::Impl& m, const Vecto
     distance[i] = d >= 0 ? d : infinity;
     if (survey && d >= 0) survey->look_at(d, grid.hollow[i], grid.sag);
   }
-  // Cells of whose own wall the nearest point may be near enough: it lies across the way to the
-  // centre, by the cell's reach at most, and is nearer than a plane there by what the wall sags.
+  // Selects cells whose part of the wall may contain a point nearer than `limit`. Such a point is
+  // at most `reach` away from the sample perpendicular to the line of sight, and nearer than the
+  // plane there by at most the sag of the wall.
   const double within = limit + 0.01 * m.wall.radius + grid.sag;
   std::vector<int> order;
   for (int i = 0; i < cells; ++i)
@@ -351,7 +350,8 @@ std::vector<BoreContact> find_ball_contacts(const BoreMesh::Impl& m, const Vecto
   std::sort(order.begin(), order.end(), [&](int a, int b) {
     return distance[a] < distance[b] || (distance[a] == distance[b] && a < b);
   });
-  // Flooding from the lowest cell: basins that join after less than the prominence are one.
+  // Floods from the lowest cell upwards. A basin that joins a lower one after rising less than the
+  // prominence is dropped.
   thread_local std::vector<int> basin;
   basin.assign(cells, -1);
   std::vector<int> parent, root, alive;

@@ -13,18 +13,18 @@ namespace {
 using ConstVector = Eigen::Map<const Vector3>;
 using Vector = Eigen::Map<Vector3>;
 
-// Track: where the wall was searched last and for how far that holds, ...
+// Layout of the track. Header: position of the last search and the travel for which it is valid.
 enum Header {
   at_centre = 0,
   at_axis = 3,
   at_radius = 6,
   at_free = 7,
-  at_flat = 8,  // whether contacts may be followed on the smooth wall
+  at_flat = 8,  // whether contacts may be followed on the smooth wall beyond their patch
   header_size = 9
 };
-// ... then for each place the wall around it. Of a journal, u is the wall's normal (which may lean
-// against the section), k_a its curvature in the section and k_b across; of a ball, u and v are the
-// principal directions of k_a and k_b. Hollow is positive.
+// One patch of wall per contact. For a journal, u is the wall's normal, which may be inclined to
+// the section; k_a is the curvature in the section, k_b perpendicular to it. For a ball, u and v
+// are the principal directions of k_a and k_b. Concave curvatures are positive.
 enum Patch {
   at_point = 0,
   at_normal = 3,
@@ -32,22 +32,24 @@ enum Patch {
   at_v = 9,
   at_k_a = 12,
   at_k_b = 13,
-  at_face = 14,  // of the wall
+  at_face = 14,  // wall face index
   at_label = 15,
   patch_size = 16
 };
 
-constexpr double travel_share = 0.05;     // of the play
-constexpr double unsafe_share = 1e-3;     // of the play
-constexpr double farthest_turn = 0.1;     // [rad] that is followed without a search
-constexpr double one_place = 1 - 0.0001;  // cosine: nearer places are searched apart
+constexpr double travel_share = 0.05;     // largest travel between searches, fraction of the play
+constexpr double unsafe_share = 1e-3;     // the same at wall that is not flatter than the journal
+constexpr double farthest_turn = 0.1;     // [rad], rotation of a normal that is followed at most
+constexpr double one_place = 1 - 0.0001;  // cosine; contacts with normals closer than this are
+                                          // considered as one and searched again
 constexpr int most_refinements = 3;
 
-// Distance from a circle through the origin whose tangent there is across and whose centre is at
-// height 1/k, of a point at the given height and place along the tangent; exact for any k, 0 too.
+// Distance of a point from a circle through the origin. The tangent of the circle there is
+// horizontal, its centre is at height 1/k, and the point has coordinates (along, height). Exact for
+// any k, also 0.
 struct OnCircle {
   double distance;
-  double cosine;  // of the turn of the normal
+  double cosine;  // of the rotation of the normal
   double sine;
 };
 OnCircle on_circle(double k, double height, double along) {
@@ -70,7 +72,7 @@ FollowedContact near_patch(const double* patch, const Probe& probe, bool is_ball
     return {(second.cosine * turned + second.sine * v).normalized(), second.distance,
             0.5 * (k_a + k_b), label};
   }
-  // The section has moved along the axis by this much where the contact is.
+  // Distance along the axis between the section and the patch.
   const Vector3& axis = probe.axis;
   const double shift = (probe.centre - point).dot(axis);
   const Vector3 across = (normal - normal.dot(axis) * axis).normalized();
@@ -87,7 +89,7 @@ bool within_patch(const double* patch, const FollowedContact& one, double angle)
          one.distance > 0;
 }
 
-/// The wall around a point of it where the journal or ball touches or nearly does.
+/// Stores the wall around a contact point as a patch.
 void write_patch(double* patch, const Hit& hit, const Probe& probe, bool is_ball) {
   Vector(patch + at_point) = hit.point;
   if (is_ball) {
@@ -107,7 +109,7 @@ void write_patch(double* patch, const Hit& hit, const Probe& probe, bool is_ball
   patch[at_face] = hit.face;
 }
 
-/// Moves a patch to where its contact has gone to on the smooth wall.
+/// Moves a patch on the smooth wall to its contact's new position; false if a search is needed.
 bool refine(const BoreMesh::Impl& m, double* patch, const Probe& probe, bool is_ball, double angle,
             FollowedContact& one) {
   const Vector3 start = ConstVector(patch + at_normal);
@@ -125,7 +127,7 @@ bool refine(const BoreMesh::Impl& m, double* patch, const Probe& probe, bool is_
   return false;
 }
 
-/// Searches the whole wall and begins a track anew; labels go on with their places.
+/// Searches the whole wall and restarts the track; continued contacts keep their labels.
 void search(const BoreMesh& mesh, const Probe& probe, bool is_ball, std::vector<double>& track) {
   const BoreMesh::Impl& m = mesh.impl();
   std::vector<Vector3> before;
@@ -143,7 +145,8 @@ void search(const BoreMesh& mesh, const Probe& probe, bool is_ball, std::vector<
       is_ball ? find_ball_contacts(m, probe.centre, probe.radius, reach, before, &survey)
               : find_contacts(m, probe.centre, probe.axis, probe.radius, reach, before, &survey);
   track.assign(header_size, 0);
-  // A journal always has a nearest point; none means that its section misses the wall.
+  // In a section of the wall there is always a nearest point; no contact means that the section
+  // misses the wall.
   double free = now.empty() && !is_ball ? 0 : is_ball ? reach : 2 * play;
   for (std::size_t i = 0; i < now.size(); ++i) {
     const BoreContact& one = now[i];
@@ -194,7 +197,7 @@ Followed follow_contacts(const BoreMesh& mesh, const Probe& probe, double patch_
         how = Followed::wall;
         good = track[at_flat] != 0 && refine(m, patch, probe, is_ball, patch_angle, one);
       }
-      // Two that have run into one place.
+      // Two contacts have converged to one: search again.
       for (const FollowedContact& other : found)
         good = good && other.normal.dot(one.normal) < one_place;
       touches = touches || one.distance < probe.radius;

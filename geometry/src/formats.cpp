@@ -34,7 +34,7 @@ std::optional<MeshFormat> format_of(const std::string& file) {
 
 Triangles parse_triangles(MeshFormat format, std::string_view content, const std::string& name) {
   formats::Reading reading(format, name);
-  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // before texts of .NET programs
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // written by .NET programs
   if (content.substr(0, byte_order_mark.size()) == byte_order_mark)
     content.remove_prefix(byte_order_mark.size());
   switch (format) {

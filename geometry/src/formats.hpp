@@ -12,25 +12,26 @@ namespace statejump::geometry {
 /// Formats of mesh files.
 enum class MeshFormat : unsigned char { off, stl, ply, obj };
 
-/// "OFF", "STL", "PLY", "OBJ".
+/// Name of the format, e.g. "OFF".
 const char* to_string(MeshFormat format);
 
-/// Format that the ending of a file's name says; none for any other ending.
+/// Format for the extension of a file name; none for any other extension.
 std::optional<MeshFormat> format_of(const std::string& file);
 
-/// Triangles of a file's whole content, which may come from a stranger: time and memory are bounded
-/// by a multiple of its length, whatever counts it declares.
+/// Triangles from the whole content of a file. The content may be untrusted: time and memory are
+/// bounded by a multiple of its length, whatever counts it declares.
 ///
-/// Polygons are cut into fans; equal vertices become one, numbered by first appearance; vertices of
-/// STL, and of PLY with float coordinates, also where they differ by rounding of floats.
+/// Polygons are split into fans. Equal vertices are merged and numbered by first appearance;
+/// vertices of STL, and of PLY with float coordinates, also if they differ by rounding of floats.
 /// OFF: text, also with normals, colours and texture (N, C, ST), which are skipped. STL: text or
-/// binary, also with attributes behind its facets. PLY: text and both binary orders, any elements
-/// beside vertex (x, y, z) and face or tristrips (vertex_indices or vertex_index). OBJ: v and f,
-/// indices from 1 or back from the last vertex; a line goes on behind a backslash at its end; all
-/// else is skipped.
-/// @param name said first in errors
-/// @throws MeshFailure `unreadable` for what is not of the format, `bad_faces` for corners that do
-///         not exist, vertices that are not finite and a mesh without faces
+/// binary, also with attributes after its facets. PLY: text and both binary byte orders, any
+/// elements besides vertex (x, y, z) and face or tristrips (vertex_indices or vertex_index). OBJ: v
+/// and f, indices from 1, or negative ones from the last vertex; a backslash at the end continues a
+/// line; everything else is skipped.
+/// @param name printed first in errors
+/// @throws MeshFailure `unreadable` if the content is not of this format, `bad_faces` for corners
+///         that
+///         do not exist, vertices that are not finite and a mesh without faces
 Triangles parse_triangles(MeshFormat format, std::string_view content, const std::string& name);
 
 }  // namespace statejump::geometry

@@ -15,17 +15,17 @@ namespace {
 
 constexpr double pi = 3.141592653589793238462643;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr int fewest_neighbours = 9;  // of a jet, if the wall has them
+constexpr int fewest_neighbours = 9;  // fitted to one vertex, if the wall has that many
 constexpr int most_neighbours = 60;
 constexpr int bore_columns = 256;
 constexpr int bore_rows = 33;
 constexpr int socket_columns = 96;
 constexpr int socket_rows = 49;
-constexpr int most_steps = 4096;               // faces on the way of follow()
+constexpr int most_steps = 4096;               // largest number of faces that follow() visits
 constexpr double prominence_per_mismatch = 4;  // see BoreMesh::prominence()
 constexpr double least_prominence = 1e-12;     // [m]
 
-/// Runs work(begin, end) over 0..count in a few threads. The result must not depend on the split.
+/// Runs work(begin, end) on parts of 0..count in threads. Results must not depend on the split.
 template <class Work>
 void in_parallel(int count, const Work& work) {
   const int threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 8);
@@ -42,7 +42,7 @@ void in_parallel(int count, const Work& work) {
   for (std::thread& thread : pool) thread.join();
 }
 
-/// Smooth step: no slope at 0 and 1, so that blends join smoothly across edges.
+/// Smooth step with zero slope at 0 and 1, so that blended patches join smoothly across edges.
 double step(double x) {
   return x * x * (3 - 2 * x);
 }
@@ -111,7 +111,7 @@ void BoreMesh::Impl::make_jets(int degree) {
     }
   const int count = static_cast<int>(vertices.size());
 
-  // Faces at each vertex, and normals weighted with the faces' angles there.
+  // Faces at each vertex, and vertex normals weighted with the angles of the faces.
   std::vector<int> start(count + 1, 0);
   for (const auto& c : corner)
     for (const int v : c) ++start[v + 1];
@@ -146,15 +146,15 @@ void BoreMesh::Impl::make_jets(int degree) {
       ring.assign(1, v);
       seen[v] = v;
       std::size_t done = 0;
-      // A vertex whose first ring alone has more gets two whole rings: an arc of the first would
-      // say little about the other side, and one ring nothing about the fourth order.
+      // If the first ring alone exceeds most_neighbours, two complete rings are used: part of a
+      // ring does not determine the other side, and one ring not the fourth order.
       std::size_t taken = most_neighbours;
       for (int rings = 0; rings < 6; ++rings) {
         const std::size_t last = ring.size();
         for (; done < last && ring.size() < taken; ++done)
           for (int i = start[ring[done]]; i < start[ring[done] + 1]; ++i)
             for (const int w : corner[faces_at[i]])
-              // Across a crease the polynomial would not follow.
+              // Do not fit across a crease.
               if (seen[w] != v && normal[w].dot(normal[v]) > 0.5) {
                 seen[w] = v;
                 ring.push_back(w);
@@ -194,7 +194,7 @@ void BoreMesh::Impl::estimate_error() {
       if (neighbour[f][k] >= 0 && neighbour[f][k] < static_cast<int>(f)) continue;
       const Jet& a = jet[corner[f][(k + 1) % 3]];
       const Jet& b = jet[corner[f][(k + 2) % 3]];
-      // Not half-way, where equal errors of both would cancel.
+      // Not at the middle, where equal errors of both polynomials cancel.
       const Vector3 point = 0.75 * a.origin + 0.25 * b.origin;
       const Vector3 normal = (a.normal + b.normal).normalized();
       const double apart = std::abs(a.meet(point, normal, 0) - b.meet(point, normal, 0));
@@ -226,14 +226,14 @@ void BoreMesh::Impl::make_grid() {
       const Vector3 across = grid.cosine[c] * wall.axis_x + grid.sine[c] * wall.axis_y;
       Vector3 from = wall.centre, direction = across;
       if (bore) {
-        // A hair inside both ends, where the border's rounding cannot hide the wall.
+        // Slightly inside both ends, because rounding of the border could hide the wall there.
         double z = grid.low + r * grid.step;
         z = std::clamp(z, wall.low + 1e-6 * (wall.high - wall.low),
                        wall.high - 1e-6 * (wall.high - wall.low));
         from += z * wall.axis;
       } else {
         const double polar = std::clamp(grid.low + r * grid.step, 1e-6, pi - 1e-6);
-        // The axis points to the opening: polar angle 0 is the pole of the cup.
+        // The axis points to the opening; polar angle 0 is the bottom of the cup.
         direction = std::sin(polar) * across - std::cos(polar) * wall.axis;
       }
       const Hit hit = meet(from, direction, near);
@@ -245,7 +245,7 @@ void BoreMesh::Impl::make_grid() {
       grid.face[cell] = hit.face;
     }
   }
-  // Between samples the wall may be nearer, by no more than neighbouring samples differ.
+  // Between samples the wall can be nearer, at most by the largest difference of neighbours.
   double least = std::numeric_limits<double>::infinity(), largest_step = 0;
   for (int r = 0; r < grid.rows; ++r)
     for (int c = 0; c < grid.columns; ++c) {
@@ -260,7 +260,7 @@ void BoreMesh::Impl::make_grid() {
   make_reach();
 }
 
-/// Half-way to its neighbours the wall is a sample's own; all the way where one of them is missing.
+/// A sample represents the wall half-way to its neighbours, all the way if one of them is missing.
 void BoreMesh::Impl::make_reach() {
   grid.reach.assign(grid.radius.size(), 0);
   for (int cell = 0; cell < static_cast<int>(grid.radius.size()); ++cell) {
@@ -276,9 +276,9 @@ void BoreMesh::Impl::make_reach() {
   }
 }
 
-/// Refuses facets that leave open where the surface between them is. Known it must be to a fiftieth
-/// of the radius, which is the whole clearance of a wide joint, at 19 of 20 edges; sharp edges in
-/// the wall may be worse, but nowhere by half a radius, and nowhere may the polynomials run away.
+/// Rejects facets that are too coarse to determine the surface between them. At 95 % of the edges
+/// the uncertainty must be below a fiftieth of the radius, which is the whole clearance of a wide
+/// joint. Elsewhere, as at sharp edges, the limit is half a radius. No polynomial may diverge.
 void BoreMesh::Impl::refuse_coarse(const std::string& name) const {
   const double usual = (prominence - least_prominence) / prominence_per_mismatch;
   const double allowed = 0.02 * wall.radius;
@@ -350,7 +350,7 @@ Hit BoreMesh::Impl::follow(const Vector3& point, const Vector3& direction, int s
     const Vector3 a = jet[c[0]].origin - point;
     const Vector3 b = jet[c[1]].origin - point;
     const Vector3 d = jet[c[2]].origin - point;
-    // Signed volumes: an edge gives both its faces the same number, so that no line slips between.
+    // Signed volumes: equal for both faces of an edge, so no line passes between them.
     const std::array<double, 3> volume{direction.dot(cross(b, d)), direction.dot(cross(d, a)),
                                        direction.dot(cross(a, b))};
     const double sum = volume[0] + volume[1] + volume[2];
@@ -373,13 +373,13 @@ Hit BoreMesh::Impl::follow(const Vector3& point, const Vector3& direction, int s
       break;
     }
     if (neighbour[face][out] < 0) {
-      // Another edge may still lead inside.
+      // Another edge may lead to a neighbour.
       int other = -1;
       for (int k = 0; k < 3; ++k)
         if (sign * volume[k] < 0 && neighbour[face][k] >= 0 && neighbour[face][k] != from)
           other = k;
       if (other < 0) {
-        // A border that the line passes by rounding only still counts.
+        // A line that misses the border only by rounding counts as a hit.
         const bool touching = *std::min_element(hit.weight.begin(), hit.weight.end()) > -1e-9;
         double total = 0;
         for (double& w : hit.weight) total += (w = std::max(w, 0.0));
@@ -420,7 +420,7 @@ void BoreMesh::Impl::blend(const Vector3& point, const Vector3& direction, Hit& 
 Hit BoreMesh::Impl::meet(const Vector3& point, const Vector3& direction, int start) const {
   Hit hit;
   if (start >= 0) hit = follow(point, direction, start);
-  // A ray must meet the free side of the wall, and in front.
+  // The ray must hit the free side of the wall, at s > 0.
   const auto faces_ray = [&](const Hit& h) {
     if (!h.found || !(h.s > 0)) return false;
     const auto& c = corner[h.face];
@@ -454,7 +454,7 @@ bool BoreMesh::Impl::meet_near(const Vector3& point, const Vector3& direction, i
 }
 
 bool BoreMesh::Impl::descend(const Vector3& query, Hit& hit) const {
-  // Newton on the foot of the normal; a step is halved until the distance falls.
+  // Newton's method for the foot of the normal; the step is halved until the distance decreases.
   double distance = (query - hit.point).norm();
   for (int iteration = 0; iteration < 50; ++iteration) {
     const Vector3 way = query - hit.point;
@@ -482,7 +482,7 @@ bool BoreMesh::Impl::descend(const Vector3& query, Hit& hit) const {
       }
       blend(target, hit.normal, next);
       const double now = (query - next.point).norm();
-      // Rounding of the distance hides the last quadratic steps.
+      // Accepts the last quadratic steps, which change the distance by less than rounding.
       if (now <= distance * (1 + 4e-16) + 1e-17) {
         const bool last = move.norm() <= 1e-13 * wall.radius;
         hit = next;
@@ -491,7 +491,7 @@ bool BoreMesh::Impl::descend(const Vector3& query, Hit& hit) const {
         if (last) return true;
       }
     }
-    if (!moved) return true;  // stationary to rounding
+    if (!moved) return true;  // stationary within rounding
   }
   return true;
 }
@@ -505,7 +505,7 @@ Principal principal(const Hit& hit) {
   const double mean = 0.5 * (uu + vv);
   const double difference = 0.5 * (uu - vv);
   const double radius = std::hypot(difference, uv);
-  const double angle = 0.5 * std::atan2(uv, difference);  // of mean + radius
+  const double angle = 0.5 * std::atan2(uv, difference);  // of the curvature mean + radius
   const Vector3 high = std::cos(angle) * u + std::sin(angle) * v;
   Principal p;
   p.smaller = -(mean + radius);

@@ -50,10 +50,10 @@ Bend second(const Jet& jet, double u, double v) {
 
 using Solution = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 14, 1>;
 
-/// Neighbours for which the equations fit on the stack.
+/// Number of neighbours up to which the equations are stored on the stack.
 constexpr int usual_rows = 64;
 
-/// Coefficients of the scaled polynomial by least squares.
+/// Coefficients of the scaled polynomial by weighted least squares.
 template <int most_rows>
 Solution fitted(const Jet& jet, const std::vector<Vector3>& points, int degree) {
   const int unknowns = degree * (degree + 3) / 2;
@@ -64,7 +64,7 @@ Solution fitted(const Jet& jet, const std::vector<Vector3>& points, int degree) 
     const Vector3 from = points[i] - jet.origin;
     const double x = from.dot(jet.tangent_u) / jet.scale_u;
     const double y = from.dot(jet.tangent_v) / jet.scale_v;
-    // Nearer neighbours say more.
+    // Nearer neighbours get more weight.
     const double weight = 1 / (0.1 + x * x + y * y);
     double factor = weight;
     int column = 0;
@@ -96,7 +96,7 @@ double Jet::meet(const Vector3& point, const Vector3& direction, double guess) c
     const double slope = dw - at.hu * du - at.hv * dv;
     const double step = (w0 + s * dw - at.h) / slope;
     s -= step;
-    // Newton squares the error: the next one would be step^2 times a curvature.
+    // Newton's method squares the error: the next step would be of order step^2 times a curvature.
     if (!(std::abs(step) > 1e-9 * (scale_u + scale_v))) break;
   }
   return s;
@@ -127,7 +127,7 @@ Jet fit_jet(const Vector3& origin, const Vector3& normal, const Vector3& along,
   Jet jet;
   jet.origin = origin;
   jet.normal = normal;
-  // Along the surface's own axes a coefficient that the neighbours leave open is a small one.
+  // Along the axes of the surface, coefficients that the neighbours do not determine are small.
   const Vector3 projected = along - along.dot(normal) * normal;
   if (projected.squaredNorm() > 0.01) {
     jet.tangent_v = projected.normalized();

@@ -9,36 +9,37 @@
 
 namespace statejump::geometry {
 
-/// Where a line meets a jet, and the surface there.
+/// Intersection of a line with a jet, and the surface there.
 struct JetHit {
   double s = 0;          ///< line parameter [m]
   Vector3 normal;        ///< unit, towards the free side
-  Eigen::Matrix3d bend;  ///< curvature tensor [1/m], positive where the surface rises to the normal
+  Eigen::Matrix3d bend;  ///< curvature tensor [1/m], positive where the surface rises in the
+                         ///< direction of the normal
 };
 
-/// Polynomial height over the tangent plane of a vertex, through the vertex: the smooth surface as
-/// seen from there. h = sum of coefficients x^i y^j, 1 <= i + j <= 4, x = u/scale_u, y = v/scale_v.
+/// Smooth surface around a vertex: polynomial height over the tangent plane, through the vertex.
+/// h = sum of coefficients x^i y^j, 1 <= i + j <= 4, x = u/scale_u, y = v/scale_v.
 struct Jet {
   Vector3 origin;
-  Vector3 normal;  ///< of the plane, near the surface's
+  Vector3 normal;  ///< normal of the plane, close to that of the surface
   Vector3 tangent_u;
   Vector3 tangent_v;
   double scale_u = 1;
   double scale_v = 1;
   std::array<double, 14> coefficient{};
 
-  /// Line parameter where point + s direction meets the surface, from a guess.
+  /// Line parameter s at which point + s direction meets the surface, iterated from a guess.
   double meet(const Vector3& point, const Vector3& direction, double guess) const;
   /// meet() with normal and curvature.
   JetHit hit(const Vector3& point, const Vector3& direction, double guess) const;
 };
 
-/// Fits a jet to neighbours of a vertex, by least squares through the vertex itself.
+/// Fits a jet to the neighbours of a vertex by least squares; it passes through the vertex.
 ///
-/// Columns are scaled by 0.05^(degree - 1), about the ratio of the stencil to the radius of
-/// curvature: where the neighbours do not determine all coefficients, the lower powers are taken.
-/// @param origin the vertex, @param normal unit, a guess of the surface's
-/// @param along unit, an axis of the surface (the bore's): one direction of the polynomial
+/// Columns are scaled by 0.05^(degree - 1), about the ratio of the stencil size to the radius of
+/// curvature. If the neighbours do not determine all coefficients, this favours the lower powers.
+/// @param origin the vertex, @param normal unit, estimate of the surface normal
+/// @param along unit, an axis of the surface (of the bore): one axis of the polynomial
 /// @param points neighbours, >= 2
 /// @param degree 2 to 4
 Jet fit_jet(const Vector3& origin, const Vector3& normal, const Vector3& along,

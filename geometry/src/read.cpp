@@ -9,13 +9,13 @@
 namespace statejump::geometry {
 namespace {
 
-constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 31U;  // 40 million facets of STL
+constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 31U;  // binary STL of 40 million facets
 
 [[noreturn]] void refuse(const std::string& file, const std::string& cause) {
   throw MeshFailure(file, MeshFault::unreadable, cause);
 }
 
-/// The whole content of a file; what is no file, as a pipe or a device, is not opened.
+/// Whole content of a file. Pipes, devices and other special files are not opened.
 std::string content_of(const std::string& file) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);

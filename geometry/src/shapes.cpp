@@ -31,7 +31,7 @@ void validate(const BoreShape& shape) {
           "(-radius/2, radius/2) m");
 }
 
-/// Adds a grid of two triangles per quadrilateral, closed in i; normals along d/di x d/dj.
+/// Adds a closed band of quadrilaterals, each of two triangles; normals along d/di x d/dj.
 void add_band(Triangles& mesh, int around, const std::vector<int>& lower,
               const std::vector<int>& upper) {
   for (int i = 0; i < around; ++i) {
@@ -81,7 +81,7 @@ Triangles bore_triangles(const BoreShape& shape, int around, int along) {
     rings.push_back(rings.front());
   }
   for (std::size_t j = 0; j + 1 < rings.size(); ++j)
-    add_band(mesh, around, rings[j], rings[j + 1]);  // downwards inside: towards the axis
+    add_band(mesh, around, rings[j], rings[j + 1]);  // downwards inside: normals towards the axis
   return mesh;
 }
 

@@ -22,7 +22,7 @@ namespace pmp = CGAL::Polygon_mesh_processing;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using SurfaceMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
-/// [m] Squares of areas beyond would overflow.
+/// Largest coordinate [m]; the squares of larger areas would overflow.
 constexpr double farthest = 1e60;
 
 std::string face_name(const Triangles& mesh, int face) {
@@ -53,7 +53,7 @@ void check_faces(const Triangles& mesh, const std::string& name) {
 }
 
 struct LongestSide {
-  int opposite;  ///< corner that it does not touch, 0 to 2
+  int opposite;  ///< index of the opposite corner, 0 to 2
   double squared;
 };
 
@@ -68,7 +68,7 @@ LongestSide longest_side(const Triangles& mesh, const std::array<int, 3>& face) 
 }
 
 bool has_area(const Triangles& mesh, const std::array<int, 3>& face) {
-  // Height below a millionth of a millionth of the longest side: rounding of the corners.
+  // A height below 1e-12 of the longest side is rounding of the corners.
   return area_vector(mesh, face).norm() > 1e-12 * longest_side(mesh, face).squared;
 }
 
@@ -81,7 +81,7 @@ void check_areas(const Triangles& mesh, const std::string& name) {
 struct Edge {
   int face[2] = {-1, -1};
   int opposite[2] = {-1, -1};
-  bool forward[2] = {false, false};  ///< runs from the smaller to the larger vertex
+  bool forward[2] = {false, false};  ///< the face runs from the smaller to the larger vertex index
 };
 
 using Edges = std::unordered_map<std::uint64_t, Edge>;
@@ -113,14 +113,14 @@ Edges edges_of(const Triangles& mesh, const std::string& name) {
   return edges;
 }
 
-/// Two faces at each edge; edges of more are refused later.
+/// The two faces at each edge; edges with more faces are rejected later.
 class FacesAtEdges {
  public:
   explicit FacesAtEdges(const Triangles& mesh) {
     for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f)
       for (int k = 0; k < 3; ++k) replace(mesh.faces[f][k], mesh.faces[f][(k + 1) % 3], nobody, f);
   }
-  /// The face that shares an edge with this one; nobody: none.
+  /// The face that shares the edge with this one, or nobody.
   int beside(int a, int b, int face) const {
     const auto found = faces_.find(edge_key(a, b));
     if (found == faces_.end()) return nobody;
@@ -138,15 +138,15 @@ class FacesAtEdges {
   std::unordered_map<std::uint64_t, std::array<int, 2>> faces_;
 };
 
-/// Takes out faces whose corners lie in line, which exporters leave where an edge is divided on one
-/// side only. The neighbour across the longest side is divided instead: the surface stays the same.
-/// Faces for which this makes others without area stay, and are refused later.
+/// Removes faces with collinear corners, which exporters leave where an edge is divided on one side
+/// only. The neighbour at the longest side is divided instead, so the surface does not change. If
+/// this creates another face without area, the face stays and is rejected later.
 void divide_at_flat_faces(Triangles& mesh) {
   std::vector<int> flat;
   for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f)
     if (!has_area(mesh, mesh.faces[f])) flat.push_back(f);
   if (flat.empty()) return;
-  // Of several on one line the longest has a neighbour with an area.
+  // Longest first: of several such faces on one line, it has a neighbour with an area.
   std::stable_sort(flat.begin(), flat.end(), [&](int a, int b) {
     return longest_side(mesh, mesh.faces[a]).squared > longest_side(mesh, mesh.faces[b]).squared;
   });
@@ -191,7 +191,7 @@ void divide_at_flat_faces(Triangles& mesh) {
   mesh.faces.resize(kept);
 }
 
-/// Makes neighbours agree with CGAL, which turns polygons over until they do.
+/// Orients the faces consistently; CGAL reverses polygons.
 void orient(Triangles& mesh, const std::string& name) {
   std::vector<Kernel::Point_3> points;
   points.reserve(mesh.vertices.size());
@@ -244,7 +244,7 @@ Neighbours check_topology(Triangles& mesh, const std::string& name) {
       neighbours[edge.face[1]][edge.opposite[1]] = edge.face[0];
     }
 
-  // Around a vertex the faces must be one fan.
+  // The faces around a vertex must form a single fan.
   std::vector<int> faces_at(mesh.vertices.size(), 0);
   std::vector<int> some_face(mesh.vertices.size(), -1);
   for (int f = 0; f < face_count; ++f)
@@ -300,7 +300,8 @@ Neighbours check_topology(Triangles& mesh, const std::string& name) {
 }
 
 std::vector<Loop> border_loops(const Triangles& mesh, const Neighbours& neighbours) {
-  std::map<int, int> next;  // along the border; a vertex is on at most one loop: fans are single
+  std::map<int, int> next;  // along the border; each vertex is on at most one loop, because its
+                            // faces form a single fan
   for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f)
     for (int k = 0; k < 3; ++k)
       if (neighbours[f][k] < 0) next[mesh.faces[f][(k + 1) % 3]] = mesh.faces[f][(k + 2) % 3];

@@ -12,29 +12,28 @@ namespace statejump::geometry {
 
 using Vector3 = Eigen::Vector3d;
 
-/// "(x, y, z) m" with six digits.
+/// Text "(x, y, z) m" with six digits.
 std::string place(const Vector3& point);
 
-/// Face behind each edge: neighbours[f][k] lies across the edge opposite to corner k; -1: border.
+/// Neighbours of each face: neighbours[f][k] shares the edge opposite to corner k; -1: border.
 using Neighbours = std::vector<std::array<int, 3>>;
 
-/// A loop of border edges: vertices in order.
+/// Border loop: its vertices in order.
 using Loop = std::vector<int>;
 
-/// Refuses faces that do not exist or are not finite, edges of three faces,
-/// inconsistent orientation that CGAL cannot mend, sheets meeting in a vertex and several parts.
-/// Faces whose corners lie in line are taken out; those that cannot be are refused.
-/// Turns faces over where neighbours disagree, so that they agree with the first face.
+/// Rejects faces that do not exist or are not finite, edges of three faces,
+/// orientations that CGAL cannot make consistent, sheets that meet in a vertex, and several parts.
+/// Removes faces with collinear corners; rejects those that cannot be removed.
+/// Reverses faces where neighbours disagree, so that all agree with the first face.
 /// @return neighbours of every face
 Neighbours check_topology(Triangles& mesh, const std::string& name);
 
-/// Loops of the border.
 std::vector<Loop> border_loops(const Triangles& mesh, const Neighbours& neighbours);
 
-/// Refuses the first pair of faces that intersect (CGAL, exact predicates).
+/// Rejects the first pair of faces that intersect (CGAL, exact predicates).
 void check_self_intersection(const Triangles& mesh, const std::string& name);
 
-/// Of the given faces only, -1 where a neighbour is not among them. Indices into faces.
+/// Neighbours among the given faces only, as indices in `faces`; -1 for other neighbours.
 Neighbours restricted(const Neighbours& neighbours, const std::vector<int>& faces, int face_count);
 
 inline Vector3 cross(const Vector3& a, const Vector3& b) {
@@ -42,7 +41,7 @@ inline Vector3 cross(const Vector3& a, const Vector3& b) {
           a.x() * b.y() - a.y() * b.x()};
 }
 
-/// Normal times twice the area.
+/// Normal vector with twice the area as its length.
 inline Vector3 area_vector(const Triangles& mesh, const std::array<int, 3>& corner) {
   const Vector3& a = mesh.vertices[corner[0]];
   return cross(mesh.vertices[corner[1]] - a, mesh.vertices[corner[2]] - a);

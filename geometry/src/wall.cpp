@@ -14,9 +14,10 @@ namespace {
 constexpr double pi = 3.141592653589793238462643;
 constexpr double cosine_45 = 0.70710678118654752440;
 constexpr const char* turn_it = "flip turns it";
-constexpr double crease = 0.76604444311897803520;  // cos 40 degrees: faces that meet sharper part
+// cos 40 degrees: faces at a larger angle belong to different patches
+constexpr double crease = 0.76604444311897803520;
 
-/// Round surface: a cylinder, or a sphere (axis then only names a direction).
+/// Least-squares surface: a cylinder, or a sphere (its axis is only a reference direction).
 struct Round {
   Vector3 centre, axis;
   double radius = 0;
@@ -54,7 +55,7 @@ struct Weighted {
   double weight;
 };
 
-/// Corners of faces, each with a third of the area.
+/// Vertices of the chosen faces, each with a third of the area of its faces as weight.
 std::vector<Weighted> corners(const Triangles& mesh, const std::vector<Face>& faces,
                               const std::vector<int>& chosen) {
   std::vector<double> weight(mesh.vertices.size(), 0.0);
@@ -66,7 +67,7 @@ std::vector<Weighted> corners(const Triangles& mesh, const std::vector<Face>& fa
   return result;
 }
 
-/// |p|^2 = 2 c p + k, linear in c and k (Kasa's fit); dimension 2 in the plane across an axis.
+/// Kasa's fit |p|^2 = 2 c p + k, linear in c and k; for a cylinder in its cross-section.
 Round linear_fit(const std::vector<Weighted>& points, const Vector3& axis, SurfaceKind kind) {
   Vector3 mean = Vector3::Zero();
   double total = 0;
@@ -93,7 +94,7 @@ Round linear_fit(const std::vector<Weighted>& points, const Vector3& axis, Surfa
           std::sqrt(std::max(0.0, s(3) + half.squaredNorm()))};
 }
 
-/// Gauss-Newton on the distances from cylinder or sphere.
+/// Gauss-Newton iteration on the distances from cylinder or sphere.
 Round refine(const std::vector<Weighted>& points, Round round, SurfaceKind kind) {
   for (int iteration = 0; iteration < 30; ++iteration) {
     Vector3 x, y;
@@ -139,7 +140,7 @@ Vector3 axis_of_normals(const std::vector<Face>& faces, const std::vector<int>& 
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum).eigenvectors().col(0);
 }
 
-/// Area-weighted mean of the cosine between normals and the way to the axis.
+/// Area-weighted mean cosine between the normals and the direction to the axis (centre).
 double inward(const std::vector<Face>& faces, const std::vector<int>& chosen, const Round& round,
               SurfaceKind kind) {
   double sum = 0, total = 0;
@@ -158,7 +159,7 @@ Round fit(const Triangles& mesh, const std::vector<Face>& faces, const std::vect
   return refine(points, linear_fit(points, axis, kind), kind);
 }
 
-/// Patches of faces that meet flatter than the crease.
+/// Patches of faces whose neighbours meet at less than the crease angle.
 std::vector<std::vector<int>> patches(const std::vector<Face>& faces,
                                       const Neighbours& neighbours) {
   std::vector<std::vector<int>> result;
@@ -178,7 +179,7 @@ std::vector<std::vector<int>> patches(const std::vector<Face>& faces,
   return result;
 }
 
-/// Whether faces surround the axis: no gap of more than a quarter turn between their centres.
+/// Whether faces surround the axis: no angular gap between adjacent centres exceeds 0.67 pi.
 bool surrounds(const std::vector<Face>& faces, const std::vector<int>& chosen, const Round& round) {
   if (chosen.size() < 3) return false;
   Vector3 x, y;
@@ -191,7 +192,7 @@ bool surrounds(const std::vector<Face>& faces, const std::vector<int>& chosen, c
   std::sort(angles.begin(), angles.end());
   double gap = angles.front() + 2 * pi - angles.back();
   for (std::size_t i = 1; i < angles.size(); ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
-  return gap < 0.67 * pi;  // three facets around leave 2 pi/3 between centres
+  return gap < 0.67 * pi;  // three facets around have gaps of 2 pi/3
 }
 
 std::string loop_place(const Triangles& mesh, const Loop& loop) {
@@ -287,7 +288,7 @@ Wall find_wall(const Triangles& mesh, const Neighbours& neighbours, const BoreOp
         "the mesh is no " + std::string(kind == SurfaceKind::bore
                                             ? "bore: its faces do not surround an axis"
                                             : "socket: its faces do not face a centre"));
-  // Ends and chamfers go, then the axis is fitted to what remains.
+  // Remove ends and chamfers, then fit the axis to the remaining faces; twice.
   for (int pass = 0; pass < 2; ++pass) {
     std::vector<int> kept;
     for (const int f : chosen)

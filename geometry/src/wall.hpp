@@ -6,17 +6,17 @@
 
 namespace statejump::geometry {
 
-/// Which faces are wall, and the round surface of least squares through them.
+/// Faces of the wall, and the least-squares cylinder (sphere) through them.
 struct Wall {
-  std::vector<int> faces;  ///< ascending
+  std::vector<int> faces;  ///< indices in the mesh, ascending
   bool closed = false;
   double radius = 0;
   Vector3 centre, axis, axis_x, axis_y;
-  double low = 0, high = 0;  ///< axial range of the wall from the centre [m]
+  double low = 0, high = 0;  ///< axial range of the wall relative to `centre` [m]
 };
 
-/// Finds the wall; refuses open borders that are not ends, normals that point away from the axis
-/// and radii out of the options' range.
+/// Finds the wall; rejects open borders that are not ends, normals that point away from the axis,
+/// and radii outside the range of the options.
 Wall find_wall(const Triangles& mesh, const Neighbours& neighbours, const BoreOptions& options,
                const std::string& name);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Steps of joints held by links, for cost_of_checks.py: JOINTS and STEPS from the command line.
+// Steps of joints constrained by links, for cost_of_checks.py. Arguments: JOINTS STEPS.
 #include <cstdio>
 #include <cstdlib>
 
@@ -12,6 +12,6 @@ int main(int count, char** range_text) {
   scene.prepare();
   const long steps = std::atol(range_text[2]);
   const bool whole = scene.run(steps, scenes::maker()) == steps;
-  std::printf("%.17g\n", scene.bodies[1].motion.position[0]);  // the same with and without checks
+  std::printf("%.17g\n", scene.bodies[1].motion.position[0]);  // equal with and without checks
   return whole && scene.has_finite_state() ? 0 : 1;
 }

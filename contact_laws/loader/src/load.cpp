@@ -24,7 +24,7 @@ std::string variable(const char* name) {
   return value ? value : "";
 }
 
-/// Objects that contain no law.
+/// Messages about objects that contain no law.
 std::vector<std::string>& no_laws() {
   static std::vector<std::string> sentences;
   return sentences;
@@ -52,7 +52,7 @@ bool is_in_the_project(laws::LawKind kind, const std::string& name) {
   return false;
 }
 
-/// Replaces the parameters by the program's own data. @return empty, or the first unknown name
+/// Replaces each parameter by the program's own of that name. @return first unknown name
 std::string adopt_parameters(laws::LawInfo& info) {
   namespace known = laws::parameter;
   for (const laws::LawParameter*& parameter : info.parameters) {
@@ -111,7 +111,7 @@ std::vector<fs::path> folders() {
 laws::LoadedLaw inspect(const fs::path& file) {
   laws::LoadedLaw law;
   law.origin = file.string();
-  // Laws stay loaded until the program ends, because tables point into them.
+  // Objects stay loaded until the program ends, because law tables point into them.
   void* object = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!object) {
     const char* reason = dlerror();
@@ -154,7 +154,7 @@ void load_user_laws() {
     std::set<fs::path> files;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
       const std::string name = entry.path().filename().string();
-      // A file that is being written has a hidden name.
+      // A file that is still being written has a hidden name.
       if (name.front() == '.' || entry.path().extension() != ".so") continue;
       files.insert(fs::absolute(entry.path(), error));
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Turns the compiled declarations into data. The only source of the guard that sees them.
+// Converts the compiled declarations into data. Only this file of the guard includes them.
 #include <cxxabi.h>
 
 #include <cstdlib>
@@ -11,7 +11,7 @@
 #ifdef STATEJUMP_REAL_YADE_HEADERS
 #include "yade_api.hpp"
 #else
-#ifndef STATEJUMP_NO_LAYOUT_CHECKS  // only the test that sees the guard refuse defines it
+#ifndef STATEJUMP_NO_LAYOUT_CHECKS  // only defined by a test of the guard
 #include "statejump/yade_abi/layout_checks.hpp"
 #endif
 #include "statejump/yade_abi/dispatch.hpp"
@@ -33,8 +33,8 @@
 
 namespace statejump::yade_abi {
 
-// Outside of the unnamed namespace, so that its table has a dynamic symbol with a size. Never
-// built: the explicit instantiation alone makes the table.
+// Outside the unnamed namespace, so that its vtable has a dynamic symbol with a size. Never
+// constructed: the explicit instantiation alone creates the vtable.
 template <class Base>
 struct DoNothing : Base {};
 
@@ -44,12 +44,12 @@ STATEJUMP_VIEW_TABLES(STATEJUMP_CHILD)
 #undef STATEJUMP_CHILD
 
 #pragma GCC diagnostic push
-// The classes have virtual functions; GCC lays out their single bases as offsetof assumes.
+// The classes have virtual functions; GCC lays out single inheritance as offsetof assumes.
 #pragma GCC diagnostic ignored "-Winvalid-offsetof"
 
 DeclaredInterface declared_interface() {
   DeclaredInterface result;
-// The list of classes and members is that of the measurements.
+// The build generates this list of classes and members from the measurements.
 #define STATEJUMP_CLASS(Class, bytes, allocated) \
   result.classes.push_back({#Class, sizeof(yade::Class), allocated});
 #define STATEJUMP_MEMBER(Class, member, place, bytes, getter)               \
@@ -72,7 +72,7 @@ DeclaredInterface declared_interface() {
   STATEJUMP_VIEW_TABLES(STATEJUMP_TABLE)
 #undef STATEJUMP_TABLE
 #ifdef STATEJUMP_REAL_YADE_HEADERS
-  result.view_flag_size = 0;  // private in YADE's own headers, and not used with them
+  result.view_flag_size = 0;  // private in YADE's own headers and not used with them
 #else
   result.view_flag_size = sizeof(yade::OpenGLRenderer::initDone);
 #endif

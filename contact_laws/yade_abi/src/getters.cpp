@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Offsets and types of data members, read from the pointers to member that Boost.Python holds.
+// Offsets and types of data members, read from the pointers to member that Boost.Python stores.
 //
-// A plain attribute of a class in Python is a property. Its fget is a function object of
-// Boost.Python: the head of every Python object, then a pointer to an object of the class
-// caller_py_function_impl<caller<member<Type, Class>, ...>>, whose table of virtual functions leads
-// to its type and whose first member is the pointer to member, that is the offset. This is an
-// internal of Boost.Python; a member of our own is read the same way first, and every type has to
-// be spelt as expected.
+// A plain attribute of a class is a Python property. Its fget is a function object of Boost.Python:
+// the head of every Python object, then a pointer to an object of the class
+// caller_py_function_impl<caller<member<Type, Class>, ...>>. The vtable of that class leads to its
+// type. Its first member is the pointer to member, which is the offset. This is an internal of
+// Boost.Python. So the same code first reads a member of the plugin, and the name of every type
+// must be spelt as expected.
 #include <boost/python.hpp>
 #include <optional>
 #include <sstream>
@@ -16,7 +16,7 @@
 
 namespace statejump::yade_abi {
 
-// Has a getter of our own: read first, to see that getters can be read.
+// Class of the plugin with a getter that is read first, to check that getters can be read.
 struct KnownMember {
   long first;
   double second;
@@ -31,11 +31,11 @@ const std::string beginning =
     "boost::python::detail::member<";
 
 struct Getter {
-  std::string type;    // of the function object, from the C++ runtime
+  std::string type;    // type of the function object, from the C++ runtime
   std::size_t offset;  // [byte]
 };
 
-// Nothing where the function is not what it is taken for.
+// Returns nothing if the function is not a getter of the expected form.
 std::optional<Getter> read_getter(const Memory& memory, const py::object& function) {
   PyObject* const object = function.ptr();
   if (std::string(Py_TYPE(object)->tp_name) != "Boost.Python.function") return std::nullopt;

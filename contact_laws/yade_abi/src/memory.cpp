@@ -22,7 +22,7 @@ Memory::~Memory() {
 bool Memory::copy(const void* from, void* to, std::size_t bytes) const {
   const auto written = write(ends_[1], from, bytes);
   if (written <= 0) return false;
-  // What was written before an unreadable page has to leave the pipe, too.
+  // Before an unreadable page some bytes may have been written; read them to empty the pipe.
   std::vector<char> taken(static_cast<std::size_t>(written));
   const bool whole = read(ends_[0], taken.data(), taken.size()) == written && taken.size() == bytes;
   if (whole) std::memcpy(to, taken.data(), bytes);
@@ -39,7 +39,7 @@ std::optional<std::string> Memory::text(Word address) const {
   constexpr std::size_t longest = 4096;
   std::string result;
   std::array<char, 64> part;
-  // Parts that never cross the end of a page: the text may end just before it.
+  // Copy parts that end at page boundaries, because the page after the text may be unreadable.
   while (result.size() < longest) {
     const std::size_t bytes = part.size() - address % part.size();
     if (!copy(reinterpret_cast<const void*>(address), part.data(), bytes)) return std::nullopt;
@@ -62,7 +62,7 @@ const void* symbol(const std::string& name) {
 }
 
 const void* own_symbol(const std::string& name) {
-  // Looked for once: the way from an address to its library is slow.
+  // Searched only once, because dladdr is slow.
   static void* const module = []() -> void* {
     Dl_info info;
     if (!dladdr(reinterpret_cast<const void*>(&own_symbol), &info)) return nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Memory and symbols of the running process, read without the risk of a crash.
+// Reads memory and symbols of the running process without the risk of a crash.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@ namespace statejump::yade_abi {
 
 using Word = std::uint64_t;
 
-// Reads through a pipe. For an address that cannot be read the kernel returns an error, where a
-// plain read would end the process.
+// Reads memory through a pipe. For an unreadable address the kernel then returns an error, whereas
+// a plain read would end the process.
 class Memory {
  public:
   Memory();
@@ -24,7 +24,7 @@ class Memory {
 
   bool copy(const void* from, void* to, std::size_t bytes) const;
   std::optional<Word> word(Word address) const;
-  // The text up to its end, or to a length that no name has.
+  // Null-terminated text; nothing if it is unreadable or longer than any name.
   std::optional<std::string> text(Word address) const;
 
  private:
@@ -46,17 +46,17 @@ Type read_as(const char* place) {
 std::string mangled_name(const std::string& class_name);
 // Address of a symbol in the libraries that YADE loaded; null if there is none.
 const void* symbol(const std::string& name);
-// Among those of this module.
+// Address of a symbol of this module; null if there is none.
 const void* own_symbol(const std::string& name);
 
 // A function of YADE by its symbol; null if it is missing. The guard calls YADE only in this way,
-// so no declaration under test determines which function is called, and how.
+// so a wrong declaration cannot change which function is called or how.
 template <class Function>
 Function* function(const std::string& name) {
   return reinterpret_cast<Function*>(const_cast<void*>(symbol(name)));
 }
 
-// First word of an object of the named class; 0: YADE has no such class.
+// Vtable pointer (first word) of objects of the named class; 0 if YADE has no such class.
 Word table_pointer(const std::string& class_name);
 
 }  // namespace statejump::yade_abi

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sizes of objects and tables of virtual functions, read from code and data of the libraries.
+// Reads object sizes and vtables from the code and data of YADE's libraries.
 #include <dlfcn.h>
 #include <elf.h>
 #include <link.h>
@@ -31,7 +31,7 @@ std::size_t allocated_size(const std::string& class_name) {
   return 0;
 }
 
-// The symbol that an address begins, with its size in bytes; 0: none.
+// Size [byte] of the symbol that starts at an address; 0 if no symbol starts there.
 std::size_t symbol_size(const void* address) {
   Dl_info info;
   ElfW(Sym)* found = nullptr;
@@ -42,9 +42,9 @@ std::size_t symbol_size(const void* address) {
   return found->st_size;
 }
 
-// Entries that a child has of its own: type information, destructors and their thunks for second
-// bases. Asked by name, because the way from an address to its name is slow. name: mangled, as it
-// stands within others.
+// Vtable entries that every class defines itself: type information, destructors and their thunks
+// for second bases. They are looked up by name, because finding the name of an address is slow.
+// @param name mangled name without enclosing N and E
 struct OwnEntries {
   OwnEntries(const void* (*find)(const std::string&), const std::string& name) {
     std::size_t i = 0;
@@ -55,7 +55,8 @@ struct OwnEntries {
     }
     entries[i] = find("_ZTIN" + name + "E");
   }
-  // Which of them it is. A destructor for whole objects (D1) may be that for parts (D2) as well.
+  // Whether two entries have the same role in their classes. The complete destructor (D1) and the
+  // base destructor (D2) of a class may be the same function.
   bool same_role(const void* entry, const OwnEntries& other, const void* other_entry) const {
     for (std::size_t i = 0; i < entries.size(); ++i) {
       if (entry && entry == entries[i] && other_entry && other_entry == other.entries[i]) {
@@ -69,7 +70,7 @@ struct OwnEntries {
 
 std::string table_difference(const DeclaredInterface::Table& declared) {
   const std::string name = "4yade" + mangled_name(declared.class_name);
-  // Without the N and the E around it.
+  // The mangled name without the enclosing N and E.
   const std::string child = declared.mangled_child.substr(1, declared.mangled_child.size() - 2);
   const auto* library = static_cast<const void* const*>(symbol("_ZTVN" + name + "E"));
   const std::size_t length = symbol_size(library) / sizeof(void*);
@@ -112,7 +113,7 @@ std::string table_difference(const DeclaredInterface& declared) {
   for (const auto& one : declared.tables) {
     if (std::string difference = table_difference(one); !difference.empty()) return difference;
   }
-  // A static member has a size of its own in the symbol table.
+  // Checked by its size in the symbol table, because it is a static member.
   if (declared.view_flag_size != 0 &&
       symbol_size(symbol("_ZN4yade14OpenGLRenderer8initDoneE")) != declared.view_flag_size) {
     return "OpenGLRenderer.initDone is not the flag that is declared";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Members of fresh objects by their values: those that Python shows, and those that it does not.
+// Checks members of fresh objects by their values, both members that Python shows and hidden ones.
 #include <omp.h>
 
 #include <array>
@@ -19,9 +19,9 @@ namespace {
 
 namespace py = boost::python;
 using Offsets = std::vector<std::size_t>;
-using SharedPointer = boost::shared_ptr<void>;  // laid out like any other boost::shared_ptr
+using SharedPointer = boost::shared_ptr<void>;  // all boost::shared_ptr have the same layout
 
-// The object of YADE's behind a Python object, as the named class; null where it is none.
+// Address of the YADE object behind a Python object, as the named class; null for other classes.
 char* place_of(const py::object& object, const std::string& class_name) {
   const auto* type =
       static_cast<const std::type_info*>(symbol("_ZTIN4yade" + mangled_name(class_name) + "E"));
@@ -30,13 +30,13 @@ char* place_of(const py::object& object, const std::string& class_name) {
                : nullptr;
 }
 
-// A shared pointer to it, owned by Python.
+// Shared pointer to that object; it keeps the Python object alive.
 SharedPointer shared(const py::object& object, const std::string& class_name) {
   return {place_of(object, class_name), [object](void*) {}};
 }
 
-// Gives a place in an object of ours the bits of a value and takes them away again. The library may
-// read the member meanwhile, at the place where it believes it to be.
+// Overwrites bytes of an object with those of a value and restores them at the end of the scope. In
+// between, the library reads the member at the offset that it was compiled with.
 class ScopedOverride {
  public:
   ScopedOverride(char* place, const void* value, std::size_t bytes)
@@ -46,7 +46,7 @@ class ScopedOverride {
   ~ScopedOverride() { std::memcpy(place_, kept_.data(), kept_.size()); }
   ScopedOverride(const ScopedOverride&) = delete;
   ScopedOverride& operator=(const ScopedOverride&) = delete;
-  // An empty vector or pointer is a row of zeros.
+  // An empty vector or pointer consists of zero bytes.
   bool was_empty() const { return kept_.find_first_not_of('\0') == std::string::npos; }
 
  private:
@@ -54,10 +54,9 @@ class ScopedOverride {
   std::string kept_;
 };
 
-// ---- sentinels: the place is overridden a value, Python shows it
-// -------------------------------------
+// ---- sentinels: writes a value at the declared offset and compares what Python shows ------------
 
-// Numbers that occur nowhere else.
+// Generates numbers that occur nowhere else.
 class Sentinels {
  public:
   double number() { return next_ += 1.0078125; }
@@ -104,11 +103,11 @@ bool sentinel_shown(Sentinels& next, const DeclaredMember& member, char* place,
     return vector_shown<int, 3>(place, object, name,
                                 {next.integer(), next.integer(), next.integer()});
   }
-  return true;  // pointers, texts and lists: by their getter alone
+  return true;  // pointers, strings and lists are checked only by their getter
 }
 
-// A class that can be made for each class whose members are looked at. None is made for the
-// abstract bases of interaction physics.
+// For each class with checked members, a class that can be instantiated. The abstract bases of
+// interaction physics have none.
 constexpr std::array<std::pair<const char*, const char*>, 15> made_as = {
     {{"Shape", "Sphere"},
      {"Bound", "Aabb"},
@@ -128,7 +127,7 @@ constexpr std::array<std::pair<const char*, const char*>, 15> made_as = {
 
 // ---- values ------------------------------------------------------------------------------------
 
-// What the members that Python does not show are known to be, from how they are found.
+// Members that Python does not show, with the type that follows from how they are found.
 struct HiddenMember {
   const char* class_name;
   const char* name;
@@ -154,7 +153,7 @@ constexpr std::array<HiddenMember, 12> hidden_members = {
       "std::allocator<boost::shared_ptr<yade::Interaction> > >"},
      {"InteractionContainer", "currSize", "unsigned long"}}};
 
-// After the first difference nothing is touched any more.
+// Runs the value checks one by one; stops at the first difference and touches nothing after it.
 class Search {
  public:
   Search(const DeclaredInterface& declared, const py::object& wrapper)
@@ -175,7 +174,7 @@ class Search {
     py::object object;
     char* start;
     std::size_t size;
-    std::string as;  // the class that size belongs to
+    std::string as;  // the class that `size` belongs to
   };
   Place make(const char* made, const char* as) {
     const py::object object = wrapper_.attr(made)();
@@ -201,14 +200,14 @@ class Search {
   Offsets where_word(const Place& place, Word value) const {
     return where<Word>(place.start, place.size, [value](Word word) { return word == value; });
   }
-  // Words that point to an object of the class.
+  // Offsets of words that point to an object of the class.
   Offsets where_pointer(const char* start, std::size_t size, const std::string& pointee) const {
     const Word table = table_pointer(pointee);
     return where<Word>(start, size, [this, table](Word word) {
       return table != 0 && word % sizeof(Word) == 0 && memory_.word(word) == table;
     });
   }
-  // The value is at the declared place, and nowhere else.
+  // Checks that the value is found at the declared offset and nowhere else.
   void expect_at(const char* class_name, const char* name, const Offsets& found) {
     const auto* declared = member(class_name, name);
     if (!declared || found == Offsets{declared->offset}) return;
@@ -233,7 +232,7 @@ class Search {
               }));
   }
 
-  // The user's scene is only looked at.
+  // Only reads the user's scene.
   void user_scene() {
     const auto instance = function<void*()>("_ZN9SingletonIN4yade5OmegaEE8instanceEv");
     const auto get_scene =
@@ -245,7 +244,7 @@ class Search {
       report("O._sceneObj is not what Omega::getScene gives");
       return;
     }
-    // An engine's constructor takes the current scene.
+    // The constructor of an engine stores a pointer to the current scene.
     const Place engine = make("NewtonIntegrator", "Engine");
     if (engine.start) expect_at("Engine", "scene", where_word(engine, address_of(scene)));
   }
@@ -260,7 +259,7 @@ class Search {
     }
   }
 
-  // engineByName goes through the list of engines and compares class names.
+  // Scene::engineByName searches the list of engines and compares class names.
   void engines() {
     const auto by_name = function<SharedPointer(void*, const std::string&)>(
         "_ZN4yade5Scene12engineByNameERKNSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEE");
@@ -274,7 +273,7 @@ class Search {
            "Scene", "engines");
   }
 
-  // ForceResetter notes the number of the step.
+  // ForceResetter stores the number of the step in ForceContainer::lastReset.
   void forces() {
     const auto action = function<void(void*)>("_ZN4yade13ForceResetter6actionEv");
     const auto threads =
@@ -304,7 +303,7 @@ class Search {
            "forces");
   }
 
-  // A dispatcher tells its functors the scene in which it acts; ours is empty.
+  // A dispatcher stores its scene in its functors; this one gets a fresh, empty scene.
   void functor() {
     const auto action = function<void(void*)>("_ZN4yade15BoundDispatcher6actionEv");
     const Place functor = make("Bo1_Sphere_Aabb", "Functor");
@@ -328,7 +327,7 @@ class Search {
     return read_as<char*>(scene_.start + member("Scene", name)->offset);
   }
 
-  // Two bodies; the library counts them.
+  // Adds two bodies to the list; the library then counts them.
   void bodies() {
     const auto* list = member("BodyContainer", "body");
     if (!list) return;  // private in YADE's own headers
@@ -345,7 +344,7 @@ class Search {
            "body");
   }
 
-  // An interaction between them, which the library puts where it believes the list to be.
+  // Lets the library add an interaction of both bodies and searches for it in the container.
   void interactions() {
     const auto* list = member("BodyContainer", "body");
     if (!list) return;
@@ -366,7 +365,7 @@ class Search {
       if (read_as<Word>(before.data() + i) == 0) count.push_back(i);
     }
     expect_at("InteractionContainer", "currSize", count);
-    // The list begins with a pointer to an array, the array with a pointer to the interaction.
+    // The list begins with a pointer to its array, the array with one to the interaction.
     const Word table = table_pointer("Interaction");
     Word found = 0;
     expect_at("InteractionContainer", "linIntrs",

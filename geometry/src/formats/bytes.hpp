@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers of binary files.
+// Reads numbers of binary files.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace statejump::geometry::formats {
 
-/// A number of a binary file. @param swapped its bytes stand in the other order than the machine's
+/// Number from its bytes. @param swapped whether the byte order differs from that of the machine
 template <class Number>
 Number from_bytes(const char* bytes, bool swapped) {
   std::array<char, sizeof(Number)> own;

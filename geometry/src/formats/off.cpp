@@ -14,7 +14,7 @@ void read_off(std::string_view content, Reading& reading) {
   for (const char* part : {"ST", "C", "N"})
     if (kind.substr(0, std::strlen(part)) == part) kind.remove_prefix(std::strlen(part));
   std::array<std::uint64_t, 2> counts{};
-  // Geomview needs no word OFF, and collections of models have it without a space: OFF8 6 12.
+  // Geomview accepts files without the word OFF, and some collections write no space: OFF8 6 12.
   bool has_count = to_number(kind, counts[0]);
   if (!has_count && kind.substr(0, 3) != "OFF")
     reading.refuse_line(words.line(), "does not begin with OFF");
@@ -28,13 +28,13 @@ void read_off(std::string_view content, Reading& reading) {
       reading.refuse_line(words.line(), "should hold the numbers of vertices and faces");
   }
   words.skip_line();  // the number of edges
-  // No vertex is shorter than "0 0 0", no face than "3 0 1 2", each with the end of its line.
+  // The shortest vertex is "0 0 0", the shortest face "3 0 1 2", with line ends 6 and 8 bytes.
   const std::uint64_t length = content.size() + 1;
   if (counts[0] > length / 6 || counts[1] > (length - 6 * counts[0]) / 8)
     reading.refuse("it declares " + std::to_string(counts[0]) + " vertices and " +
                    std::to_string(counts[1]) + " faces, which do not fit into its " +
                    std::to_string(content.size()) + " bytes");
-  // A vertex stands in one line. Its first three numbers are read: normal, colour, texture follow.
+  // One line per vertex. Normal, colour or texture may follow the three coordinates.
   for (std::uint64_t i = 0; i < counts[0]; ++i) {
     if (!words.next(word)) reading.refuse("it ends before its last vertex");
     Eigen::Vector3d point;

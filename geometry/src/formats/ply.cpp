@@ -38,7 +38,7 @@ struct PlyProperty {
   std::string name;
   PlyType type;
   bool is_list;
-  PlyType count_type;  ///< of a list
+  PlyType count_type;  ///< only for a list
 };
 struct PlyElement {
   std::string name;
@@ -49,7 +49,7 @@ struct PlyHeader {
   bool ascii = false;
   bool little_endian = false;
   std::vector<PlyElement> elements;
-  std::size_t length = 0;  ///< [bytes], with the end of its last line
+  std::size_t length = 0;  ///< including the end of its last line [byte]
 };
 
 PlyHeader ply_header(std::string_view content, const Reading& reading) {
@@ -113,7 +113,7 @@ PlyHeader ply_header(std::string_view content, const Reading& reading) {
   }
 }
 
-/// Numbers of the body, one after the other.
+/// Reads the numbers of the body in sequence.
 class PlyBody {
  public:
   PlyBody(std::string_view body, const PlyHeader& header, const Reading& reading)
@@ -155,7 +155,7 @@ class PlyBody {
     }
     return 0;
   }
-  /// Whole numbers only; those beyond 32 bits are refused.
+  /// Next number, which must be an integer of at most 32 bits.
   std::int64_t integer(PlyType type) {
     const double value = number(type);
     constexpr double largest = 4294967296.0;
@@ -179,12 +179,12 @@ class PlyBody {
   std::size_t at_ = 0;
 };
 
-/// Refuses counts that do not fit into the file, and files without vertices or faces.
+/// Rejects counts that do not fit into the file, and files without vertices or faces.
 void check_elements(const PlyHeader& header, std::string_view content, const Reading& reading) {
   bool has_points = false, has_faces = false;
-  std::uint64_t left = content.size() - header.length + 1;  // the last line may lack its end
+  std::uint64_t left = content.size() - header.length + 1;  // the last line end may be missing
   for (const PlyElement& element : header.elements) {
-    // As text a property takes a digit and a space.
+    // In text format a number takes at least a digit and a space.
     std::uint64_t least = 0;
     for (const PlyProperty& property : element.properties)
       least += header.ascii ? 2 : bytes_of(property.is_list ? property.count_type : property.type);
@@ -202,8 +202,7 @@ void check_elements(const PlyHeader& header, std::string_view content, const Rea
   if (!has_points || !has_faces) reading.refuse("it lacks the element vertex or face");
 }
 
-/// Triangles of strips one behind the other: -1 ends a strip, every second triangle is turned
-/// round.
+/// Adds the triangles of consecutive strips. -1 ends a strip; every second triangle is reversed.
 void add_strips(const std::vector<std::int64_t>& corners, Reading& reading) {
   std::size_t start = 0;
   for (std::size_t k = 0; k < corners.size(); ++k) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What mesh files are read into.
+// Collects the data read from a mesh file.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace statejump::geometry::formats {
 
-/// What was read, and where errors are told.
+/// Vertices and polygons read so far, and the error messages of a reader.
 class Reading {
  public:
   Reading(MeshFormat format, const std::string& name) : format_(format), name_(name) {}
@@ -30,10 +30,10 @@ class Reading {
   }
 
   void add_point(const Eigen::Vector3d& point) { points_.push_back(point); }
-  /// Coordinates are floats of 32 bits: one vertex may differ by rounding from face to face.
+  /// Call it for 32-bit coordinates: the same vertex may then differ by rounding between faces.
   void has_floats() { floats_ = true; }
-  /// @param corners from 0; any integer is taken here and checked in the end. Programs write edges
-  ///                and points as faces of fewer than three corners; these are left out.
+  /// @param corners indices from 0, checked only at the end. Polygons with fewer than three corners
+  ///        are left out: some programs write edges and points in this way.
   void add_polygon(const std::vector<std::int64_t>& corners) {
     if (corners.size() < 3) ++short_polygons_;
     for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
@@ -58,7 +58,7 @@ class Reading {
                        " vertices");
       std::array<int, 3> face{};
       for (std::size_t k = 0; k < 3; ++k) face[k] = number[static_cast<std::size_t>(fans_[f][k])];
-      // Exporters write facets whose corners are one vertex; a surface is the same without them.
+      // Leaves out facets with two equal corners, which exporters write; the surface is the same.
       if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])
         ++result.removed;
       else
@@ -72,15 +72,15 @@ class Reading {
   static constexpr const char* no_triangle = "the mesh has no faces with three vertices";
   using Cells = std::multimap<std::array<double, 3>, int>;  ///< vertices by cell
 
-  /// Equal vertices become one, and of floats those nearer than rounding.
-  /// @param[out] vertices by first appearance @return number of the vertex of each point
+  /// Merges equal vertices, and 32-bit float vertices that differ by rounding only.
+  /// @param[out] vertices by first appearance @return index of the vertex of each point
   std::vector<int> weld(std::vector<Eigen::Vector3d>& vertices) const {
     double largest = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (!points_[i].allFinite()) refuse_faces("vertex " + std::to_string(i) + " is not finite");
       largest = std::max(largest, points_[i].cwiseAbs().maxCoeff());
     }
-    // Two units in the last place of the largest coordinate, one for each of two roundings.
+    // Two units in the last place of the largest coordinate: each of two vertices is rounded once.
     const double near = floats_ ? 2 * std::numeric_limits<float>::epsilon() * largest : 0;
     Cells known;
     std::vector<int> number(points_.size());
@@ -121,13 +121,13 @@ class Reading {
   const std::string& name_;
   std::vector<Eigen::Vector3d> points_;
   std::vector<std::array<std::int64_t, 3>> fans_;
-  std::vector<std::size_t> polygon_of_;  ///< of each triangle
+  std::vector<std::size_t> polygon_of_;  ///< index of the polygon of each triangle
   std::size_t polygons_ = 0;
   int short_polygons_ = 0;
   bool floats_ = false;
 };
 
-// Each adds to what was read; arguments: the file's whole content.
+// Each function adds the data of its format. @param content the whole file
 void read_off(std::string_view content, Reading& reading);
 void read_stl(std::string_view content, Reading& reading);
 void read_ply(std::string_view content, Reading& reading);

@@ -10,7 +10,7 @@ void read_stl_text(std::string_view content, Reading& reading) {
   Words words(content, '\0');
   std::string_view word;
   bool in_solid = false;
-  int corners = -1;  // of the facet that is being read; -1: none
+  int corners = -1;  // of the current facet; -1: outside a facet
   const auto follows = [&](const char* wanted) {
     if (!words.next(word) || !same_word(word, wanted))
       reading.refuse_line(words.line(), std::string("lacks the word ") + wanted);
@@ -46,11 +46,11 @@ void read_stl_text(std::string_view content, Reading& reading) {
   if (in_solid) reading.refuse("it ends before endsolid");
 }
 
-constexpr std::size_t stl_header = 84;  // bytes: 80 of text and the number of facets
+constexpr std::size_t stl_header = 84;  // [byte]: 80 of text and 4 with the number of facets
 constexpr std::size_t stl_facet = 50;
 
-/// Where each facet begins. Its last two bytes are the number of bytes of attributes behind it,
-/// which many programs misuse for a colour: they count only where the file is as much longer.
+/// Offset of each facet. The last two bytes of a facet are the number of attribute bytes after it.
+/// Many programs store a colour there, so they only count if the file is longer than its facets.
 std::vector<std::size_t> facets_of(std::string_view content, std::uint64_t count, bool swapped) {
   const bool has_attributes = content.size() > stl_header + stl_facet * count;
   std::vector<std::size_t> starts;
@@ -76,7 +76,7 @@ void read_stl(std::string_view content, Reading& reading) {
   const std::vector<std::size_t> facets =
       long_enough ? facets_of(content, count, swapped) : std::vector<std::size_t>{};
   if (!long_enough || facets.size() != count) {
-    // Binary files may begin with "solid", too, but then their length is right.
+    // A file that begins with "solid" is text, except if its length fits a binary file.
     std::string_view word;
     if (Words(content, '\0').next(word) && same_word(word, "solid"))
       return read_stl_text(content, reading);
@@ -87,7 +87,7 @@ void read_stl(std::string_view content, Reading& reading) {
   }
   for (const std::size_t start : facets) {
     const char* facet = content.data() + start;
-    for (int k = 1; k <= 3; ++k) {  // the normal comes first
+    for (int k = 1; k <= 3; ++k) {  // k = 0 is the normal
       Eigen::Vector3d point;
       for (int i = 0; i < 3; ++i)
         point[i] = static_cast<double>(from_bytes<float>(facet + 12 * k + 4 * i, swapped));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words and numbers of a text.
+// Splits a text into words and numbers.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ inline bool same_word(std::string_view word, std::string_view lower_case) {
          });
 }
 
-/// A whole word as a number, correctly rounded; "nan" and "inf" are numbers here.
+/// Converts a whole word to a number, correctly rounded; accepts "nan" and "inf".
 template <class Number>
 inline bool to_number(std::string_view word, Number& value) {
   if (!word.empty() && word.front() == '+') word.remove_prefix(1);
@@ -30,10 +30,10 @@ inline bool to_number(std::string_view word, Number& value) {
   return error == std::errc{} && end == word.data() + word.size();
 }
 
-/// Words of a text, line by line; what follows a comment sign is skipped.
+/// Words of a text, line by line; comments are skipped.
 class Words {
  public:
-  /// @param goes_on whether a backslash at the end of a line joins the next one to it
+  /// @param goes_on whether a backslash at the end of a line continues it on the next one
   Words(std::string_view text, char comment, bool goes_on = false)
       : text_(text), comment_(comment), goes_on_(goes_on) {}
 
@@ -44,7 +44,7 @@ class Words {
     }
     if (at_ >= text_.size() || text_[at_] == '\n') return false;
     if (comment_ != '\0' && text_[at_] == comment_) {
-      // A comment ends with its line: names of folders end with a backslash.
+      // A backslash does not continue a comment, because names of folders may end with one.
       at_ = std::min(text_.find('\n', at_), text_.size());
       return false;
     }
@@ -64,7 +64,7 @@ class Words {
     }
     return true;
   }
-  /// To the end of this line.
+  /// Skips the rest of this line.
   void skip_line() {
     while (at_ < text_.size() && (join() || (text_[at_] != '\n' && ++at_ > 0))) {
     }
@@ -72,13 +72,13 @@ class Words {
   int line() const { return line_; }
 
  private:
-  /// Length of a backslash with the end of its line; 0: none is here.
+  /// Length of a backslash and line end at the current position; 0 if there is none.
   std::size_t joint() const {
     if (!goes_on_ || text_[at_] != '\\') return 0;
     const std::string_view rest = text_.substr(at_ + 1, 2);
     return rest.substr(0, 1) == "\n" ? 2 : rest == "\r\n" ? 3 : 0;
   }
-  /// Steps over such an end; false where none is here.
+  /// Skips such a continuation; false if there is none.
   bool join() {
     const std::size_t length = joint();
     at_ += length;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The frictionless rib in one hand-written Runge-Kutta loop: what the engine's general ODE is
-// measured against. No account, no samples, no events, no laws to choose from.
+// The frictionless rib in one hand-written Runge-Kutta loop, as a reference for the cost of the
+// engine's general ODE. No energies, no samples, no events, no choice of laws.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@ struct BareResult {
   double state[8];  ///< tips of AB and BC, then their velocities
 };
 
-/// 0 → `peak` K → 0 in `duration` [s], `steps` steps from the state given.
+/// Temperature change 0 → `peak` K → 0 in `duration` [s], in `steps` steps from the given state.
 inline BareResult bare_run(const linkage::Linkage& m, const linkage::State& start, double peak,
                            double duration, int steps) {
   const double ea1 = m.link_ab.young_modulus * m.link_ab.cross_section_area;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rib of the umbrella antenna: 100 000 steps of the frictionless case beside a bare loop of the
-// same arithmetic, and what friction and the adaptive method cost.
+// Rib of the umbrella antenna: 100 000 steps of the frictionless case, compared with a bare loop of
+// the same arithmetic; cost of friction and of the adaptive method.
 #include <benchmark/benchmark.h>
 
 #include <string>

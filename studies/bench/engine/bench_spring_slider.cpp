@@ -28,7 +28,7 @@ thermal::Program program(thermal::Shape shape, int cycles) {
   return result;
 }
 
-/// One full Table 1 cycle with all events, a fresh Path each time.
+/// One full Table 1 cycle with all events, into a new Path each time.
 void solve_fresh(benchmark::State& state) {
   const SpringSlider model = table1();
   const auto cycle = program(thermal::Shape::half_sine, 1);
@@ -39,7 +39,7 @@ void solve_fresh(benchmark::State& state) {
 }
 BENCHMARK(solve_fresh);
 
-/// The same into one Path, as a campaign does.
+/// The same, reusing one Path, as a campaign does.
 void solve_reused(benchmark::State& state) {
   const SpringSlider model = table1();
   const auto cycle = program(thermal::Shape::half_sine, 1);
@@ -51,7 +51,7 @@ void solve_reused(benchmark::State& state) {
 }
 BENCHMARK(solve_reused);
 
-/// Sine with both stops, time per call of `range` cycles.
+/// Sine with both stops; time per call, of `range` cycles.
 void solve_cycles(benchmark::State& state) {
   const SpringSlider model = table1();
   const auto cycles = program(thermal::Shape::sine, static_cast<int>(state.range(0)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cost of a bore given by triangles beside the closed form of a round one, by number of faces.
+// Cost of a bore given by triangles, by number of faces, and of the closed form of a round one.
 //
 //     build/bin/geometry_bench --benchmark_counters_tabular=true   (wherever the build puts it)
 #include <benchmark/benchmark.h>
@@ -35,7 +35,7 @@ const BoreMesh& bore(int faces) {
   return *mesh;
 }
 
-/// Journal centres on their way around the bore, 1 um deep on average.
+/// Journal centres along the bore's circumference, 1 um deep on average.
 Vector3d centre(int i) {
   const double angle = 1e-3 * i;
   return {1.01e-4 * std::cos(angle), 1.01e-4 * std::sin(angle), 1e-3};
@@ -65,7 +65,7 @@ void bore_contacts(benchmark::State& state) {
 }
 BENCHMARK(bore_contacts)->RangeMultiplier(10)->Range(1000, 1000000);
 
-/// The same way, 3e-4 rad a step: the smooth wall is asked in every step.
+/// The same path in steps of 3e-4 rad: the smooth wall is evaluated in every step.
 void bore_followed(benchmark::State& state) {
   const BoreMesh& mesh = bore(static_cast<int>(state.range(0)));
   std::vector<double> track;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The least that n joints of the benchmark cost with the kernel of this project: one array of
-// structures, one loop, nothing that a scene of YADE would need.
+// Minimum cost of n joints of the benchmark with the project's kernel: one array of structures, one
+// loop, without the data of a YADE scene.
 #pragma once
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cost of a joint and step without YADE: the stepper's arrays beside a bare leapfrog loop of the
-// same kernel; chains and the rib of an umbrella.
+// Cost per joint and step without YADE: the stepper's arrays compared with a bare leapfrog loop of
+// the same kernel; chains, and the rib of an umbrella.
 #include <benchmark/benchmark.h>
 
 #include "bare_loop.hpp"

@@ -14,15 +14,15 @@ namespace {
 
 using testing::random_problem;
 
-/// Status of one contact in the plane.
+/// Status of one contact in two dimensions.
 enum class Guess { open, stick, slide_plus, slide_minus };
 
-/// Reactions for given statuses, if they hold: the oracle shares no step with the solvers.
+/// Reactions for given statuses if these are consistent; uses no code of the solvers.
 std::optional<Eigen::VectorXd> with_statuses(const Problem& problem,
                                              const std::vector<Guess>& guesses) {
   const Eigen::MatrixXd& w = std::get<Eigen::MatrixXd>(problem.delassus);
   const Eigen::Index size = problem.q.size();
-  // Unknown (r, u): u - W r = q and two equations for each contact.
+  // Unknowns (r, u): u - W r = q and two equations for each contact.
   Eigen::MatrixXd system = Eigen::MatrixXd::Zero(2 * size, 2 * size);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(2 * size);
   system.topLeftCorner(size, size) = -w;
@@ -42,7 +42,7 @@ std::optional<Eigen::VectorXd> with_statuses(const Problem& problem,
         break;
       case Guess::slide_plus:
       case Guess::slide_minus:
-        // Slides along +t: the reaction is -mu r_n.
+        // Sliding along +t: the tangential reaction is -mu r_n.
         system(size + n, size + n) = 1.0;
         system(size + n + 1, n + 1) = 1.0;
         system(size + n + 1, n) = guesses[k] == Guess::slide_plus ? mu : -mu;
@@ -52,7 +52,7 @@ std::optional<Eigen::VectorXd> with_statuses(const Problem& problem,
   const Eigen::FullPivLU<Eigen::MatrixXd> factors(system);
   if (!factors.isInvertible()) return {};
   const Eigen::VectorXd found = factors.solve(right);
-  // Margins far above rounding and far below the entries of order one.
+  // Far above rounding and far below the entries, which are of order one.
   constexpr double margin = 1e-10;
   for (std::size_t k = 0; k < guesses.size(); ++k) {
     const Eigen::Index n = 2 * static_cast<Eigen::Index>(k);
@@ -66,7 +66,7 @@ std::optional<Eigen::VectorXd> with_statuses(const Problem& problem,
   return found.head(size);
 }
 
-/// Velocities of all solutions of two contacts in the plane.
+/// Velocities of all solutions of a problem with two contacts in two dimensions.
 std::vector<Eigen::VectorXd> enumerated(const Problem& problem) {
   std::vector<Eigen::VectorXd> all;
   constexpr std::array guesses = {Guess::open, Guess::stick, Guess::slide_plus, Guess::slide_minus};
@@ -88,7 +88,7 @@ TEST(TwoContacts, give_one_of_the_enumerated_solutions) {
     const std::vector<Eigen::VectorXd> all = enumerated(problem);
     ASSERT_FALSE(all.empty()) << "problem " << k;
     for (const Eigen::VectorXd& u : all) several += (u - all.front()).norm() > 1e-6;
-    // Gauss-Seidel alone may go round in circles, so that it is not asked.
+    // Gauss-Seidel alone may cycle, so it is not tested here.
     for (const Method method : {Method::automatic, Method::lemke}) {
       Options options;
       options.method = method;
@@ -98,11 +98,11 @@ TEST(TwoContacts, give_one_of_the_enumerated_solutions) {
       for (const Eigen::VectorXd& u : all) {
         nearest = std::min(nearest, (u - solution.velocities).norm());
       }
-      // The merit, 1e-10, times the condition of these W, which is below 1e5.
+      // Merit tolerance 1e-10 times the condition of these matrices W, which is below 1e5.
       EXPECT_LT(nearest, 1e-5 * problem.q.norm()) << to_string(method) << ", problem " << k;
     }
   }
-  // Friction up to 1.5 makes some of them ambiguous, or the oracle would see only one solution.
+  // Friction up to 1.5 must make some problems ambiguous and the reference must find that.
   EXPECT_GT(several, 0);
 }
 
@@ -127,7 +127,8 @@ TEST(InteriorPoint, solves_from_a_cold_start) {
     const Problem problem = random_problem(3, 15, 60, most_friction, random);
     Options options;
     options.method = Method::interior_point;
-    options.tolerance = 1e-7;  // of the path alone, without Newton's end
+    // reached by the interior-point path alone, without final Newton steps
+    options.tolerance = 1e-7;
     const Solution solution = solve(problem, options);
     EXPECT_EQ(solution.status, Status::solved)
         << "mu <= " << most_friction << ", merit " << solution.merit.largest();
@@ -136,8 +137,8 @@ TEST(InteriorPoint, solves_from_a_cold_start) {
 }
 
 TEST(InteriorPoint, goes_on_while_its_merit_falls) {
-  // Forty contacts that as many freedoms hold: rounds of lagged friction, up to fifty steps. The
-  // method takes 31 on average; without its measures against a residual that stays it takes 50.
+  // Forty contacts constrain as many dofs: rounds of lagged friction, up to fifty steps. The method
+  // needs 31 steps on average; without its measures against a stagnating residual it needs 50.
   std::mt19937 random(10);
   Options options;
   options.method = Method::interior_point;

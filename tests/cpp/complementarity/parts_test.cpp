@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parts of the solver one by one: together they hide each other's faults, because a method that
-// fails is followed by another.
+// Tests the parts of the solver one by one. Together they hide each other's faults, because a
+// method that fails is followed by another one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ Problem sparse_of(Problem problem) {
   return problem;
 }
 
-/// W of a scaled problem, column by column from its products.
+/// Matrix W of a scaled problem, computed column by column from its products.
 Eigen::MatrixXd whole(const ScaledProblem& problem) {
   const Eigen::Index size = problem.q().size();
   Eigen::MatrixXd w(size, size);
@@ -95,7 +95,7 @@ TEST(Parts, BlockSystemSolvesItsEquations) {
         const Eigen::VectorXd left =
             rows.a[k].topLeftCorner(dimension, dimension) * u.segment(at, dimension) +
             rows.b[k].topLeftCorner(dimension, dimension) * found->segment(at, dimension);
-        // Random equations of at most 15 unknowns: conditions up to some thousand.
+        // Random systems with at most 15 unknowns: condition numbers up to some thousand.
         EXPECT_LT((left - right[k].head(dimension)).norm(), 1e-11);
       }
     }
@@ -103,7 +103,7 @@ TEST(Parts, BlockSystemSolvesItsEquations) {
 }
 
 TEST(Parts, ContactThatDoesNotApproachCarriesNothing) {
-  // Friction of 4 could hold it by the coupling, pressed on by nothing: a solution as well.
+  // With friction of 4, coupling could also hold it without any load: a second solution.
   BlockMatrix w = BlockMatrix::Identity() * 3.0;
   w(0, 1) = w(1, 0) = 1.0;
   for (const double apart : {0.0, 1e-3}) {
@@ -116,12 +116,12 @@ TEST(Parts, ContactThatDoesNotApproachCarriesNothing) {
 }
 
 TEST(Parts, OneContactIsSolvedByItself) {
-  // Open, stuck and sliding; of a W of full rank the solution is exact to rounding.
+  // Open, stuck and sliding; for a W of full rank the solution is exact to rounding.
   std::mt19937 random(6);
   int held[3] = {0, 0, 0};
   for (int run = 0; run < 300; ++run) {
     Problem problem = random_problem(3, 1, 9, 1.5, random);
-    problem.q *= std::pow(10.0, run % 7 - 3);  // reactions of any size
+    problem.q *= std::pow(10.0, run % 7 - 3);  // reactions of various magnitudes
     const BlockMatrix w = std::get<Eigen::MatrixXd>(problem.delassus);
     Block r;
     ASSERT_TRUE(solve_one_contact(w, problem.q, problem.mu[0], 0.0, r));
@@ -140,10 +140,10 @@ TEST(Parts, LemkeSolvesByItself) {
     int pivots = 0;
     const auto reactions = lemke(scaled, 200, pivots);
     ASSERT_TRUE(reactions) << run;
-    // Some twenty pivots of a table with numbers of order 1, whose conditions multiply.
+    // Some twenty pivots on a table with entries of order 1; their condition numbers multiply.
     EXPECT_LT(Iterate(scaled, *reactions).merit, 1e-9) << run;
     EXPECT_GT(pivots, 0);
-    // Contacts that leave without friction's help carry nothing, which takes no pivot.
+    // Contacts that separate even without friction carry no reaction and need no pivot.
     for (Eigen::Index i = 0; i < 6; ++i) problem.q.segment<2>(2 * i) = Eigen::Vector2d::UnitX();
     pivots = 0;
     const auto none = lemke(ScaledProblem(problem), 200, pivots);
@@ -153,7 +153,7 @@ TEST(Parts, LemkeSolvesByItself) {
   }
 }
 
-/// Merit that a method reaches alone, and its steps.
+/// Merit that a method reaches without the other methods, and its number of steps.
 struct Reached {
   double merit;
   int steps;
@@ -172,8 +172,8 @@ Reached by_interior_point(const ScaledProblem& problem, int most) {
 
 TEST(Parts, InteriorPointConvergesByItself) {
   std::mt19937 random(7);
-  // A wrong direction may still arrive, but not within these steps on average: 5.7, 7.6 and 9.5 are
-  // those of the method as it is, a third more is left.
+  // A wrong search direction may still converge, but not within these average step counts. The
+  // present method needs 5.7, 7.6 and 9.5 steps; the limits are about a third higher.
   for (const auto& [most_friction, usual] :
        {std::pair{0.0, 7.5}, std::pair{0.9, 10.0}, std::pair{4.0, 12.5}}) {
     int steps = 0;

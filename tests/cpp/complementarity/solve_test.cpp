@@ -12,8 +12,8 @@ namespace {
 using testing::one_contact;
 using testing::random_problem;
 
-// Results of a 3 x 3 system of condition 3: a few roundings, times 100 for the tolerance of the
-// merit, 1e-10, which ends Newton far below it in practice but is what is promised.
+// Results of a 3 x 3 system of condition 3: a few roundings, and a factor 100 for the merit
+// tolerance 1e-10. In practice Newton's method ends far below that tolerance.
 constexpr double tight = 1e-9;
 
 TEST(OneContact, opens_where_nothing_presses) {
@@ -34,7 +34,7 @@ TEST(OneContact, sticks_inside_the_cone) {
 }
 
 TEST(OneContact, slides_against_its_velocity) {
-  // Isotropic W without coupling: r_n = -q_n/w, r_t = -mu r_n q_t/|q_t|, |u_t| = |q_t| - w mu r_n.
+  // W = w I: r_n = -q_n/w, r_t = -mu r_n q_t/|q_t|, |u_t| = |q_t| - w mu r_n.
   const double w = 4.0;
   const Problem problem = {3, Eigen::MatrixXd(w * Eigen::Matrix3d::Identity()),
                            Eigen::Vector3d(-2.0, 3.0, -4.0), Eigen::VectorXd::Constant(1, 0.25)};
@@ -53,7 +53,7 @@ TEST(OneContact, without_friction_has_no_tangential_reaction) {
 }
 
 TEST(Problem, without_friction_has_its_one_solution) {
-  // Of two coupled contacts one opens: reactions of both would have to pull at the other.
+  // One of two coupled contacts opens: with both closed, one reaction would have to be tensile.
   for (const int d : {2, 3}) {
     Problem problem{d, Eigen::MatrixXd::Identity(2 * d, 2 * d), Eigen::VectorXd::Zero(2 * d),
                     Eigen::VectorXd::Zero(2)};
@@ -64,7 +64,7 @@ TEST(Problem, without_friction_has_its_one_solution) {
     Eigen::VectorXd exact = Eigen::VectorXd::Zero(2 * d);
     exact[0] = 1.0;
     EXPECT_EQ(merit(problem, exact).largest(), 0.0);
-    // A reaction that pulls is none.
+    // A tensile reaction is not a solution.
     Eigen::VectorXd pulls = Eigen::VectorXd::Zero(2 * d);
     pulls[0] = 0.6 / 0.36;
     pulls[d] = -0.3 / 0.36;
@@ -92,11 +92,11 @@ TEST(Problem, has_the_same_scaled_merit_in_other_units) {
   Problem problem = random_problem(3, 5, 9, 1.0, random);
   const Eigen::VectorXd r = Eigen::VectorXd::LinSpaced(15, -1.0, 1.0);
   const double before = merit(problem, r).scaled;
-  // Millimetres per kilonewton.
+  // Change of units to millimetres and kilonewtons.
   std::get<Eigen::MatrixXd>(problem.delassus) *= 1e6;
   problem.q *= 1e3;
   const double after = merit(problem, r * 1e-3).scaled;
-  // Five hundred roundings at most.
+  // At most five hundred roundings.
   EXPECT_NEAR(before, after, 1e-13);
   EXPECT_GT(before, 0.01);
 }
@@ -119,14 +119,14 @@ TEST(Problem, refuses_what_does_not_fit) {
 }
 
 TEST(Problem, without_a_solution_is_said_to_be_not_converged) {
-  // Pressed together at a place that no force moves.
+  // The contact is pressed together at a point that no force moves (W = 0).
   for (const int dimension : {2, 3}) {
     const Solution solution =
         solve({dimension, Eigen::MatrixXd(Eigen::MatrixXd::Zero(dimension, dimension)),
                -Eigen::VectorXd::Unit(dimension, 0), Eigen::VectorXd::Constant(1, 0.5)});
     EXPECT_EQ(solution.status, Status::not_converged);
     EXPECT_GT(solution.merit.largest(), 1e-3);
-    // Every method was tried that there is.
+    // All available methods were tried.
     EXPECT_GT(solution.iterations.interior_point, 0);
     EXPECT_EQ(solution.iterations.pivots > 0, dimension == 2);
   }

@@ -11,15 +11,15 @@
 
 namespace statejump::complementarity::testing {
 
-/// One contact in space with a full W.
+/// One contact in three dimensions with a full matrix W.
 inline Problem one_contact(const Eigen::Vector3d& q, double mu) {
   Eigen::Matrix3d w;
   w << 2.0, 0.3, -0.2, 0.3, 1.5, 0.1, -0.2, 0.1, 1.0;
   return {3, Eigen::MatrixXd(w), q, Eigen::VectorXd::Constant(1, mu)};
 }
 
-/// W = H H^T of a body or many with `freedoms` degrees of freedom, u = H v: u = 0 is within reach,
-/// so that a solution exists (Acary and Cadoux 2013).
+/// W = H H^T of bodies with `freedoms` degrees of freedom, u = H v. u = 0 is attainable, so a
+/// solution exists (Acary and Cadoux 2013).
 inline Problem random_problem(int dimension, int contacts, int freedoms, double most_friction,
                               std::mt19937& random) {
   std::normal_distribution<double> normal;

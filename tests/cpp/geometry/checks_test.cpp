@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every refusal with its sentence, and the files that are read.
+// Tests every rejection with its message, and the reading of files.
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -46,7 +46,7 @@ TEST(BoreChecks, TubeAndRingAreAccepted) {
   EXPECT_EQ(open.wall().size(), 48u);
   const BoreMesh closed(ring());
   EXPECT_TRUE(closed.closed());
-  EXPECT_EQ(closed.wall().size(), 96u);  // neither ends nor outside
+  EXPECT_EQ(closed.wall().size(), 96u);  // neither end faces nor outer faces
   for (const BoreMesh& mesh : {open, closed}) {
     EXPECT_NEAR(mesh.mean_radius(), 5.1e-3, 1e-17);
     EXPECT_NEAR(mesh.length(), 10e-3, 1e-17);
@@ -100,8 +100,8 @@ TEST(BoreChecks, FaceWithoutArea) {
             "mesh: face 1 (vertices 0, 13, 12) at (0.00487224, 0.00085, 0.00333333) m has no area");
 }
 
-/// Divides the edge of a face along the bore in halves, on its own side only, and its first half
-/// once more if `twice`: facets without an area fill the gaps.
+/// Splits the axial edge of a face, on this face's side only, and its first half once more if
+/// `twice`. Facets without area fill the gaps.
 void divide_on_one_side(Triangles& mesh, std::size_t face, bool twice) {
   auto corners = mesh.faces[face];
   const auto vertex = [&](int k) { return mesh.vertices[static_cast<std::size_t>(k)]; };
@@ -130,7 +130,7 @@ TEST(BoreChecks, FlatFacesAreTakenOut) {
     const BoreMesh bore(mesh);
     const std::size_t vertices = twice ? 20 : 10;
     EXPECT_EQ(bore.triangles().removed, static_cast<int>(vertices));
-    // A vertex within an edge makes two faces more.
+    // Each vertex on an edge adds two faces.
     EXPECT_EQ(bore.triangles().faces.size(), whole.faces.size() + 2 * vertices);
     EXPECT_NEAR(bore.mean_radius(), BoreMesh(whole).mean_radius(), 1e-15);  // rounding of 5 mm
   }
@@ -196,7 +196,7 @@ TEST(BoreChecks, Hole) {
 
 TEST(BoreChecks, FacesThatIntersect) {
   Triangles mesh = bore_triangles(round_bore(), 12, 4);
-  mesh.vertices[24] = Eigen::Vector3d(-6e-3, 0, 1e-4);  // through the wall opposite
+  mesh.vertices[24] = Eigen::Vector3d(-6e-3, 0, 1e-4);  // moved through the opposite wall
   const std::string sentence = refusal(mesh);
   EXPECT_NE(sentence.find(" intersect"), std::string::npos) << sentence;
   EXPECT_EQ(sentence.substr(0, 12), "mesh: faces ");
@@ -342,7 +342,7 @@ TEST_F(BoreFiles, EveryFormatHoldsTheSameMesh) {
     ASSERT_EQ(read.faces.size(), 48u) << file;
     ASSERT_EQ(read.vertices.size(), 36u) << file;
     const BoreMesh bore = BoreMesh::read(file);
-    // Binary STL holds floats: 6e-8 of 5 mm.
+    // Binary STL stores floats: relative error 6e-8 of 5 mm.
     EXPECT_NEAR(bore.mean_radius(), 5.1e-3, 4e-10) << file;
     for (std::size_t f = 0; f < 48; ++f)
       for (int k = 0; k < 3; ++k)
@@ -398,22 +398,22 @@ TEST(BoreChecks, RefusalsAreTyped) {
 }
 
 TEST(BoreChecks, VertexWithManyNeighboursIsFittedToAllOfThem) {
-  // The bottom of a cup: 150 faces meet there. Its curvature is the cup's all around; fitted to 60
-  // of the neighbours it would be that of an arc.
+  // At the bottom of a cup, 150 faces meet in one vertex. The curvature there must be the cup's in
+  // all directions; a fit to only 60 of the neighbours would see one arc of them.
   BoreOptions socket;
   socket.kind = SurfaceKind::socket;
   constexpr double radius = 8e-3;
   const BoreMesh cup(socket_triangles(radius, 1.4, 150, 12), socket);
   const WallPoint bottom = cup.closest_point({0, 0, -0.99 * radius});
-  // Rings of 0.145 rad: a fit of fourth order leaves the fourth power of two rings, 7e-3, times
-  // the coefficient of the sphere's sixth power over that of its second, 1/8.
+  // Rings at 0.145 rad. The error of a fit of fourth order is the fourth power of the radius of two
+  // rings, 7e-3, times the ratio 1/8 of the sphere's coefficients of sixth and second order.
   EXPECT_NEAR(std::abs(bottom.curvature_1) * radius, 1.0, 1e-3);
   EXPECT_NEAR(std::abs(bottom.curvature_2) * radius, 1.0, 1e-3);
   EXPECT_NEAR(bottom.curvature_1, bottom.curvature_2, 1e-6 / radius);
 }
 
 TEST(BoreChecks, TooCoarse) {
-  // Three to six facets around leave the polynomials open: they once returned depths of 1e7 m.
+  // Three to six facets around do not determine the polynomials: depths of 1e7 m once resulted.
   for (const int around : {3, 4, 5, 6})
     for (const int along : {1, 2, 4, 20}) {
       const std::string sentence = refusal(bore_triangles(round_bore(), around, along));
@@ -426,8 +426,8 @@ TEST(BoreChecks, TooCoarse) {
             "m, allowed is 0.000102 m, a fiftieth of the mean radius; a cylinder needs 16 around");
   for (const int around : {7, 8, 9, 12, 16})
     EXPECT_NO_THROW(BoreMesh(bore_triangles(round_bore(), around, 3))) << around;
-  // All neighbours of a cup's bottom lie beyond a crease and are taken nevertheless, each of 150
-  // from both of its faces: more than the 64 equations that fit on the stack.
+  // All neighbours of this cup's bottom lie beyond a crease and are used nevertheless, each of 150
+  // from both of its faces. That is more than the 64 equations that are stored on the stack.
   BoreOptions socket;
   socket.kind = SurfaceKind::socket;
   EXPECT_NE(refusal(socket_triangles(8e-3, 0.4, 150, 2), socket).find("too coarse"),

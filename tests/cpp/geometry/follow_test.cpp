@@ -17,28 +17,29 @@ using testing::Random;
 using testing::round_bore;
 using testing::Vector3d;
 
-constexpr double patch_angle = 2e-4;  // the plugin's default
+constexpr double patch_angle = 2e-4;  // default of the plugin
 
 struct Seen {
-  std::array<int, 3> how{};  ///< steps by Followed
-  int several = 0;           ///< steps with more than one contact
-  int begun = 0;             ///< contacts
-  int lost = 0;              ///< steps in which one of both finds a contact and not the other
+  std::array<int, 3> how{};  ///< numbers of steps by Followed
+  int several = 0;           ///< number of steps with more than one contact
+  int begun = 0;             ///< number of contacts that begin
+  /// number of steps in which only one of the two methods finds a contact
+  int lost = 0;
   double depth = 0, normal = 0, curvature = 0;  ///< largest differences: [m], [-], relative
 };
 
-/// Where a journal or ball is moved about.
+/// Path of a journal or ball.
 struct Walk {
   bool is_ball;
   double radius;   ///< [m]
-  Vector3d start;  ///< of the centre [m]
-  double height;   ///< [m], up and down from the start
+  Vector3d start;  ///< initial position of the centre [m]
+  double height;   ///< amplitude of the axial motion [m]
   int steps;
-  double tilt = 0;  ///< [rad] of the journal, to and fro
+  double tilt = 0;  ///< amplitude of the tilt of a journal [rad]
 };
 
-/// Moves at random speeds of 1e-9 to 1e-6 m per step, along the wall where that is 2 um deep, and
-/// compares what is followed with a search of the whole wall in every step.
+/// Moves at random speeds of 1e-9 to 1e-6 m per step, along the wall once the depth is 2 um, and
+/// compares the followed contacts with a search of the whole wall in every step.
 Seen compare(const BoreMesh& mesh, const Walk& walk) {
   Random random;
   Seen seen;
@@ -85,7 +86,7 @@ Seen compare(const BoreMesh& mesh, const Walk& walk) {
       seen.curvature =
           std::max(seen.curvature, std::abs(curvature - found[k].curvature) / curvature);
     }
-    // One that touches by less than the wall is known may be missing.
+    // A contact whose depth is below the uncertainty of the wall may be missing.
     const auto sure = std::count_if(expected.begin(), expected.end(), [&](const BoreContact& one) {
       return one.depth > mesh.prominence();
     });
@@ -98,14 +99,15 @@ Seen compare(const BoreMesh& mesh, const Walk& walk) {
       seen.how[0], seen.how[1], seen.how[2], seen.begun, seen.several, seen.depth, seen.normal,
       seen.curvature);
   EXPECT_EQ(seen.lost, 0);
-  // What the smooth wall itself is uncertain by.
+  // Uncertainty of the smooth wall.
   EXPECT_LT(seen.depth, mesh.prominence());
-  // A patch is left at this angle; what it leaves out of it is less.
+  // A patch is left at this angle, and its error is smaller.
   EXPECT_LT(seen.normal, patch_angle);
-  // Way on a patch, patch_angle / k, times the slope of k: at most a n^3 / R^3 of the lobes below,
-  // 2e4 /m^2, is 1e-4 of k; the wall turned along the axis adds less.
+  // Arc length on a patch, patch_angle / k, times the derivative of k. For the lobes used here the
+  // latter is at most a n^3 / R^3 = 2e4 /m^2, which gives 1e-4 of k; inclination to the axis adds
+  // less.
   EXPECT_LT(seen.curvature, 2e-4);
-  // Searches are few beside steps that a patch does not cover.
+  // Most steps are covered by a patch; few need a search.
   EXPECT_LT(seen.how[2], walk.steps / 10);
   return seen;
 }
@@ -162,14 +164,15 @@ TEST(FollowedContacts, BallInALobedBore) {
 }
 
 TEST(FollowedContacts, AxialMotionInACrownedBoreFollowsTheSag) {
-  // r = R + b (2 z/L)^2: a journal on a patch that moves by s along the axis finds the wall sunk by
-  // 1/2 k s^2 besides the slope, k = 8 b/L^2; that of third order vanishes.
+  // r = R + b (2 z/L)^2. When a journal moves by s along the axis, the wall recedes by its slope
+  // and by 1/2 k s^2, k = 8 b/L^2; there is no third-order term.
   BoreShape shape = round_bore();
   shape.crown = 1e-3;
   const BoreMesh mesh(bore_triangles(shape, 200, 40));
   const double k = 8 * shape.crown / (shape.length * shape.length);
   const Vector3d axis(0, 0, 1);
-  constexpr double small = 4e-3;  // a play that leaves 50 um to move on a patch
+  // journal radius with a play that allows a motion of 50 um on a patch
+  constexpr double small = 4e-3;
   for (const double z : {0.0, 1e-3}) {
     std::vector<double> track;
     std::vector<FollowedContact> found;
@@ -207,7 +210,7 @@ TEST(FollowedContacts, AJumpIsSearched) {
 }
 
 TEST(FollowedContacts, AWallThatIsNotFlatterThanTheJournalIsSearchedAnew) {
-  // Radius of curvature 4.8 mm in the middle of a lobe: a smaller journal rests there.
+  // Radius of curvature 4.8 mm at the middle of a lobe: a smaller journal touches there.
   const BoreMesh mesh(bore_triangles(lobed({{3, 4e-5, 0}}), 240, 10));
   std::vector<double> track;
   std::vector<FollowedContact> found;
@@ -216,7 +219,7 @@ TEST(FollowedContacts, AWallThatIsNotFlatterThanTheJournalIsSearchedAnew) {
     const Vector3d centre(bearing_radius + 4e-5 - radius + 1e-7, aside, 0);
     return follow_contacts(mesh, {centre, axis, radius}, patch_angle, track, found);
   };
-  // Both ways turn the normal by a few 1e-3.
+  // Both motions rotate the normal by a few 1e-3.
   const struct {
     double radius, aside;
     Followed how;
@@ -232,7 +235,7 @@ TEST(FollowedContacts, AWallThatIsNotFlatterThanTheJournalIsSearchedAnew) {
 }
 
 TEST(FollowedContacts, ALabelStaysWithItsPlaceWhenAnotherComesFirst) {
-  // Pressed towards a wide place the journal rests on both flanks; the deeper contact comes first.
+  // Towards a lobe's widest point, the journal touches both flanks; the deeper contact is first.
   const BoreMesh mesh(bore_triangles(lobed({{3, 4e-5, 0}}), 240, 10));
   std::vector<double> track;
   std::vector<FollowedContact> found;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mesh files from strangers: malformed ones as they once broke other readers. Each is refused with
-// its cause, for a bounded share of memory.
+// Untrusted mesh files: malformed ones that broke other readers. Each is rejected with its cause,
+// in bounded memory.
 #include "formats.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ void expect_refused(MeshFormat format, const std::string& prefix,
   }
 }
 
-/// Two triangles that share an edge, as binary STL; the shared vertices of the second are moved.
+/// Binary STL of two triangles with a common edge. `moved` shifts its vertices in the second one.
 std::string two_facets(float moved) {
   const float corners[2][4][3] = {{{0, 0, 1}, {0, 0, 0}, {5, 0, 0}, {0, 3, 0}},
                                   {{0, 0, 1}, {5 + moved, 0, 0}, {5, 3, 0}, {0, 3 + moved, 0}}};
@@ -56,13 +56,13 @@ std::string two_facets(float moved) {
 }
 
 TEST(MeshFormats, FloatsAreWeldedWithinTheirRounding) {
-  // A float near 5 has units in the last place of 4.8e-7; near 3 it has 2.4e-7.
+  // Unit in the last place of a float: 4.8e-7 near 5, 2.4e-7 near 3.
   const float unit = 4.8e-7F;
   const Triangles welded = parse_triangles(MeshFormat::stl, two_facets(unit), "mesh");
   EXPECT_EQ(welded.vertices.size(), 4U);
   const Triangles apart = parse_triangles(MeshFormat::stl, two_facets(10 * unit), "mesh");
   EXPECT_EQ(apart.vertices.size(), 6U);
-  // Texts of OFF and OBJ hold numbers of any precision.
+  // OFF and OBJ contain text with numbers of any precision.
   const Triangles exact = parse_triangles(
       MeshFormat::obj, "v 0 0 0\nv 5 0 0\nv 5.0000004 0 0\nv 0 3 0\nf 1 2 4\nf 1 3 4", "mesh");
   EXPECT_EQ(exact.vertices.size(), 4U);
@@ -119,7 +119,7 @@ TEST(MeshFormats, Off) {
                                          "+1 0 0\n\n1 1e0 0\n0 1 0\n0 0 -0\n"
                                          "4 0 1 2 3 255 0 0\n3 4 2 3",
                                          "mesh");
-  EXPECT_EQ(mesh.vertices.size(), 4u);  // the last is the first
+  EXPECT_EQ(mesh.vertices.size(), 4u);  // the last vertex equals the first
   const std::vector<std::array<int, 3>> faces{{0, 1, 2}, {0, 2, 3}, {0, 2, 3}};
   EXPECT_EQ(mesh.faces, faces);
   const std::string body = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
@@ -177,7 +177,7 @@ std::string binary_stl(std::uint32_t declared, int facets, const std::string& he
 }
 
 TEST(MeshFormats, Stl) {
-  // The word that text files begin with does not make a binary one a text.
+  // A binary file is not read as text, even if it begins with the word "solid".
   const Triangles mesh =
       parse_triangles(MeshFormat::stl, binary_stl(2, 2, "solid of a maker that does not care"), "");
   const std::vector<std::array<int, 3>> faces{{0, 1, 2}, {0, 1, 3}};
@@ -215,7 +215,7 @@ TEST(MeshFormats, Stl) {
 TEST(MeshFormats, FacetsOfStlMayHaveAttributes) {
   std::string content = binary_stl(2, 2);
   const std::size_t first_ends = 84 + 50;
-  content[first_ends - 2] = 3;  // a colour: the file is no longer for it
+  content[first_ends - 2] = 3;  // a colour: the file is not longer because of it
   EXPECT_EQ(parse_triangles(MeshFormat::stl, content, "mesh").faces.size(), 2U);
   content.insert(first_ends, "abc");
   EXPECT_EQ(parse_triangles(MeshFormat::stl, content, "mesh").faces.size(), 2U);
@@ -277,7 +277,7 @@ TEST(MeshFormats, Ply) {
   const std::vector<std::array<int, 3>> faces{{0, 1, 2}};
   EXPECT_EQ(parse_triangles(MeshFormat::ply, ply("ascii", elements("3", "1"), body), "").faces,
             faces);
-  // Faces first, an element and properties that are skipped, lines that end as on Windows.
+  // Faces first, an element and properties that are skipped, Windows line ends.
   std::string strange =
       ply("ascii",
           "element face 1\nproperty uchar red\nproperty list uint8 uint32 "
@@ -303,7 +303,7 @@ TEST(MeshFormats, Ply) {
     EXPECT_EQ(refusal(MeshFormat::ply, file + "x"),
               "not readable as PLY: it holds more than it declares");
   }
-  // Strips of triangles; every second one is turned round.
+  // Triangle strips; every second triangle is reversed.
   const std::string strips = "element vertex 5\n" + std::string(xyz) +
                              "element tristrips 1\nproperty list int int vertex_indices\n"
                              "element nothing 0\n";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Our polynomial through a vertex beside CGAL's jet fitting, the same method by its authors.
+// Compares the polynomial of a vertex with CGAL's jet fitting, the same method by its authors.
 #include <CGAL/Monge_via_jet_fitting.h>
 #include <CGAL/Simple_cartesian.h>
 
@@ -25,7 +25,7 @@ Curvatures ours(const std::vector<Vector3d>& points, const Vector3d& normal) {
   const Jet jet =
       fit_jet(points[0], normal, Vector3d::UnitZ(), {points.begin() + 1, points.end()}, 4);
   const JetHit hit = jet.hit(points[0], normal, 0);
-  // The tensor has no part along the normal: 0 between or beside the other two.
+  // The tensor has no component along the normal, so one eigenvalue is 0; skip it.
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(hit.bend);
   Eigen::Index along = 0;
   (solver.eigenvectors().transpose() * hit.normal).cwiseAbs().maxCoeff(&along);
@@ -71,8 +71,8 @@ TEST(JetFit, AgreesWithCgalsMongeViaJetFitting) {
     }
     apart *= bearing_radius;
     std::printf("%d around: principal curvatures differ by %.2g / R\n", around, apart);
-    // The fits weigh the neighbours differently, ours keeps the vertex: they differ by what both
-    // leave out, terms of the fifth order, h^3 in the curvature.
+    // The two fits weigh the neighbours differently, and ours passes through the vertex. They
+    // differ by the neglected terms of fifth order, which are h^3 in the curvature.
     if (last > 0) {
       EXPECT_LT(apart, last / 6);
     }
@@ -103,7 +103,7 @@ TEST(JetFit, CurvatureIsTheChangeOfTheNormal) {
       const auto after = at(du, dv), before = at(-du, -dv);
       const Vector3d way = (after.first - before.first) / (2 * step);
       const Vector3d turn = (after.second.normal - before.second.normal) / (2 * step);
-      // Central differences: step^2 times third derivatives of some tens, rounding by the step.
+      // Central differences: step^2 times third derivatives of order 10, plus rounding/step.
       EXPECT_NEAR((turn + at(0, 0).second.bend * way).norm(), 0, 2e-8) << i;
     }
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How well vertices on a known surface give that surface back.
+// Accuracy of the smooth wall for vertices on a known surface.
 #include <Eigen/Geometry>
 #include <functional>
 #include <thread>
@@ -23,7 +23,7 @@ struct Errors {
   double distance = 0, normal = 0, curvature = 0;
 };
 
-/// Largest errors over queries on both sides of a round bore's wall.
+/// Largest errors for queries on both sides of the wall of a round bore.
 Errors round_errors(const BoreMesh& mesh) {
   Errors errors;
   Random random;
@@ -61,7 +61,7 @@ TEST(SmoothWall, RoundBoreConvergesAsTheSixthPower) {
       const BoreMesh mesh(bore_triangles(round_bore(), around, along));
       const Errors errors = round_errors(mesh);
       print_row(around, along, errors, mesh.reconstruction_error());
-      // Below 1e-15 m rounding of 5 mm shows.
+      // Below 1e-15 m, rounding of 5 mm dominates.
       if (last > 64e-15) {
         EXPECT_LT(errors.distance, last / 50) << around;
       }
@@ -75,7 +75,7 @@ TEST(SmoothWall, RoundBoreConvergesAsTheSixthPower) {
   }
 }
 
-// Uneven meshes lose the cancellation of odd errors.
+// In uneven meshes, errors of odd order do not cancel.
 TEST(SmoothWall, UnevenMeshConvergesAtLeastAsTheFourthPower) {
   print_header("round bore, R = 5.1 mm, vertices shifted by up to a fifth of a face");
   double last = 0;
@@ -89,7 +89,7 @@ TEST(SmoothWall, UnevenMeshConvergesAtLeastAsTheFourthPower) {
     if (around == 200) {
       EXPECT_LT(errors.distance, 1e-10);
     }
-    // The estimate is of the right size.
+    // The estimate has the right order of magnitude.
     EXPECT_LT(errors.distance, 10 * mesh.reconstruction_error() + 1e-15);
     last = errors.distance;
   }
@@ -107,7 +107,7 @@ TEST(SmoothWall, LowerDegreesConvergeSlower) {
   }
 }
 
-// Radius, force: the depth of a journal against Hertz at the true depth.
+// Compares the contact force of a journal with Hertz's force at the true depth.
 TEST(SmoothWall, ForceAgainstDepthAt200Facets) {
   const BoreMesh mesh(bore_triangles(round_bore(), 200, 10));
   const auto pair = kernel::elastic_pair(70e9, 0.3, 70e9, 0.3);
@@ -128,8 +128,8 @@ TEST(SmoothWall, ForceAgainstDepthAt200Facets) {
       worst = std::max(worst, std::abs(force / exact - 1));
     }
   std::printf("force at 200 facets around, depth 1e-8 to 1e-6 m: largest error %.2e\n", worst);
-  // Curvature errs by 4e-7 of 1/R2, amplified by R2/c = 51 in the effective radius, halved by its
-  // root; depth by 2e-13 of 1e-8 m.
+  // The relative error of the curvature is 4e-7. The effective radius amplifies it by R2/c = 51 and
+  // its square root halves it. The depth error is 2e-13 of 1e-8 m.
   EXPECT_LT(worst, 1e-4);
 }
 
@@ -155,7 +155,7 @@ TEST(SmoothWall, TurnedAndShiftedMeshGivesTheSame) {
   }
 }
 
-// The foot on r = R + a cos(3 theta) by a fine search of our own.
+// Nearest point on r = R + a cos(3 theta), compared with a fine search in this test.
 TEST(SmoothWall, ClosestPointOnALobedBore) {
   BoreShape shape = round_bore();
   shape.lobes = {{3, 1e-5, 0.3}};
@@ -169,7 +169,8 @@ TEST(SmoothWall, ClosestPointOnALobedBore) {
       const double r = bore_radius(shape, theta, 0);
       return std::hypot(r * std::cos(theta) - query.x(), r * std::sin(theta) - query.y());
     };
-    double low = at - 0.6, high = at + 0.6;  // one minimum: the query is off the axis by 1 mm
+    // only one minimum, because the query is 1 mm off the axis
+    double low = at - 0.6, high = at + 0.6;
     for (int k = 0; k < 100; ++k) {
       const double third = (high - low) / 3;
       if (gap(low + third) < gap(high - third))
@@ -179,7 +180,7 @@ TEST(SmoothWall, ClosestPointOnALobedBore) {
     }
     const WallPoint wall = mesh.closest_point(query);
     EXPECT_NEAR(wall.distance, gap(low), 1e-11);
-    // The foot is that of a normal.
+    // The line to the nearest point is normal to the wall.
     EXPECT_NEAR(((query - wall.point).normalized() - wall.normal).norm(), 0, 1e-8);
   }
 }
@@ -198,7 +199,7 @@ TEST(SmoothWall, SectionRadii) {
   shape.wear_depth = 4e-6;
   shape.crown = 1e-5;
   const BoreMesh mesh(bore_triangles(shape, 240, 20));
-  // The fitted axis is moved by the wear; measured here from the true one.
+  // Wear shifts the fitted axis; radii are measured here from the true axis.
   for (const double z : {-4e-3, 0.0, 3.3e-3}) {
     const auto radii = mesh.section_radii(z, 64);
     for (int i = 0; i < 64; ++i) {
@@ -238,13 +239,13 @@ TEST(SmoothWall, QueriesFromTwoThreadsAgree) {
 }
 
 TEST(SmoothWall, SharpEdgesAlongTheBoreDoNotReachIntoItsSides) {
-  // Two arcs of radius R about (0, -d) and (0, d) meet in edges where the wall turns by
-  // 2 acos(d/R) less than half a turn, 74 degrees here. From the second row of facets on, the sides
-  // are the cylinders that they are on a mesh without edges.
+  // Two arcs of radius R about (0, -d) and (0, d) meet in edges where the normal rotates by half a
+  // turn minus 2 acos(d/R), 74 degrees here. From the second row of facets on, the sides must be
+  // the cylinders that a mesh without edges would give.
   constexpr double radius = 5e-3;
   constexpr double shift = 0.6 * radius;
-  const double edge = std::asin(shift / radius);  // half of the turn
-  constexpr int side = 60;                        // facets of an arc
+  const double edge = std::asin(shift / radius);  // half of that rotation
+  constexpr int side = 60;                        // facets per arc
   constexpr int along = 10;
   constexpr double length = 10e-3;
   Triangles mesh;
@@ -273,8 +274,8 @@ TEST(SmoothWall, SharpEdgesAlongTheBoreDoNotReachIntoItsSides) {
       const WallPoint found = bore.closest_point(on);
       worst = std::max(worst, std::abs(found.distance));
     }
-  // h^6 of a round bore with as many facets to the turn: 2 pi / facet = 195, 2e-13 m at 200; beside
-  // the edge the fit is one-sided, for which 1e-10 m is ample and an edge that is seen is not.
+  // A round bore with facets of this angle has 2 pi / facet = 195 around and an error of 2e-13 m.
+  // Beside the edge the fit is one-sided: 1e-10 m is ample, a fit across the edge exceeds it.
   EXPECT_LT(worst, 1e-10);
 }
 

@@ -14,14 +14,15 @@ namespace statejump::geometry::testing {
 using Eigen::Vector3d;
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double bearing_radius = 5.1e-3;  // [m], with journal_radius the joint of the paper
-constexpr double journal_radius = 5e-3;    // [m]
+// [m]; bearing_radius and journal_radius are those of the paper's joint
+constexpr double bearing_radius = 5.1e-3;
+constexpr double journal_radius = 5e-3;  // [m]
 
 inline BoreShape round_bore() {
   return {bearing_radius, 10e-3};
 }
 
-/// Uniform numbers with a fixed seed, the same on every system.
+/// Uniformly distributed numbers with a fixed seed, the same on every system.
 class Random {
  public:
   double uniform(double low, double high) {
@@ -32,7 +33,7 @@ class Random {
   std::mt19937 generator_{20210110};
 };
 
-/// The same shape with vertices at random places of the wall: rings shifted, spacing uneven.
+/// The same shape with vertices at irregular positions on the wall: rings shifted, spacing uneven.
 inline Triangles uneven_bore(const BoreShape& shape, int around, int along, double unevenness) {
   Triangles mesh = bore_triangles(shape, around, along);
   Random random;

@@ -27,7 +27,7 @@ using Eigen::Vector2d;
 constexpr auto rigid = TangentialCompliance::rigid;
 constexpr auto mindlin = TangentialCompliance::mindlin;
 
-/// A spring whose free angle is off the ideal flare angle loads the joint throughout.
+/// The torsion spring is stress-free off the ideal flare angle, so it always loads the joint.
 linkage::Linkage biased(double mu, double bias = 0.05, double stiffer = 1.0) {
   linkage::Linkage model = umbrella();
   model.law.friction = kernel::laws::friction_law(mu > 0.0 ? "mindlin" : "none");
@@ -39,7 +39,7 @@ linkage::Linkage biased(double mu, double bias = 0.05, double stiffer = 1.0) {
   return model;
 }
 
-/// Everything that a default hides: the other radius, expanding radii, unequal links.
+/// No default values that could hide errors: paper's radius, expanding radii, unequal links.
 linkage::Linkage expanding(double mu) {
   linkage::Linkage model = biased(mu, -0.05);
   model.law.normal = kernel::laws::normal_law("hertz_paper");
@@ -55,11 +55,11 @@ linkage::Linkage with_partial_slip(linkage::Linkage model) {
   return model;
 }
 
-// Angles of order 1 carry 1e-16 each, the closure 1e-16 m over links of 0.05 m.
+// Angles of order 1 have rounding errors of 1e-16, the closure 1e-16 m over links of 0.05 m.
 constexpr double angle_rounding = 1e-14;
 
-/// Virtual work at a point: the gradient of the potential, from energy(), by each tip coordinate
-/// equals F_t times that of the slide of the material at the contact. Largest difference [N].
+/// Virtual work at a point: for each tip coordinate, the gradient of the potential energy() equals
+/// F_t times the gradient of the material slide at the contact. Returns the largest difference [N].
 double out_of_balance(const linkage::Linkage& model, const ElasticJointPoint& point) {
   linkage::State at;
   at.bearing_centre = point.bearing_centre;
@@ -88,8 +88,9 @@ double out_of_balance(const linkage::Linkage& model, const ElasticJointPoint& po
       t + (r1 - half) * turn(at.journal_centre - Vector2d(model.frame_length, 0.0));
   double largest = 0.0;
   for (int i = 0; i < 4; ++i) {
-    // Central differences with h and 2h, δ = 1e-7 m. Truncation h^4/30 V'''''(δ^-2.5) is 1e-8 N;
-    // rounding, positions of 1e-17 m in forces of 1 N and 1e-19 J of the spring's energy, over h.
+    // Central differences with h and 2h, δ = 1e-7 m. Truncation error h^4/30 V'''''(δ^-2.5): 1e-8
+    // N. Rounding errors of positions, 1e-17 m, in forces of 1 N and of the spring energy, 1e-19 J,
+    // over h.
     const double h = 1e-9;
     const double gradient = (8.0 * (potential(i, h) - potential(i, -h)) -
                              (potential(i, 2.0 * h) - potential(i, -2.0 * h))) /
@@ -106,7 +107,7 @@ TEST(ElasticLoop, PointsAreEquilibriaByVirtualWork) {
       for (const ElasticJointPoint& point : loop.points) {
         EXPECT_GT(point.normal_force, 0.5);
         EXPECT_LT(out_of_balance(model, point), 1e-7);
-        // A single contact point makes the joint force parallel to AC, links elastic or not.
+        // With a single contact point the joint force is parallel to AC, also for elastic links.
         EXPECT_NEAR(std::atan2(point.tangential_force, point.normal_force), point.contact_angle,
                     1e-12);
         EXPECT_LE(std::abs(point.tangential_force),
@@ -114,7 +115,7 @@ TEST(ElasticLoop, PointsAreEquilibriaByVirtualWork) {
       }
       EXPECT_LT(loop.largest_force_residual, 1e-12);
       EXPECT_LT(loop.largest_closure_residual, 2.4e-16);
-      // 12 K per step; with a wrong entry in the Jacobian Newton's method turns linear.
+      // At 12 K per step. With a wrong Jacobian, Newton's method would only converge linearly.
       EXPECT_LE(loop.most_iterations, 6);
     }
   }
@@ -126,12 +127,13 @@ TEST(ElasticLoop, LoadedStateIsAtRestForTheDynamics) {
       const linkage::State state = loaded_state(model, phi);
       const linkage::Joint joint = joint_state(model, state, 0.0, 0.0);
       EXPECT_NEAR(std::atan2(state.contact.tangential_force.x(), joint.normal_force), phi, 1e-9);
-      EXPECT_EQ(state.impact_speed, model.law.smallest_impact_speed);  // long in contact
+      EXPECT_EQ(state.impact_speed, model.law.smallest_impact_speed);  // in contact for a long time
       model.axial_damping_ratio = 0.1;
       const thermal::Program hold = heating(0.02, 0.0);
       const linkage::State end = simulate(model, hold, state, {2000, 0}).samples.back().state;
-      // Positions rounded to 1e-17 m are off balance by k_T times that, 1e-10 N, which bends the
-      // softest spring, that of the contact's angle with some F/c = 1e4 N/m, by 1e-14 m.
+      // Rounding of positions, 1e-17 m times k_T, leaves an unbalanced force of 1e-10 N. It
+      // displaces the softest mode, rotation of the contact angle with about F/c = 1e4 N/m, by
+      // 1e-14 m.
       EXPECT_LT((end.bearing_centre - state.bearing_centre).norm(), 1e-13);
       EXPECT_LT((end.journal_centre - state.journal_centre).norm(), 1e-13);
       EXPECT_NEAR(end.contact.tangential_force.x(), state.contact.tangential_force.x(), 1e-6);
@@ -140,9 +142,9 @@ TEST(ElasticLoop, LoadedStateIsAtRestForTheDynamics) {
 }
 
 TEST(ElasticLoop, TendsToTheRigidLoop) {
-  // δ ~ E^(-2/3) and the elongation e ~ E^(-1), comparable at E: the distance D to the rigid loop
-  // is A s^(-2/3) (1 + B s^(-1/3)), |B| of the order of 1; allowed 1.5. A tenfold s divides D by
-  // 10^(2/3) (1 + B s^(-1/3))/(1 + B (10 s)^(-1/3)).
+  // δ ~ E^(-2/3), elongation e ~ E^(-1), comparable at E. The distance D to the rigid loop is then
+  // A s^(-2/3) (1 + B s^(-1/3)), with |B| of order 1; 1.5 is allowed. A tenfold stiffness s divides
+  // D by 10^(2/3) (1 + B s^(-1/3))/(1 + B (10 s)^(-1/3)).
   for (const double mu : {0.15, 0.3}) {
     const RigidLoop limit = rigid_loop(biased(mu), heating());
     const auto distance = [&](double stiffer) -> Eigen::Array3d {
@@ -178,9 +180,9 @@ TEST(ElasticLoop, EnoughFrictionLeavesNoJump) {
     EXPECT_NEAR(loop.theta4_jump(), 0.0, angle_rounding);
     EXPECT_EQ(loop.events.size(), 3u);
   }
-  // No drift: what it rolled is measured from where the roll began, not step by step.
+  // No drift: the rolled arc is measured from the start of rolling, not accumulated step by step.
   EXPECT_NEAR(elastic_loop(biased(0.6), heating(), {100000, rigid}).theta2_jump(), 0.0, 1e-15);
-  // The tangential spring leaves a little: on loading it keeps its force, on unloading its slide.
+  // The spring leaves a small jump: it keeps its force on loading, its slide on unloading.
   const ElasticLoop loop = elastic_loop(biased(0.6), heating(), {2000, mindlin});
   EXPECT_GT(std::abs(loop.theta2_jump()), 1e-10);
   EXPECT_LT(std::abs(loop.theta2_jump()), 1e-8);
@@ -201,7 +203,7 @@ double theta2_of(const linkage::State& state) {
 }
 
 TEST(ElasticLoop, JumpThatEndsInSlipIsThatBetweenTwoEquilibria) {
-  // In slip the state depends on ΔT alone: what came before, and how finely, does not matter.
+  // During slip the state depends on ΔT alone, not on the history or the number of steps.
   const linkage::Linkage model = biased(0.15);
   const double expected =
       theta2_of(loaded_state(model, -std::atan(0.15))) - theta2_of(loaded_state(model));
@@ -209,7 +211,7 @@ TEST(ElasticLoop, JumpThatEndsInSlipIsThatBetweenTwoEquilibria) {
     for (const int samples : {1, 100, 2000}) {
       const ElasticLoop loop = elastic_loop(model, heating(), {samples, compliance});
       EXPECT_NEAR(loop.theta2_jump(), expected, angle_rounding) << samples;
-      ASSERT_EQ(loop.events.size(), 5u);  // roll, slip, corner: roll, slip, end
+      ASSERT_EQ(loop.events.size(), 5u);  // roll, slip; at the corner roll, slip; end
       EXPECT_EQ(loop.events[1].motion, JointMotion::slip);
       EXPECT_EQ(loop.events[2].motion, JointMotion::roll);
       EXPECT_EQ(loop.events[3].motion, JointMotion::slip);
@@ -232,8 +234,8 @@ TEST(ElasticLoop, JumpThatEndsInSlipIsThatBetweenTwoEquilibria) {
 }
 
 TEST(ElasticLoop, StepsMayBeLongerThanTheRollBetweenTwoLimits) {
-  // At a corner the force stands at one limit, at the end of the step beyond the other. Cycles
-  // after the first repeat it: roll, slip, roll, slip, each event at its temperature.
+  // At a corner the tangential force is at one limit, after one step beyond the other. Cycles after
+  // the first repeat roll, slip, roll, slip, each event at the same temperature.
   constexpr int cycles = 20;
   for (const double mu : {0.002, 0.005, 0.01, 0.02, 0.05}) {
     for (const TangentialCompliance compliance : {rigid, mindlin}) {
@@ -245,7 +247,7 @@ TEST(ElasticLoop, StepsMayBeLongerThanTheRollBetweenTwoLimits) {
         const ElasticJointPoint& event = loop.events[i];
         EXPECT_EQ(event.slipping(), i % 2 == 1 || i == 4u * cycles);
         if (i < 8) continue;
-        // φ, good to 1e-14, turns by 4e-3 rad/K, F_t/F_N by as much: 1e-11 K.
+        // φ is accurate to 1e-14. φ and F_t/F_N change by 4e-3 per kelvin, so ΔT to 1e-11 K.
         EXPECT_NEAR(event.temperature_change, loop.events[i - 4].temperature_change, 1e-10);
       }
     }
@@ -253,13 +255,13 @@ TEST(ElasticLoop, StepsMayBeLongerThanTheRollBetweenTwoLimits) {
 }
 
 TEST(ElasticLoop, IncrementsAreOfSecondOrder) {
-  // It ends in a roll, so the whole path counts. Differences of successive halvings fall by 4; a
-  // last step before slip that is cut short changes one part in N, the steps up to slip.
+  // The cycle ends in a roll, so its whole path matters. Each halving of the step divides the error
+  // by 4. The shortened step before slip changes this ratio by 1/N for N steps up to slip.
   for (const TangentialCompliance compliance : {rigid, mindlin}) {
     Eigen::Array2d values[4];
     for (int i = 0; i < 4; ++i) {
       const ElasticLoop loop = elastic_loop(biased(0.3), heating(), {20 << i, compliance});
-      ASSERT_EQ(loop.events.size(), 4u);  // roll, slip, corner: roll, end
+      ASSERT_EQ(loop.events.size(), 4u);  // roll, slip; at the corner roll; end
       values[i] = {loop.theta2_jump(), loop.events[1].temperature_change};
     }
     for (int i = 0; i < 2; ++i) {
@@ -283,7 +285,7 @@ linkage::Linkage with_radii_at(const linkage::Linkage& model, double temperature
   return now;
 }
 
-/// k_t [N/m]: 1/G* = (2 - nu)/G of both bodies, G = E/2.6.
+/// Mindlin's k_t [N/m] with 1/G* = sum of (2 - nu)/G over both bodies, G = E/2.6.
 double contact_stiffness(const linkage::Linkage& model, const ElasticJointPoint& point) {
   const linkage::Linkage now = with_radii_at(model, point.temperature_change);
   const bool internal = has(model.law.normal, kernel::laws::Trait::accepts_bulging_wall);
@@ -293,7 +295,7 @@ double contact_stiffness(const linkage::Linkage& model, const ElasticJointPoint&
   return 8.0 / (2.6 * 1.7 * soft) * std::sqrt(radius * point.depth);
 }
 
-/// Plastic part of the slide between two close points [m].
+/// Plastic part of the slide between two adjacent points [m].
 double plastic_slide(const linkage::Linkage& model, const ElasticJointPoint& a,
                      const ElasticJointPoint& b, TangentialCompliance compliance) {
   const linkage::Linkage middle =
@@ -324,17 +326,17 @@ TEST(ElasticLoop, PartialSlipIsItsLawAlongThePath) {
                                                : plastic_slide(model, *before, point, rigid);
         const kernel::PartialSlipResponse answer = kernel::partial_slip_step(
             edge, model.friction_coefficient() * point.normal_force, {slide, 0.0}, memory);
-        // Where the closure is met, see above, the spring of all rings is, too.
+        // Tolerance: the closure residual times the stiffness of all annuli.
         EXPECT_NEAR(answer.force.a, -point.tangential_force, 2.4e-16 * edge);
         before = &point;
       }
-      EXPECT_LE(loop.most_iterations, 8);  // one step may meet several kinks of the law
+      EXPECT_LE(loop.most_iterations, 8);  // one step may cross several kinks of the law
     }
   }
 }
 
 TEST(ElasticLoop, IncrementsOfPartialSlipAreOfSecondOrder) {
-  // Slip is not located: within the increment in which it starts the path is a chord as elsewhere.
+  // The onset of slip is not located: the increment that contains it is a chord like any other.
   for (const double mu : {0.3, 0.45}) {
     const auto jump = [&](int samples) {
       return elastic_loop(with_partial_slip(biased(mu)), heating(), {samples, mindlin})
@@ -344,7 +346,7 @@ TEST(ElasticLoop, IncrementsOfPartialSlipAreOfSecondOrder) {
     for (const int samples : {10, 20}) {
       const double fine = jump(2 * samples) - limit;
       const double ratio = (jump(samples) - limit) / fine;
-      const double rounding = 5.0 * 2.3e-16 / std::abs(fine);  // one bit of each angle of order 1
+      const double rounding = 5.0 * 2.3e-16 / std::abs(fine);  // one bit of each angle, of order 1
       EXPECT_NEAR(ratio, 4.0, 4.0 / samples + rounding) << mu << ", " << samples;
       EXPECT_LT(rounding, 2.5);
     }
@@ -352,7 +354,7 @@ TEST(ElasticLoop, IncrementsOfPartialSlipAreOfSecondOrder) {
 }
 
 TEST(ElasticLoop, PartialSlipLeavesAJumpThoughNothingSlips) {
-  // The path of rigid bodies rolls and comes back; rings at the rim of the contact do not.
+  // The rigid bodies roll forth and back without loss; annuli at the rim of the contact slip.
   const linkage::Linkage model = with_partial_slip(biased(0.45));
   EXPECT_LT(std::abs(elastic_loop(biased(0.45), heating(), {400, rigid}).theta2_jump()), 1e-15);
   const ElasticLoop loop = elastic_loop(model, heating(), {400, mindlin});
@@ -360,8 +362,8 @@ TEST(ElasticLoop, PartialSlipLeavesAJumpThoughNothingSlips) {
   EXPECT_GT(std::abs(loop.theta2_jump()), 4e-8);
 }
 
-/// `model` with the expansion of BC at which a slip at φ turns round at 50 K, in the rigid limit:
-/// the joint then slips at the rate R1 dθ4/dΔT − R2 dθ2/dΔT.
+/// `model` with the expansion of BC for which slip at φ reverses at 50 K, in the rigid limit. The
+/// slip rate is R1 dθ4/dΔT − R2 dθ2/dΔT.
 linkage::Linkage turning_at_50_kelvin(linkage::Linkage model, double phi) {
   const linkage::Linkage middle = with_radii_at(model, 50.0);
   const auto turns = [&](double heat) {
@@ -374,7 +376,7 @@ linkage::Linkage turning_at_50_kelvin(linkage::Linkage model, double phi) {
     const double expansion = 0.5 * (low + high);
     model.link_bc.thermal_expansion = expansion * alpha;
     const double slope =
-        8.0 * (turns(51.0) - turns(49.0)) - (turns(52.0) - turns(48.0));  // of fourth order
+        8.0 * (turns(51.0) - turns(49.0)) - (turns(52.0) - turns(48.0));  // fourth-order difference
     (slope > 0.0 ? low : high) = expansion;
   }
   return model;
@@ -400,8 +402,8 @@ TEST(ElasticLoop, SlipMayEndWithinABranch) {
       const double end = loop.events[1].temperature_change;
       const int last = static_cast<int>(end) - 1;
       ASSERT_EQ(loop.points[last].temperature_change, last);
-      // ΔT by rate of plastic slide, a parabola through three steps, at rate zero. Radii change the
-      // rate's slope by their α ΔT of R/c = 50, some 1e-3 per kelvin: the third order is 1e-4 K.
+      // Extrapolates ΔT at zero rate of plastic slide, by a parabola through three steps. The
+      // changing radii change its slope by α ΔT R/c, 1e-3 per kelvin: third-order error 1e-4 K.
       Eigen::Matrix3d powers;
       Eigen::Vector3d heats;
       for (int i = 0; i < 3; ++i) {
@@ -415,10 +417,10 @@ TEST(ElasticLoop, SlipMayEndWithinABranch) {
       const double expected = powers.partialPivLu().solve(heats)[0];
       std::printf("slip ends at %.9f K, from the slide %.9f K\n", end, expected);
       EXPECT_NEAR(end, expected, 2e-4);
-      // A root of the rate, not of increments: rounding alone, 1e-18 m/K by 1e-12 m/K².
+      // A root of the rate, not of increments: only rounding, 1e-18 m/K by 1e-12 m/K².
       EXPECT_NEAR(run(model, 7, compliance).events[1].temperature_change, end, 1e-5);
     }
-    // δ/c = 1e-7 against a slope that changes by α ΔT = 1e-3 in 50 K: 5e-3 K if nothing cancels.
+    // δ/c = 1e-7 relative to a slope change of α ΔT = 1e-3 over 50 K: 5e-3 K if nothing cancels.
     linkage::Linkage stiff = model;
     stiff.link_ab.young_modulus *= 1e6;
     stiff.link_bc.young_modulus *= 1e6;
@@ -427,9 +429,9 @@ TEST(ElasticLoop, SlipMayEndWithinABranch) {
 }
 
 TEST(ElasticLoop, SeparatesWhereTheForceVanishes) {
-  // Without force nothing is deformed: the rigid closed form holds. F_N falls by
-  // K_M d(α)/dΔT / height, about 5e-3 N/K, so the smallest resolved force, 7e-12 N, is reached
-  // 2e-9 K early; twice that is allowed, and 1e-10 K of rounding.
+  // Without force nothing is deformed, so the rigid closed form holds. F_N decreases by
+  // K_M d(α)/dΔT / height, about 5e-3 N/K. The smallest resolved force, 7e-12 N, is thus reached
+  // 2e-9 K early; twice that is allowed, plus 1e-10 K for rounding.
   const double bias = 4e-3;
   const RigidLoop limit = rigid_loop(biased(0.0, bias), heating(1.0, -100.0));
   const ElasticLoop loop = elastic_loop(biased(0.0, bias), heating(1.0, -100.0));
@@ -440,8 +442,8 @@ TEST(ElasticLoop, SeparatesWhereTheForceVanishes) {
   EXPECT_NEAR(loop.points.back().temperature_change, limit.points.back().temperature_change,
               2.0 * loop.points.back().normal_force / slope + 1e-10);
   EXPECT_LT(loop.points.back().normal_force, 1e-11);
-  // While it slips, too: no spurious end of slip where the force fades, whatever the step. Newton's
-  // method gives up some times earlier there than the smallest force: ten times is allowed.
+  // The same during slip: no spurious end of slip where the force vanishes, for any step size.
+  // There Newton's method may fail somewhat before the smallest force: a factor of ten is allowed.
   for (const double mu : {0.005, 0.05}) {
     const RigidLoop slips = rigid_loop(biased(mu, bias), heating(1.0, -100.0));
     for (const int samples : {3, 200}) {
@@ -452,8 +454,7 @@ TEST(ElasticLoop, SeparatesWhereTheForceVanishes) {
                   2e-8);
     }
   }
-  // With more friction it rolls there; the slide over the depth, δ/c = 2.5e-4 of the angle,
-  // differs.
+  // With more friction the joint rolls there. Depth causes a difference δ/c = 2.5e-4 of the angle.
   for (const TangentialCompliance compliance : {rigid, mindlin}) {
     const RigidLoop rolls = rigid_loop(biased(0.6, bias), heating(1.0, -100.0));
     const ElasticLoop rolling =
@@ -466,9 +467,9 @@ TEST(ElasticLoop, SeparatesWhereTheForceVanishes) {
 }
 
 TEST(ElasticLoop, SlowDampedDynamicsTendsToIt) {
-  // Velocities vanish as 1/T: the error is A/T + B/T^2 + ... B/T is taken to be to A no more than
-  // A/T is to the jump: the lag behind the path, twice over. (Not so where the static path comes
-  // near to the limit without slipping: there the dynamics slips or not.)
+  // Velocities vanish as 1/T, so the error is A/T + B/T^2 + ... The test assumes that B/T relative
+  // to A is at most A/T relative to the jump, i.e. a lag of second order. (This fails if the static
+  // path comes close to the friction limit without slipping: the dynamics may slip there.)
   for (linkage::Linkage model :
        {biased(0.15), biased(0.3), expanding(0.2), with_partial_slip(biased(0.3))}) {
     model.axial_damping_ratio = 0.1;
@@ -482,7 +483,7 @@ TEST(ElasticLoop, SlowDampedDynamicsTendsToIt) {
       const double duration = 4 << i;
       const linkage::Run run =
           simulate(model, heating(duration), start, {static_cast<int>(duration / 4e-5), 0});
-      EXPECT_EQ(run.contacts, 0);  // never left
+      EXPECT_EQ(run.contacts, 0);  // the contact never opened
       error[i] = theta2_of(run.samples.back().state) - theta2_of(start) - jump;
     }
     std::printf(
@@ -492,7 +493,7 @@ TEST(ElasticLoop, SlowDampedDynamicsTendsToIt) {
         2.0 * error[2] - error[1]);
     EXPECT_NEAR(error[0] / error[1], 2.0, 2.0 * std::abs(error[0] / jump));
     EXPECT_NEAR(error[1] / error[2], 2.0, 2.0 * std::abs(error[1] / jump));
-    // Without the leading term. Where the cycle ends in a roll that tells the compliances apart.
+    // Error without the leading term. After a final roll it distinguishes the compliances.
     const double rest = error[1] * error[1] / std::abs(jump);
     EXPECT_LT(std::abs(2.0 * error[2] - error[1]), rest);
     if (loop.events.back().motion == JointMotion::roll) {
@@ -504,8 +505,8 @@ TEST(ElasticLoop, SlowDampedDynamicsTendsToIt) {
 }
 
 TEST(ElasticLoop, SlowDampedDynamicsCreepsAsMuchWithPartialSlip) {
-  // Without slip nothing lags behind the limit of friction: the error is A/T^2 + B/T^3 + ...; what
-  // Richardson's extrapolation leaves is less than a quarter of the last error where B/T is.
+  // Without gross slip nothing lags behind the friction limit: the error is A/T^2 + B/T^3 + ...
+  // Richardson extrapolation leaves less than a quarter of the last error, the B term.
   linkage::Linkage model = with_partial_slip(biased(0.4));
   model.axial_damping_ratio = 0.1;
   model.pin_damping = 0.1;
@@ -547,7 +548,7 @@ TEST(ElasticLoop, RefusesWhatItCannotAnswer) {
   model = biased(0.1);
   model.journal_thermal_expansion = 1e-3;  // 0.5 mm in 100 K
   expect_refused(model, heating(), 0.0, "radial clearance = -");
-  // A spring that would crush the links: not a wrong number.
+  // A spring that would crush the links must be rejected, not give a wrong number.
   model = biased(0.1);
   model.torsion_stiffness = 1e9;
   try {

@@ -29,12 +29,12 @@ TEST(ContactLaw, PressesTheBodiesApart) {
   ContactHistory history;
   const ContactResponse response =
       hertz_mindlin(aluminium(0.3), kinematics(1e-6, Vector3::Zero()), history);
-  // K delta^1.5 with K = 25896166508.62 N/m^1.5; two roundings in R
+  // K delta^1.5 with K = 25896166508.62 N/m^1.5; tolerance for two roundings in R
   EXPECT_NEAR(response.normal_force, 25.89616650862071, 1e-13 * 26);
   EXPECT_EQ(response.elastic_normal_force, response.normal_force);
   EXPECT_NEAR(response.normal_stiffness, 1.5 * response.normal_force / 1e-6, 1e-7);
   EXPECT_NEAR(response.normal_elastic_energy, 0.4 * response.normal_force * 1e-6, 1e-19);
-  // k_t / k_n = 4 G*/E* for any depth
+  // k_t / k_n = 4 G*/E* at any depth
   EXPECT_NEAR(response.tangential_stiffness / response.normal_stiffness,
               4.0 * 7918552036.199095 / 38461538461.53846, 1e-14);
   EXPECT_EQ(response.force_on_1, Vector3(-response.normal_force, 0, 0));
@@ -90,8 +90,8 @@ TEST(ContactLaw, FrictionOpposesTangentialVelocity) {
                      "sum");
 }
 
-// Damping: c = 2 zeta sqrt(m k); the normal force is clipped at zero, and Coulomb's limit is that
-// of the clipped total.
+// Damping coefficient c = 2 zeta sqrt(m k). The normal force is clipped at zero, and the clipped
+// total determines the Coulomb limit.
 TEST(ContactLaw, NormalDamping) {
   ContactParameters parameters = aluminium(0.3);
   parameters.normal_damping_ratio = 0.1;
@@ -104,7 +104,7 @@ TEST(ContactLaw, NormalDamping) {
   EXPECT_NEAR(response.damping_dissipation, damping * 1e-6 * 1e-3, 1e-18);
   EXPECT_NEAR(response.tangential_force.norm(), 0.3 * response.normal_force, 1e-13);
   EXPECT_EQ(response.elastic_normal_force, state.force);
-  // pulled apart fast: no adhesion, so no friction
+  // pulled apart fast: no adhesion, hence no friction
   response = hertz_mindlin(parameters, kinematics(1e-6, Vector3(-10, 1, 0), 1e-3), history);
   EXPECT_EQ(response.normal_force, 0.0);
   EXPECT_EQ(response.tangential_force, Vector3(Vector3::Zero()));
@@ -125,14 +125,14 @@ TEST(ContactLaw, TangentialDamping) {
   const double damping = 0.4 * std::sqrt(0.2 * response.tangential_stiffness);
   EXPECT_NEAR(response.tangential_force.y(), spring.tangential_force.y() - damping * speed, 1e-14);
   EXPECT_NEAR(response.damping_dissipation, damping * speed * speed * 1e-6, 1e-20);
-  // The history holds the spring alone.
+  // The history stores only the spring force.
   EXPECT_EQ(history.tangential_force, undamped_history.tangential_force);
-  // Fast but still sticking: the sum is held at Coulomb's limit, what is left still dissipates.
+  // Fast but sticking: the sum is limited to the Coulomb limit; the rest still dissipates.
   response = hertz_mindlin(parameters, kinematics(1e-6, Vector3(0, 0.2, 0.1)), history);
   EXPECT_FALSE(history.slipping);
   EXPECT_NEAR(response.tangential_force.norm(), 0.3 * response.normal_force, 1e-13);
   EXPECT_GT(response.damping_dissipation, 0.0);
-  // A contact that carries hardly anything is damped as well.
+  // A lightly loaded contact is damped as well.
   ContactHistory light;
   response = hertz_mindlin(parameters, kinematics(1e-8, Vector3(0, speed, 0)), light);
   EXPECT_LT(0.3 * response.normal_force, 0.01);
@@ -144,7 +144,7 @@ TEST(ContactLaw, TangentialDamping) {
   EXPECT_EQ(response.damping_dissipation, 0.0);
 }
 
-// Random loading with everything on: limits and signs hold at every step.
+// Random loading with all features active: limits and signs hold in every step.
 TEST(ContactLaw, InvariantsUnderRandomLoading) {
   Random random;
   ContactParameters parameters = aluminium(0.3);
@@ -171,7 +171,7 @@ TEST(ContactLaw, InvariantsUnderRandomLoading) {
   EXPECT_GT(clipped, 10);
 }
 
-// Turn the world and the answer turns with it.
+// The response to rotated input is the rotated response.
 TEST(ContactLaw, RotationInvariance) {
   Random random;
   ContactParameters parameters = aluminium(0.3);
@@ -210,12 +210,12 @@ TEST(ContactLaw, WrenchBalances) {
     expect_vector_near(wrench.torque_1, (point - centre_1).cross(force), 1e-13, "torque 1");
     const Vector3 moment = centre_1.cross(wrench.force_1) + wrench.torque_1 +
                            centre_2.cross(wrench.force_2) + wrench.torque_2;
-    EXPECT_LE(moment.norm(), 1e-13 * force.norm()) << i;  // some ten roundings of |r||F| < 2|F|
+    EXPECT_LE(moment.norm(), 1e-13 * force.norm()) << i;  // about ten roundings of |r||F| < 2|F|
   }
 }
 
-// A mass between this contact and a constant load, in leapfrog, slightly off balance. The small
-// oscillation decays by exp(-2 pi zeta/sqrt(1 - zeta^2)) per period.
+// Leapfrog of a mass under a constant load on this contact, slightly off balance. The small
+// oscillation must decay by exp(-2 pi zeta/sqrt(1 - zeta^2)) per period.
 TEST(ContactLaw, DampingRatioOfASmallOscillation) {
   ContactParameters parameters = aluminium(0.0);
   parameters.normal_damping_ratio = 0.05;
@@ -238,7 +238,7 @@ TEST(ContactLaw, DampingRatioOfASmallOscillation) {
     if (previous > before && previous >= depth) {
       const double peak = previous - 1e-6;
       const double expected = std::exp(-2 * testing::pi * 0.05 / std::sqrt(1 - 0.0025));
-      // lagged velocity changes zeta by omega dt/2 = 0.005 in relative terms zeta: 1 %
+      // the lagged velocity changes zeta by the fraction omega dt/2 = 0.005; 1 % is allowed
       EXPECT_NEAR(peak / last_peak, expected, 0.01 * expected);
       last_peak = peak;
       ++peaks;
@@ -247,8 +247,7 @@ TEST(ContactLaw, DampingRatioOfASmallOscillation) {
   EXPECT_GE(peaks, 5);
 }
 
-// Leapfrog with the lagged damping force stays bounded just below the step and runs away just
-// above.
+// Leapfrog with a lagged damping force is bounded below the critical step, diverges above it.
 TEST(ContactLaw, CriticalTimeStepIsTheStabilityLimit) {
   const double mass = 0.3;
   for (const double stiffness : {0.0, 2e5, 4e7}) {
@@ -258,8 +257,8 @@ TEST(ContactLaw, CriticalTimeStepIsTheStabilityLimit) {
         EXPECT_EQ(critical, std::numeric_limits<double>::infinity());
         continue;
       }
-      // The slowest runaway is that of the dashpot alone, 1.02^1000 = 4e8; below, a ringing of
-      // amplitude 1/sqrt(1 - 0.99^2) = 7 at most.
+      // Slowest divergence: the dashpot alone, 1.02^1000 = 4e8. Below the critical step the
+      // oscillation has an amplitude of at most 1/sqrt(1 - 0.99^2) = 7.
       for (const double factor : {0.99, 1.01}) {
         const double dt = factor * critical;
         double x = 1.0;

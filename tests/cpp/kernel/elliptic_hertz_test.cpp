@@ -12,8 +12,8 @@ namespace {
 
 using testing::pi;
 
-/// Complete elliptic integrals of the modulus k, b/a = k', by the arithmetic-geometric mean
-/// (Abramowitz and Stegun 17.6): another way than Boost's, in long double.
+/// Complete elliptic integrals of modulus k, b/a = k', by the arithmetic-geometric mean (Abramowitz
+/// and Stegun 17.6) in long double: independent of Boost's algorithm.
 struct Agm {
   long double k, e;
   explicit Agm(long double complement) {
@@ -36,7 +36,7 @@ struct Reference {
   double axes, long_axis, stiffness;
 };
 
-/// Johnson's eqs 4.26 to 4.28 as printed, bisected.
+/// Johnson's eqs 4.26 to 4.28 as printed, solved by bisection.
 Reference reference(long double larger, long double smaller) {
   long double low = 1e-9L, high = 1 - 1e-9L;
   for (int i = 0; i < 200; ++i) {
@@ -58,7 +58,7 @@ TEST(EllipticHertz, AgreesWithJohnsonByArithmeticGeometricMean) {
     const double larger = 3.9;
     const EllipticShape shape = elliptic_shape({larger, larger / ratio, 0});
     const Reference expected = reference(larger, static_cast<long double>(larger / ratio));
-    // The reference cancels near the circle: K - E is 1e-2 of K at 1.01, which leaves 1e-16.
+    // Near the circle the reference loses digits: K - E is 1e-2 of K at ratio 1.01: 1e-16.
     EXPECT_NEAR(shape.short_axis / shape.long_axis, expected.axes, 1e-12 * expected.axes);
     EXPECT_NEAR(shape.long_axis, expected.long_axis, 1e-12 * expected.long_axis);
     EXPECT_NEAR(shape.stiffness, expected.stiffness, 1e-12 * expected.stiffness);
@@ -66,9 +66,9 @@ TEST(EllipticHertz, AgreesWithJohnsonByArithmeticGeometricMean) {
 }
 
 // Timoshenko and Goodier, Theory of Elasticity, section 140: a = m (3F/(4 E* (A + B)))^(1/3), b
-// with n, cos(theta) = (B - A)/(A + B), A + B = (larger + smaller)/2. Printed with three decimals,
-// the last of which is up to 2 off: at 70 degrees n = 0.802 for 0.7999, which the
-// arithmetic-geometric mean above confirms.
+// with n, cos(theta) = (B - A)/(A + B), A + B = (larger + smaller)/2. The printed third decimal is
+// off by up to 2: at 70 degrees n is printed as 0.802, but is 0.7999, which the
+// arithmetic-geometric mean confirms.
 TEST(EllipticHertz, TableOfTimoshenkoAndGoodier) {
   const double table[][3] = {{30, 2.731, 0.493}, {40, 2.136, 0.567}, {50, 1.754, 0.641},
                              {60, 1.486, 0.717}, {70, 1.284, 0.802}, {80, 1.128, 0.893},
@@ -92,7 +92,7 @@ TEST(EllipticHertz, CircleIsHertz) {
       for (const double depth : {1e-9, 1e-6, 1e-4}) {
         const EllipticHertzState state = elliptic_hertz(3.8e10, shape, depth);
         const HertzState circle = hertz(3.8e10, radius, depth);
-        // The circle of the mean curvature: off by a quarter of the ratio to first order.
+        // Circle of the mean curvature: to first order the difference is a quarter of the ratio.
         const double tolerance = 1e-12 + off;
         EXPECT_NEAR(state.force, circle.force, tolerance * circle.force);
         EXPECT_NEAR(state.stiffness, circle.stiffness, tolerance * circle.stiffness);
@@ -103,7 +103,7 @@ TEST(EllipticHertz, CircleIsHertz) {
     }
 }
 
-// Where the series takes over from the root finder nothing may jump.
+// The result is continuous where the series replaces the root finder.
 TEST(EllipticHertz, SeriesAndRootFinderMeet) {
   const EllipticShape below = elliptic_shape({1.0, std::exp(-0.99999e-7), 0});
   const EllipticShape above = elliptic_shape({1.0, std::exp(-1.00001e-7), 0});
@@ -131,7 +131,7 @@ TEST(EllipticHertz, StiffnessIsTheDerivativeAndEnergyTheIntegral) {
   }
 }
 
-// A flatter direction makes the contact stiffer, longer and never narrower in force.
+// A smaller second curvature makes the contact stiffer and more elongated.
 TEST(EllipticHertz, MonotonicInTheRatio) {
   EllipticShape last = elliptic_shape({1.0, 1.0, 0});
   for (double ratio = 1.3; ratio < largest_curvature_ratio; ratio *= 1.3) {
@@ -144,7 +144,7 @@ TEST(EllipticHertz, MonotonicInTheRatio) {
 }
 
 TEST(EllipticHertz, RelativeCurvatures) {
-  // A journal in a bore, parallel: line contact. Turned by a right angle: 1/R1 and -1/R2.
+  // Journal in a bore, parallel axes: line contact. At a right angle: 1/R1 and -1/R2.
   const RelativeCurvature line = relative_curvature(200, 0, -196, 0, 0);
   EXPECT_DOUBLE_EQ(line.larger, 4);
   EXPECT_DOUBLE_EQ(line.smaller, 0);
@@ -152,7 +152,7 @@ TEST(EllipticHertz, RelativeCurvatures) {
   const RelativeCurvature crossed = relative_curvature(200, 0, -196, 0, pi / 2);
   EXPECT_DOUBLE_EQ(crossed.larger, 200);
   EXPECT_DOUBLE_EQ(crossed.smaller, -196);
-  // Against the eigenvalues of the summed curvature tensors.
+  // Compare with the eigenvalues of the sum of the curvature tensors.
   testing::Random random;
   for (int i = 0; i < 200; ++i) {
     const double k[4] = {random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9),

@@ -15,24 +15,24 @@ using testing::pi;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-// A dozen roundings of 1.1e-16 each separate two ways to evaluate one product formula.
+// Two ways to evaluate one product formula differ by about ten roundings of 1.1e-16.
 constexpr double rounding = 2e-15;
 
-// Paper, Table 2 with R1 = 5 mm and c = 0.1 mm. Digits: 40-digit arithmetic, rounded to double.
+// Paper, Table 2 with R1 = 5 mm and c = 0.1 mm. Expected values in 40-digit arithmetic.
 TEST(Hertz, PaperTable2Stiffness) {
   const ElasticPair pair = elastic_pair(70e9, 0.3, 70e9, 0.3);
   EXPECT_NEAR(pair.effective_young_modulus, 38461538461.538461538, rounding * 3.9e10);
   EXPECT_NEAR(pair.effective_shear_modulus, 7918552036.1990950226, rounding * 8e9);
-  // R2 - R1 of two rounded radii: 5.1e-3 carries 4e-19 m, relative to c = 1e-4 m that is 4e-15, and
-  // K has half of it.
+  // R2 - R1 is the difference of two rounded radii: 4e-19 m in 5.1e-3, 4e-15 relative to c = 1e-4
+  // m. K has half of this error.
   EXPECT_NEAR(internal_effective_radius(5e-3, 5.1e-3), 0.255, 1e-14 * 0.255);
   EXPECT_NEAR(
       hertz_stiffness(pair.effective_young_modulus, internal_effective_radius(5e-3, 5.1e-3)),
       25896166508.620712701, 1e-14 * 2.6e10);
 }
 
-// Unlike materials, R = 12.3 mm, delta = 3.7 um. Digits: 40-digit arithmetic; stiffness there by
-// differentiating, energy by integrating K delta^1.5.
+// Different materials, R = 12.3 mm, delta = 3.7 um. Expected values: 40-digit arithmetic; stiffness
+// as the derivative, energy as the integral of K delta^1.5.
 TEST(Hertz, UnlikeMaterialsAgainstHighPrecision) {
   const ElasticPair pair = elastic_pair(70e9, 0.3, 210e9, 0.28);
   const HertzState state = hertz(pair.effective_young_modulus, 0.0123, 3.7e-6);
@@ -48,10 +48,10 @@ TEST(Hertz, UnlikeMaterialsAgainstHighPrecision) {
               state.force, rounding * 61);
 }
 
-// The other way round: start from Hertz's pressure p0 sqrt(1 - r^2/a^2), integrate it for the
-// force, and Boussinesq's point load 1/(pi E*) 1/r over it for the surface displacements at the
-// centre and at the edge. Their difference is the parabola that was flattened, a^2/(2R); the
-// displacement at the centre is delta.
+// Independent derivation from Hertz's pressure p0 sqrt(1 - r^2/a^2). Its integral is the force.
+// Boussinesq's point load, 1/(pi E*) 1/r, integrated over it gives the surface displacements at the
+// centre and at the edge. Their difference is the flattened parabola a^2/(2R); the displacement at
+// the centre is delta.
 TEST(Hertz, FollowsFromPressureAndBoussinesq) {
   const double young = 5.7e10;
   const double p0 = 8.3e8;
@@ -68,7 +68,7 @@ TEST(Hertz, FollowsFromPressureAndBoussinesq) {
     centre += 2.0 / young * p * dr;  // 1/(pi E*) p/r 2 pi r dr
   }
   double edge = 0.0;
-  for (int i = 0; i < n; ++i) {  // chords through an edge point, angle phi to the inward radius
+  for (int i = 0; i < n; ++i) {  // chords through an edge point at angle phi to the inward radius
     const double phi = -0.5 * pi + (i + 0.5) * pi / n;
     const double chord = 2.0 * a * std::cos(phi);
     for (int j = 0; j < n; ++j) {  // s = L (1 - cos(psi))/2, p = p0/a sqrt(s (L - s))
@@ -80,14 +80,14 @@ TEST(Hertz, FollowsFromPressureAndBoussinesq) {
   }
   const double radius = a * a / (2.0 * (centre - edge));
   const HertzState state = hertz(young, radius, centre);
-  // Periodic integrands (centre, edge) are exact; the force integral has the midpoint error
-  // (pi/2/n)^2/24 * [f'] / integral = 6.4e-7 * 3.
+  // The midpoint rule is exact for the periodic integrands (centre, edge). The error of the force
+  // is (pi/2/n)^2/24 * [f'] / integral = 6.4e-7 * 3.
   EXPECT_NEAR(state.force, force, 3e-6 * force);
   EXPECT_NEAR(state.contact_radius, a, 1e-12 * a);
 }
 
-// Cerruti's tangential point load integrated over the no-slip traction q0/sqrt(1 - r^2/a^2), body
-// by body, against k_t = 8 G* a for unlike bodies.
+// Cerruti's tangential point load, integrated over the no-slip traction q0/sqrt(1 - r^2/a^2) for
+// each body, must give k_t = 8 G* a, also for different materials.
 TEST(Hertz, MindlinStiffnessFollowsFromCerruti) {
   const double a = 3e-4;
   const double q0 = 1e7;
@@ -107,7 +107,7 @@ TEST(Hertz, MindlinStiffnessFollowsFromCerruti) {
   }
   const double force = 2.0 * pi * a * a * q0;
   const double shear_modulus = elastic_pair(e[0], nu[0], e[1], nu[1]).effective_shear_modulus;
-  // cos^2 is integrated exactly by the periodic midpoint rule; 64 additions leave rounding
+  // The periodic midpoint rule integrates cos^2 exactly; tolerance for rounding of 64 additions.
   EXPECT_NEAR(mindlin_stiffness(shear_modulus, a), force / displacement,
               1e-13 * force / displacement);
 }
@@ -148,7 +148,7 @@ TEST(Hertz, GrowsWithDepthAndIsZeroInAGap) {
 TEST(Hertz, LimitsOfTheEffectiveRadius) {
   EXPECT_EQ(internal_effective_radius(5e-3, infinity), 5e-3);
   EXPECT_NEAR(internal_effective_radius(5e-3, 5e6), 5e-3, 2e-9 * 5e-3);  // 1 + R1/R2
-  // A wall that bulges: two balls outside each other, R1 R2/(R1 + R2).
+  // A wall that bulges towards the journal is the external contact of two balls, R1 R2/(R1 + R2).
   EXPECT_NEAR(internal_effective_radius(1e-3, -3e-3), 0.75e-3, 1e-14 * 0.75e-3);
   EXPECT_THROW(internal_effective_radius(5e-3, 5e-3), std::invalid_argument);
   EXPECT_THROW(internal_effective_radius(5e-3, 4e-3), std::invalid_argument);
@@ -173,7 +173,7 @@ TEST(Hertz, ElasticPairRefusesBadMaterials) {
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(error.what(), "young_modulus_2 = -1.5, allowed is (0, inf] Pa");
   }
-  // Against a rigid body only the elastic one yields: E* = E/(1 - nu^2), twice that of a pair.
+  // Against a rigid body only one body deforms: E* = E/(1 - nu^2), twice that of an equal pair.
   EXPECT_NEAR(elastic_pair(70e9, 0.3, infinity, 0.3).effective_young_modulus, 70e9 / 0.91,
               rounding * 77e9);
 }

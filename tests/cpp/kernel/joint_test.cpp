@@ -25,16 +25,16 @@ BodyMotion at(const Vector3& position, const Vector3& velocity = Vector3::Zero()
 }
 
 TEST(Revolute, DepthNormalAndOnePoint) {
-  // 3-4-5: |d| = 0.11 mm, so delta = 0.01 mm; axial offset 2 mm
+  // (3, 4) has length 5: |d| = 0.11 mm, so delta = 0.01 mm; axial offset 2 mm
   const BodyMotion journal = at(Vector3(1.066, 2.088, 5.0) * 1e-3);
   const BodyMotion bearing = at(Vector3(1.0, 2.0, 3.0) * 1e-3);
   const RevoluteContact contact =
       revolute_contact(journal, journal_radius, bearing, bearing_radius, Vector3::UnitZ());
-  // positions of mm carry 4e-19 m each
+  // rounding of positions of some mm: 4e-19 m
   EXPECT_NEAR(contact.eccentricity, 0.11e-3, 2e-18);
   EXPECT_NEAR(contact.penetration_depth, 0.01e-3, 4e-18);
   expect_vector_near(contact.normal, Vector3(0.6, 0.8, 0.0), 2e-14, "normal");  // 2e-18/0.11e-3
-  // One point, in the journal's mid-plane, half-way between the two surfaces.
+  // Both arms end at one point, in the journal's mid-plane half-way between the two surfaces.
   const Vector3 point = journal.position + contact.arm_1;
   expect_vector_near(bearing.position + contact.arm_2, point, 2e-18, "point");
   EXPECT_NEAR(point.z(), 5e-3, 1e-18);
@@ -69,7 +69,7 @@ TEST(Revolute, MaterialVelocity) {
                        journal_radius, at(Vector3::Zero()), bearing_radius, Vector3::UnitZ());
   // omega x arm, arm = R1 - delta/2
   expect_vector_near(spinning.relative_velocity, Vector3(0, 7.0 * 4.995e-3, 0), 1e-16, "spin");
-  // Rolling: omega_1 arm_1 = omega_2 arm_2 and centres at rest leave no sliding.
+  // Rolling: omega_1 arm_1 = omega_2 arm_2 with fixed centres gives no sliding velocity.
   const RevoluteContact rolling = revolute_contact(
       at(Vector3(0.11e-3, 0, 0), Vector3::Zero(), Vector3(0, 0, 5.105)), journal_radius,
       at(Vector3::Zero(), Vector3::Zero(), Vector3(0, 0, 4.995)), bearing_radius, Vector3::UnitZ());
@@ -81,7 +81,7 @@ TEST(Revolute, MaterialVelocity) {
   EXPECT_NEAR(approach.relative_velocity.dot(approach.normal), 1.5, 1e-15);
 }
 
-// Both bodies move as one rigid body about any point: nothing slides. Catches an arm that is
+// If both bodies move as one rigid body about any point, nothing slides. Detects an arm that is
 // missing or starts at the wrong centre.
 TEST(Joint, RigidMotionOfBothBodiesLeavesNoRelativeVelocity) {
   Random random;
@@ -90,7 +90,7 @@ TEST(Joint, RigidMotionOfBothBodiesLeavesNoRelativeVelocity) {
     const BodyMotion bearing = moving(random.vector(0.1));
     const BodyMotion journal = moving(bearing.position + random.vector(2e-4));
     const Vector3 axis = random.unit();
-    // a dozen roundings of velocities up to 5 m/s
+    // about ten roundings of velocities up to 5 m/s
     EXPECT_LE(revolute_contact(journal, journal_radius, bearing, bearing_radius, axis)
                   .relative_velocity.norm(),
               1e-14);
@@ -98,7 +98,7 @@ TEST(Joint, RigidMotionOfBothBodiesLeavesNoRelativeVelocity) {
   }
 }
 
-// v . n is the rate of delta: finite difference along the motion of turning, translating bodies.
+// v . n is the rate of delta: compared with a finite difference for rotating, translating bodies.
 TEST(Revolute, NormalVelocityIsTheRateOfDepth) {
   Random random;
   for (int i = 0; i < 20; ++i) {
@@ -138,8 +138,8 @@ TEST(Revolute, TouchesAgreesWithDepth) {
   EXPECT_LT(touching, 1800);
 }
 
-// A number that is none must reach the force, where it is seen: neither apart, nor concentric, nor
-// without friction, nor stable.
+// NaN in the input must reach the force, where it is detected. No branch may treat it as an open,
+// concentric, frictionless or stable case.
 TEST(Kinematics, KeepsWhatIsNoNumber) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const BodyMotion body = at(Vector3::Zero());
@@ -162,7 +162,7 @@ TEST(Revolute, RefusesABearingThatDoesNotHoldTheJournal) {
   const BodyMotion body = at(Vector3::Zero());
   EXPECT_THROW(revolute_contact(body, 5e-3, body, 5e-3, Vector3::UnitZ()), std::invalid_argument);
   EXPECT_THROW(revolute_contact(body, 5e-3, body, 4e-3, Vector3::UnitZ()), std::invalid_argument);
-  // The early-out lets such a pair through, so that the error is seen.
+  // The fast check accepts such a pair, so that revolute_contact() reports the error.
   EXPECT_TRUE(revolute_touches(body.position, 5e-3, body.position, 4.9e-3, Vector3::UnitZ()));
   EXPECT_TRUE(revolute_touches(body.position, 5e-3, body.position, 5e-3, Vector3::UnitZ()));
   const double infinity = std::numeric_limits<double>::infinity();
@@ -175,7 +175,7 @@ TEST(Plane, DepthPointAndVelocity) {
   const BodyMotion slider =
       at(Vector3(1.008003, 0.001, 0), Vector3(0.2, 0.3, 0), Vector3(0, 0, 5.0));
   const PlaneContact contact = plane_contact(slider, 2e-3, slot, Vector3::UnitX(), 10e-3);
-  EXPECT_NEAR(contact.penetration_depth, 3e-6, 3e-16);  // positions of 1 m carry 1.1e-16 m
+  EXPECT_NEAR(contact.penetration_depth, 3e-6, 3e-16);  // rounding of positions of 1 m: 1.1e-16 m
   EXPECT_NEAR(contact.eccentricity, 8.003e-3, 3e-16);
   EXPECT_EQ(contact.normal, Vector3(Vector3::UnitX()));
   EXPECT_EQ(contact.effective_radius, 2e-3);
@@ -184,7 +184,7 @@ TEST(Plane, DepthPointAndVelocity) {
                      "point");
   expect_vector_near(contact.relative_velocity, Vector3(0.2, 0.3 + 5.0 * 1.9985e-3, 0), 1e-14,
                      "velocity");
-  // The stop on the other side: normal reversed, a gap now.
+  // Stop on the opposite side: normal reversed, now a gap.
   EXPECT_NEAR(plane_contact(slider, 2e-3, slot, -Vector3::UnitX(), 10e-3).penetration_depth,
               2e-3 - 18.003e-3, 3e-16);
 }
@@ -200,7 +200,7 @@ TEST(Joint, ContactKinematicsCarriesEveryField) {
   EXPECT_EQ(kinematics.time_step, 1e-5);
 }
 
-// Joint and law together: no net force, no net moment about the world's origin.
+// Joint kinematics and law together: no net force, no net moment about the world's origin.
 TEST(Joint, WrenchOfAJointBalances) {
   Random random;
   ContactParameters parameters;
@@ -242,7 +242,7 @@ TEST(Joint, RotationInvariance) {
                                                bearing_radius, q * axis);
     const PlaneContact c = plane_contact(journal, 2e-3, bearing, axis, 2.1e-3);
     const PlaneContact d = plane_contact(turned(journal), 2e-3, turned(bearing), q * axis, 2.1e-3);
-    // positions of 1e-2 m carry some 1e-17 m after a rotation
+    // rounding of positions of 1e-2 m after a rotation: about 1e-17 m
     EXPECT_NEAR(b.penetration_depth, a.penetration_depth, 1e-16);
     EXPECT_NEAR(d.penetration_depth, c.penetration_depth, 1e-16);
     expect_vector_near(b.normal, q * a.normal, 1e-16 / a.eccentricity, "normal");
@@ -254,7 +254,7 @@ TEST(Joint, RotationInvariance) {
   }
 }
 
-// Rodrigues' rotation by angle and axis, with trigonometry, against transport().
+// Compares transport() with Rodrigues' rotation by angle and axis.
 TEST(Transport, IsTheSmallestRotation) {
   Random random;
   for (int i = 0; i < 500; ++i) {
@@ -281,17 +281,17 @@ TEST(Transport, SpecialCases) {
   const Vector3 y = Vector3::UnitY();
   EXPECT_EQ(transport(Vector3::Zero(), x, y), Vector3(Vector3::Zero()));
   EXPECT_EQ(transport(Vector3(0, 2, 3), x, x), Vector3(0, 2, 3));
-  // Half a turn: not unique, but finite, in the plane, magnitude kept.
+  // Half a turn is not unique: the result must be finite, in the plane, with the same magnitude.
   EXPECT_EQ(transport(Vector3(0, 2, 3), x, -x), Vector3(0, 2, 3));
-  // A part along the normal goes, the magnitude stays; along the normal only, nothing is left.
+  // A normal component is removed, the magnitude kept; a vector along the normal gives zero.
   expect_vector_near(transport(Vector3(3, 4, 0), x, x), Vector3(0, 5, 0), 1e-14, "projected");
   EXPECT_EQ(transport(Vector3(3, 0, 0), x, x), Vector3(Vector3::Zero()));
   // Twist is right-handed about n_new.
   expect_vector_near(transport(y, x, x, 0.5 * testing::pi), Vector3::UnitZ(), 1e-15, "twist");
 }
 
-// A journal rolls round its bearing a hundred times in small steps: the force comes back to itself
-// (all normals in one plane: no holonomy), in plane and at full size.
+// A journal rolls around its bearing a hundred times in small steps. All normals lie in one plane
+// (no holonomy), so the force must return to its initial value, with full magnitude.
 TEST(Transport, DoesNotDriftOverManySteps) {
   Vector3 force(0, 3, 4);
   Vector3 normal = Vector3::UnitX();
@@ -302,7 +302,7 @@ TEST(Transport, DoesNotDriftOverManySteps) {
     force = transport(force, normal, next);
     normal = next;
   }
-  // one rounding, 1.1e-16 relative, per step at worst
+  // at worst one rounding, 1.1e-16 relative, per step
   EXPECT_NEAR(force.norm(), 5.0, steps * 1.1e-16 * 5.0);
   expect_vector_near(force, Vector3(0, 3, 4), 1e-10, "force");
 }

@@ -24,9 +24,9 @@ TEST(Mindlin, StickIsASpringThatOpposesTheSlide) {
   EXPECT_FALSE(history.slipping);
   EXPECT_DOUBLE_EQ(energy.elastic, 2.5e-6);  // 1/2 (2^2 + 1^2) / 1e6
   EXPECT_EQ(energy.dissipation, 0.0);
-  EXPECT_DOUBLE_EQ(elastic_energy(history), 2.5e-6);  // what is remembered holds it
+  EXPECT_DOUBLE_EQ(elastic_energy(history), 2.5e-6);  // the history stores the same energy
   EXPECT_EQ(elastic_energy(ContactHistory()), 0.0);
-  // There and back is reversible.
+  // Sliding there and back is reversible.
   mindlin_step(1e6, 100.0, Vector3(-2e-6, 1e-6, 0), history);
   EXPECT_NEAR(history.tangential_force.norm(), 0.0, 1e-15);
 }
@@ -37,20 +37,22 @@ TEST(Mindlin, SlipHoldsTheCoulombLimitAgainstTheSlide) {
   EXPECT_TRUE(history.slipping);
   EXPECT_NEAR(history.tangential_force.x(), -1.8, 1e-15);
   EXPECT_NEAR(history.tangential_force.y(), 2.4, 1e-15);
-  EXPECT_NEAR(energy.elastic, 4.5e-6, 1e-20);    // 1/2 3^2/1e6
-  EXPECT_NEAR(energy.dissipation, 3e-6, 1e-20);  // 1/2 * 3 N * 5 um - 4.5 uJ: rises from 0
+  EXPECT_NEAR(energy.elastic, 4.5e-6, 1e-20);  // 1/2 3^2/1e6
+  // 1/2 * 3 N * 5 um - 4.5 uJ: the force rises from 0
+  EXPECT_NEAR(energy.dissipation, 3e-6, 1e-20);
   const MindlinEnergy steady = mindlin_step(1e6, 3.0, Vector3(3e-6, -4e-6, 0), history);
   EXPECT_NEAR(steady.dissipation, 15e-6, 1e-19);  // limit times the whole slide
 }
 
 // Triangle wave of amplitude X under constant load. Closed form of a spring in series with a
-// Coulomb slider: a parallelogram, dissipation 4 L (X - L/k) per loop once X > L/k.
+// Coulomb slider: the loop is a parallelogram and dissipates 4 L (X - L/k) once X > L/k.
 TEST(Mindlin, LoopDissipation) {
   const double k = 2e7;
   const double limit = 30.0;
   const double amplitude = 6e-6;  // L/k = 1.5e-6
   const double exact = 4.0 * limit * (amplitude - limit / k);
-  for (const int steps : {400, 397}) {  // quarter wave; 400 puts the corners on steps, 397 between
+  // steps per quarter wave; the corners are on steps for 400, within steps for 397
+  for (const int steps : {400, 397}) {
     ContactHistory history;
     const double u = amplitude / steps;
     double dissipation = 0.0;
@@ -62,21 +64,20 @@ TEST(Mindlin, LoopDissipation) {
       const Vector3 old = history.tangential_force;
       const MindlinEnergy energy = mindlin_step(k, limit, slide, history);
       EXPECT_LE(history.tangential_force.norm(), limit * (1 + 1e-15));
-      if (quarter < 5) continue;  // first loop and a quarter: transient
+      if (quarter < 5) continue;  // skips the transient: the first loop and a quarter
       dissipation += energy.dissipation;
       external += work(old, history.tangential_force, slide);
-      // Closed-form force on the way: from the turning point the force changes by k times the way,
-      // until the limit.
+      // Closed form after a reversal: the force changes by k times the slide, up to the limit.
     }
-    // A corner inside a step cuts at most a triangle k u^2/8 from the loop; there are two. With the
-    // corners on steps only rounding of 1600 additions is left.
+    // A corner inside a step removes at most a triangle k u^2/8 from the loop, twice per loop. With
+    // corners on steps, only rounding of 1600 additions remains.
     const double tolerance = steps == 400 ? 1e-12 * exact : 2 * k * u * u / 8;
     EXPECT_NEAR(dissipation, exact, tolerance) << steps;
-    EXPECT_NEAR(external, dissipation, 1e-12 * exact) << steps;  // closed loop: no energy stored
+    EXPECT_NEAR(external, dissipation, 1e-12 * exact) << steps;  // closed loop: no energy is stored
   }
 }
 
-// Closed form of the same element at every point of a loading, reversal and reloading path:
+// Closed form of this spring-slider at every point of a path with loading, reversal and reloading:
 // F = clamp(F_turn - k (x - x_turn)).
 TEST(Mindlin, ForceFollowsTheClosedForm) {
   const double k = 2e7;
@@ -99,8 +100,8 @@ TEST(Mindlin, ForceFollowsTheClosedForm) {
   }
 }
 
-// The account of every single step, loading, unloading, stick, slip and loss of contact mixed:
-// work by the mean force = change of spring energy + dissipation, to rounding; dissipation >= 0.
+// Energy balance of every single step, with loading, unloading, stick, slip and loss of contact:
+// work of the mean force = change of spring energy + dissipation, to rounding; dissipation >= 0.
 TEST(Mindlin, EnergyIdentityClosesInEveryStep) {
   Random random;
   ContactHistory history;
@@ -123,11 +124,11 @@ TEST(Mindlin, EnergyIdentityClosesInEveryStep) {
     const bool turns = (k < old.tangential_stiffness || history.slipping || gap) &&
                        energy.dissipation == 0.0 && residue < 0.0;
     if (turns) {
-      // Documented exception: the identity would need a negative loss; then the force has turned
-      // round within the step.
+      // Documented exception: the identity would need a negative loss, because the force reverses
+      // within the step.
       ++reversals;
     } else {
-      // a dozen roundings of terms of the size of the energies (1e-5 J) and of F u
+      // about ten roundings of terms as large as the energies (1e-5 J) and F u
       const double scale = elastic + energy.elastic + old.tangential_force.norm() * slide.norm();
       EXPECT_NEAR(residue, 0.0, 4e-15 * scale) << i;
     }
@@ -137,10 +138,10 @@ TEST(Mindlin, EnergyIdentityClosesInEveryStep) {
   }
   EXPECT_GT(slips, 1000);
   EXPECT_GT(unloadings, 5000);
-  EXPECT_LT(reversals, 1000);  // rare even with steps as coarse as these
+  EXPECT_LT(reversals, 1000);  // rare even with these large steps
 }
 
-// Stuck, while the normal load cycles: the slide stays on unloading, the force on loading.
+// Stuck contact with a cyclic normal load: unloading keeps the slide, loading keeps the force.
 TEST(Mindlin, StiffnessChangeKeepsSlideOrForce) {
   ContactHistory history;
   mindlin_step(2e7, 1e3, Vector3(1e-6, 0, 0), history);
@@ -153,12 +154,12 @@ TEST(Mindlin, StiffnessChangeKeepsSlideOrForce) {
   EXPECT_NEAR(energy.dissipation, 5e-6 - 1.25e-6, 1e-20);  // 5 uJ - 1/2 10^2/4e7
 }
 
-// Any closed loop of slide and normal load, stuck all the way, takes energy in, never gives it out.
-// Slide out at high load, back at low load: what returns is k_low/k_high of what went in.
+// A closed loop of slide and normal load without slip never returns more energy than it received.
+// Slide out at high load, back at low load: the fraction k_low/k_high returns.
 TEST(Mindlin, UnloadingCreatesNoEnergy) {
   const double high = 2e7;
   const double low = 5e6;
-  const double far = 1e9;  // limit out of reach
+  const double far = 1e9;  // limit that is never reached
   const int steps = 200;
   const double u = 1e-6 / steps;
   ContactHistory history;
@@ -176,7 +177,7 @@ TEST(Mindlin, UnloadingCreatesNoEnergy) {
   EXPECT_NEAR(in, 0.5 * high * 1e-12, 1e-12 * in);
   EXPECT_NEAR(out, in * low / high, 1e-12 * in);  // 600 roundings
   EXPECT_LE(out, in);
-  // Phase-shifted cycles of both, ten of them: net work on the contact must not be negative.
+  // Ten cycles of both with a phase shift: the net work on the contact must not be negative.
   for (const double phase : {0.0, 0.7, 1.6, 2.5, 3.1, 4.0, 5.2}) {
     ContactHistory cyclic;
     double net = 0.0;
@@ -190,11 +191,11 @@ TEST(Mindlin, UnloadingCreatesNoEnergy) {
       net += work(old, cyclic.tangential_force, slide);
       size = std::max(size, energy.elastic);
     }
-    EXPECT_GT(net, 0.1 * size) << phase;  // it dissipates by the order of the stored energy
+    EXPECT_GT(net, 0.1 * size) << phase;  // the dissipation is of the order of the stored energy
   }
 }
 
-// Friction does no positive work while it slides on under falling, constant or rising load.
+// While sliding, friction does no positive work under decreasing, constant or rising load.
 TEST(Mindlin, FrictionPowerIsNotPositiveInSliding) {
   ContactHistory history;
   const Vector3 slide(1e-6, 2e-6, 0);
@@ -229,9 +230,9 @@ TEST(Mindlin, LostContactReleasesTheSpringAndForgets) {
   EXPECT_FALSE(history.slipping);
 }
 
-// A mass on the spring-slider in leapfrog: what the kinetic energy loses is in the account, over
-// sliding, sticking and ringing. Boundary term of the summation by parts: half the last force times
-// the next slide.
+// Leapfrog of a mass on the spring-slider while it slides, sticks and oscillates: the lost kinetic
+// energy must equal elastic energy plus dissipation. Boundary term of the summation by parts: half
+// the last force times the next slide.
 TEST(Mindlin, LeapfrogEnergyBalanceCloses) {
   const auto residue = [](double swing, double dt) {
     const double mass = 0.3;
@@ -259,9 +260,9 @@ TEST(Mindlin, LeapfrogEnergyBalanceCloses) {
     return (end - boundary + elastic + dissipation - start) / start;
   };
   EXPECT_NEAR(residue(0.0, 1e-5), 0.0, 1e-13);  // constant load: rounding of 3000 steps
-  // Swinging load: steps in which the force turns round while the load falls have their loss
-  // floored at zero; two such steps in a ringing period, each short of a term of the square of the
-  // step, times the fall of the stiffness in the step: third order each, second order in the sum.
+  // Oscillating load. If the force reverses within a step while the load decreases, the loss of the
+  // step is set to zero. This happens in two steps per period. Each error is the square of the step
+  // times the decrease of stiffness in the step, i.e. of third order; their sum is of second order.
   const double coarse = residue(0.3, 1e-5);
   EXPECT_NEAR(coarse, 0.0, 1e-5);
   EXPECT_LT(std::abs(residue(0.3, 1e-6)), 0.05 * std::abs(coarse));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contacts with partial slip that have been through something.
+// Contacts with partial slip after a random history.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace statejump::kernel::testing {
 
-/// Sphere and plane, by the depth [m].
+/// Stiffness and normal force of a sphere on a plane as functions of the depth [m].
 inline constexpr double shear_root = 8.0 * 7.9e9 * 0.1, hertz_root = 4.0 / 3.0 * 38.5e9 * 0.1,
                         mu = 0.3;
 inline double stiffness(double depth) {
@@ -22,8 +22,8 @@ inline double gross(double depth) {
   return 1.5 * limit(depth) / stiffness(depth);
 }
 
-/// A contact after a random history of so many steps, loss and return included.
-/// @param way the slide in the plane, of its signed size [m]
+/// Memory of a contact after `steps` random steps, including loss and return of contact.
+/// @param way converts a signed slide [m] into a slide in the plane
 template <class Way>
 PartialSlipMemory random_history(Random& random, int steps, Way&& way) {
   PartialSlipMemory memory;

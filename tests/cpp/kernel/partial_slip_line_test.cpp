@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Force and derivatives of a step in one direction, against the step itself.
+// Compares force and derivatives of a step in one direction with partial_slip_step().
 #include "statejump/kernel/partial_slip_line.hpp"
 
 #include <gtest/gtest.h>
@@ -36,13 +36,14 @@ TEST(PartialSlipLine, IsForceAndDerivativesOfTheStep) {
     const PartialSlipLine line = partial_slip_line(k, most, slide, memory);
     PartialSlipMemory after = memory;
     const PartialSlipResponse step = partial_slip_step(k, most, {slide, 0.0}, after);
-    // The bound is told from what sticks to 1e-15 of it, in each of at most 50 pieces.
+    // A bound is distinguished from sticking to 1e-15 of it, in each of at most 50 pieces.
     ASSERT_NEAR(line.force, step.force.a, 1e-13 * most) << trial;
     EXPECT_EQ(std::abs(line.centre) > line.bound * (1.0 + 1e-12), step.slipping) << trial;
     slipping += step.slipping;
     grown += k > memory.edge();
-    // Central differences h: pieces meet where U is continuous, so the second derivative is bounded
-    // but for square roots at the middle of the contact, sqrt(h); rounding of the force over h.
+    // Central differences with h. Pieces meet where U is continuous, so the second derivative is
+    // bounded, except for square roots at the contact's centre (error sqrt(h)); plus rounding of
+    // the force over h.
     const double h = 1e-5;
     const double rounding = 4e-15 * most;
     const auto near = [&](double exact, double plus, double minus, double span, double scale,
@@ -64,7 +65,7 @@ TEST(PartialSlipLine, IsForceAndDerivativesOfTheStep) {
 }
 
 TEST(PartialSlipLine, AtABoundThatWasMetRingsStick) {
-  // Gross slip, then nothing: what follows first is whatever sticks, in either direction.
+  // After gross slip followed by a step without slide, all annuli stick first, in either direction.
   PartialSlipMemory memory;
   const double k = stiffness(1e-6);
   const double most = limit(1e-6);
@@ -78,7 +79,7 @@ TEST(PartialSlipLine, AtABoundThatWasMetRingsStick) {
 }
 
 TEST(PartialSlipLine, CountsPiecesThatStickAndSlip) {
-  // A contact without slip before: the rim slips the way of the slide, the centre sticks.
+  // Contact without earlier slip: the rim slips in the direction of the slide, the centre sticks.
   PartialSlipMemory memory;
   const double k = stiffness(1e-6);
   const double most = limit(1e-6);

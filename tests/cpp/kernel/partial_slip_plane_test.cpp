@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Force and derivatives of a step in the plane: against the law along one direction, a row of rings
-// and the step itself.
+// Compares force and derivatives of a step in the plane with the law along one direction, with a
+// row of annuli and with partial_slip_step().
 #include "statejump/kernel/partial_slip_plane.hpp"
 
 #include <gtest/gtest.h>
@@ -43,21 +43,21 @@ TEST(PartialSlipPlane, AlongOneDirectionItIsTheLine) {
     const double most = limit(depth);
     const PartialSlipLine line = partial_slip_line(k, most, slide, straight);
     const PartialSlipPlane plane = partial_slip_plane(k, most, along(angle, slide), turned);
-    // Rounding of the direction, in some fifty pieces.
+    // Rounding of the direction, in about fifty pieces.
     ASSERT_LT(apart(plane.force, along(angle, line.force)), 1e-13 * most) << trial;
     EXPECT_LT(apart(plane.by_limit, along(angle, line.by_limit)), 1e-10) << trial;
     EXPECT_LT(apart(plane.by_stiffness, along(angle, line.by_stiffness)), 1e-10 * most / k);
     const Tangent with = along(angle, 1.0);
     const Tangent by_slide = with.a * plane.by_slide_a + with.b * plane.by_slide_b;
-    // Where a piece ends inside the others it moves with the root of the rounding.
+    // The end of a piece moves by the square root of the rounding.
     EXPECT_LT(apart(by_slide, along(angle, line.by_slide)), 1e-6 * k) << trial;
     EXPECT_LT(apart(plane.centre, along(angle, line.centre)),
               1e-13 * std::abs(line.centre) + 1e-22);
   }
 }
 
-/// Force of a row of rings that go back to their bound along their own radius; no memory of parts
-/// of a contact that grew or fell is needed beyond what the points say.
+/// Force of a row of annuli that return radially to their bounds. Annuli that enter or leave the
+/// contact need no state other than the points of the memory.
 Tangent of_rings(double k, double most, const Tangent& slide, const PartialSlipMemory& memory,
                  int rings) {
   const double slope = 1.5 * most / (k * k * k);
@@ -93,8 +93,8 @@ TEST(PartialSlipPlane, IsARowOfRingsAndTheStepToItsChords) {
     const double most = limit(depth);
     const Tangent slide = along(random.uniform(-pi, pi), random.uniform(0.05, 2.0) * gross(depth));
     const PartialSlipPlane plane = partial_slip_plane(k, most, slide, memory);
-    // The midpoint rule of 4000 rings; a ring near which |U| passes zero turns within few points
-    // of the quadrature.
+    // Error of the midpoint rule with 4000 annuli. An annulus with |U| near zero changes its
+    // direction within few quadrature points.
     const double off = apart(plane.force, of_rings(k, most, slide, memory, 4000)) / most;
     EXPECT_LT(off, 1e-4) << trial;
     square += off * off / trials;
@@ -119,8 +119,8 @@ TEST(PartialSlipPlane, DerivativesAreThoseOfTheForce) {
     const auto force = [&](double at_k, double at_limit, const Tangent& at_slide) {
       return partial_slip_plane(at_k, at_limit, at_slide, memory).force;
     };
-    // As along a line: bounded second derivatives but for square roots; and the quadrature, whose
-    // points move with the pieces.
+    // As along a line: second derivatives are bounded except for square roots; plus quadrature
+    // errors, whose points move with the pieces.
     const double h = 1e-5;
     const double rounding = 4e-15 * most;
     const auto near = [&](const Tangent& exact, const Tangent& plus, const Tangent& minus,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The contact that slides at its rim: closed forms, and a contact of many punches written apart.
+// Contact with partial slip: closed forms, and an independent model of many punches.
 #include "statejump/kernel/partial_slip.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ using testing::Random;
 constexpr double young = 38.5e9, shear = 7.9e9, radius = 0.01, mu = 0.3;
 constexpr double usual_depth = 1e-6;
 
-/// A contact led along a path of depth and slide, with the work that its force takes.
+/// Contact driven along a path of depth and slide, with the work of its force.
 struct Contact {
   PartialSlipMemory memory;
   double depth = 0.0;
@@ -34,7 +34,7 @@ struct Contact {
   static double stiffness(double depth) {
     return mindlin_stiffness(shear, hertz(young, radius, depth).contact_radius);
   }
-  /// Slide at which the whole contact slips.
+  /// Slide at which the whole contact begins to slip [m].
   static double gross(double depth) { return 1.5 * mu * normal(depth) / stiffness(depth); }
 
   double to(double next_depth, Tangent next) {
@@ -70,7 +70,7 @@ double cattaneo(double share) {
 }
 
 TEST(PartialSlip, OneDirectionNeedsNoMorePointsThanItHasPieces) {
-  // What slips follows one bound, what sticks another: of many steps the pieces in line are one.
+  // Slipping annuli follow one bound, sticking ones another: pieces of many steps are merged.
   for (const int steps : {1, 50}) {
     Contact contact = pressed();
     contact.in_steps(usual_depth, {0.6 * Contact::gross(usual_depth), 0.0}, steps);
@@ -89,8 +89,8 @@ TEST(PartialSlip, GrowthWithoutSlideLeavesNoPoint) {
 }
 
 TEST(PartialSlip, CornerWhereSlipBeginsToTurnStays) {
-  // The whole contact is on its bound, along x within half of the edge and turned further out. It
-  // is unloaded a little, and all of it slips back to the smaller bound without a turn.
+  // The whole contact is on its bound, in direction x within half of the edge radius and rotated
+  // outside. After a little unloading all of it slips back to the smaller bound without a rotation.
   const double edge = Contact::stiffness(usual_depth);
   const double slope = 1.5 * mu * Contact::normal(usual_depth) / (edge * edge * edge);
   const double corner = 0.5 * edge;
@@ -111,8 +111,8 @@ TEST(PartialSlip, CornerWhereSlipBeginsToTurnStays) {
 }
 
 TEST(PartialSlip, PointsThatSayNothingGoFirst) {
-  // A full zigzag over x^2 but for one point, on the line between its neighbours, wherever that is:
-  // the contact grows, which makes one point too many, and three quarters are kept.
+  // A memory filled with a zigzag over x^2. One point, at each position in turn, lies on the line
+  // between its neighbours. Growth of the contact adds one point too many; three quarters are kept.
   constexpr int full = PartialSlipMemory::capacity;
   const double edge = Contact::stiffness(usual_depth);
   const double limit = mu * Contact::normal(usual_depth);
@@ -156,7 +156,7 @@ TEST(PartialSlip, AsManyPointsAsFitStay) {
 }
 
 TEST(PartialSlip, AtConstantLoadAPointThatSaysHardlyAnythingStays) {
-  // A corner of 1e-13 of the bound is above rounding and below what growth leaves out.
+  // A corner of 1e-13 of the bound: above rounding, below the threshold of a growing contact.
   const double edge = Contact::stiffness(usual_depth);
   const double limit = mu * Contact::normal(usual_depth);
   const double bound = 1.5 * limit / edge;
@@ -181,14 +181,14 @@ TEST(PartialSlip, LoadingUnloadingReloadingAtConstantLoad) {
     Contact contact = pressed();
     EXPECT_NEAR(contact.in_steps(usual_depth, {0.6 * gross, 0.0}, steps), limit * cattaneo(0.6),
                 tolerance);
-    // Masing: twice the slide, twice the force, from the turning point (Mindlin, Deresiewicz 1953)
+    // Masing's rule from the reversal: twice slide and force (Mindlin, Deresiewicz 1953)
     for (const double back : {0.3, 0.7}) {
       EXPECT_NEAR(contact.in_steps(usual_depth, {(0.6 - back) * gross, 0.0}, steps),
                   limit * (cattaneo(0.6) - 2.0 * cattaneo(0.5 * back)), tolerance);
     }
     EXPECT_NEAR(contact.in_steps(usual_depth, {0.2 * gross, 0.0}, steps),
                 limit * (cattaneo(0.6) - 2.0 * cattaneo(0.35) + 2.0 * cattaneo(0.15)), tolerance);
-    // the loop closes where it began, and first loading goes on
+    // the loop closes where it began, then first loading continues
     EXPECT_NEAR(contact.in_steps(usual_depth, {0.6 * gross, 0.0}, steps), limit * cattaneo(0.6),
                 tolerance);
     EXPECT_LE(contact.memory.size(), 4);
@@ -202,8 +202,8 @@ TEST(PartialSlip, LoadingUnloadingReloadingAtConstantLoad) {
 }
 
 TEST(PartialSlip, NestedReversalsFollowMasingHoweverManyPointsStick) {
-  // Each branch is twice the loading curve from where it turned; deep in the nest most points only
-  // move with the slide. Then back over all of them: a loop that closes is forgotten.
+  // Each branch is twice the loading curve from its reversal point. Deep in the nest most points
+  // only move with the slide. Then back over all reversals: a closed loop is erased.
   const double limit = mu * Contact::normal(usual_depth);
   const double gross = Contact::gross(usual_depth);
   constexpr int turns = 14;
@@ -221,7 +221,8 @@ TEST(PartialSlip, NestedReversalsFollowMasingHoweverManyPointsStick) {
     forces.push_back(contact.in_steps(usual_depth, {next, 0.0}, 5));
     EXPECT_NEAR(forces.back(), expected, 1e-13 * limit) << i;
   }
-  EXPECT_EQ(contact.memory.size(), turns + 3);  // one per reversal, centre and rim
+  // one point per reversal, plus start, centre and rim
+  EXPECT_EQ(contact.memory.size(), turns + 3);
   for (int i = turns; i > 0; i -= 2) {
     const auto turn = static_cast<std::size_t>(i - 1);
     EXPECT_NEAR(contact.in_steps(usual_depth, {slides[turn], 0.0}, 5), forces[turn], 1e-13 * limit);
@@ -230,8 +231,8 @@ TEST(PartialSlip, NestedReversalsFollowMasingHoweverManyPointsStick) {
   }
 }
 
-/// A contact that rings after a slide and comes to rest in the middle: nested reversals.
-/// @param first, last half periods to go through; @param visit is called after each step
+/// A contact that oscillates after a slide and comes to rest in the middle: nested reversals.
+/// @param first, last range of half periods; @param visit is called after each step
 template <class Visit>
 void ring(Contact& contact, int first, int last, const Visit& visit) {
   constexpr int steps = 50;
@@ -260,10 +261,10 @@ TEST(PartialSlip, PointsThatAreHeldChangeNothingButRounding) {
     worst = std::max(worst, std::abs(eager.response.elastic - other.elastic) / energy);
     worst = std::max(worst, std::abs(eager.response.dissipation - other.dissipation) / energy);
   });
-  // Rounding of each of the steps, and what either left out beyond its capacity.
+  // Rounding of every step, plus the points that either memory merged beyond its capacity.
   EXPECT_LE(worst, 3000 * 1e-16 + (lazy.memory.merged() + eager.memory.merged()) / limit);
   EXPECT_GT(lazy.memory.prefix().count, 8);
-  // A slide that goes through any share of what is held.
+  // A slide of various sizes and directions.
   for (const double share : {-1.5, -0.6, -0.2, -0.05, 0.05, 0.2, 0.6, 1.5}) {
     Contact with_prefix = lazy;
     Contact flushed = lazy;
@@ -273,7 +274,7 @@ TEST(PartialSlip, PointsThatAreHeldChangeNothingButRounding) {
         << share;
     EXPECT_NEAR(with_prefix.response.elastic, flushed.response.elastic, 1e-13 * energy) << share;
   }
-  // What is kept beside the points is what they say.
+  // The sums stored with the prefix equal those of its points.
   PartialSlipMemory released = lazy.memory;
   released.flush_prefix();
   EXPECT_NEAR(elastic_energy(released), lazy.response.elastic, 1e-13 * energy);
@@ -303,26 +304,26 @@ TEST(PartialSlip, InitialStiffnessIsMindlins) {
               3e-10 * Contact::stiffness(usual_depth) * slide);
 }
 
-/// Mindlin and Deresiewicz 1953: with dT/dN below mu nothing slips and T follows N by that slope;
-/// above, the contact slides as a whole. From a loaded contact, too.
+/// Mindlin and Deresiewicz 1953: if dT/dN is less than mu, nothing slips and T follows N with that
+/// slope. Otherwise the whole contact slides. Also from a loaded contact.
 TEST(PartialSlip, SimpleLoading) {
   for (const double begin : {0.0, 0.4e-6}) {
     for (const double slope : {0.1, 0.29, 0.31, 0.9}) {
       for (const int steps : {1, 300}) {
         Contact contact;
         contact.to(begin, 0.0);
-        // straight in N and T is straight in depth and slide: u = slope E*/(4 G*) change of depth
+        // a line in N and T is a line in depth and slide: u = slope E*/(4 G*) change of depth
         const double slide = slope * young / (4.0 * shear) * (usual_depth - begin);
         contact.in_steps(usual_depth, {slide, 0.0}, steps);
         const double grown = Contact::normal(usual_depth) - Contact::normal(begin);
-        // above mu: mu times the normal force of the ring that still sticks is missing
+        // above mu, T is smaller by mu times the normal force of the annuli that still stick
         const double stuck = usual_depth - slide / mu * 4.0 * shear / young;
         const double wanted = slope <= mu
                                   ? slope * grown
                                   : mu * (Contact::normal(usual_depth) - Contact::normal(stuck));
         EXPECT_NEAR(contact.response.force.a, wanted, 1e-12 * wanted);
         if (slope <= mu) {
-          EXPECT_LE(contact.heat, 1e-14 * wanted * slide);  // no ring slips
+          EXPECT_LE(contact.heat, 1e-14 * wanted * slide);  // no annulus slips
         } else {
           EXPECT_GT(contact.heat, 0.0);
         }
@@ -331,8 +332,8 @@ TEST(PartialSlip, SimpleLoading) {
   }
 }
 
-/// At fixed slide: under a falling load the force is that of first loading under the load that is
-/// left; under a rising load it stays, for new rings carry nothing.
+/// Fixed slide. Under decreasing load the force is that of first loading under the remaining load;
+/// under rising load it is constant, because new annuli carry no traction.
 TEST(PartialSlip, FallingAndRisingLoadAtFixedSlide) {
   const double gross = Contact::gross(usual_depth);
   for (const int steps : {1, 50}) {
@@ -365,7 +366,7 @@ TEST(PartialSlip, EnergyOfACycle) {
       contact.in_steps(usual_depth, {-amplitude, 0.0}, steps);
       EXPECT_NEAR(contact.response.force.a, -t * limit, 1e-10 * limit);
       contact.in_steps(usual_depth, {amplitude, 0.0}, steps);
-      // long double: at t = 1e-3 the terms cancel down to 6e-11 of the first
+      // long double: at t = 1e-3 the terms cancel down to 6e-11 of the first term
       const long double third = std::cbrt(1.0L - t);
       const long double bracket =
           1.0L - std::pow(third, 5.0L) - 5.0L * t / 6.0L * (1.0L + third * third);
@@ -373,7 +374,7 @@ TEST(PartialSlip, EnergyOfACycle) {
           9.0 * limit * limit / (10.0 * shear * a) * static_cast<double>(bracket);
       const double cubic = std::pow(t * limit, 3.0) / (36.0 * shear * a * limit);
       EXPECT_NEAR(contact.heat, formula, 1e-7 * formula) << t;
-      if (t < 0.05) {  // the next term is 2 t/3 of it
+      if (t < 0.05) {  // the next term of the series is 2 t/3 of this one
         EXPECT_NEAR(contact.heat, cubic, 0.7 * t * cubic) << t;
       }
     }
@@ -391,16 +392,17 @@ TEST(PartialSlip, StepsOfAStraightPathDoNotMatter) {
       one.to(depth, slide);
       many.in_steps(depth, {slide, 0.0}, 40);
       EXPECT_NEAR(many.response.force.a, one.response.force.a, 1e-11 * mu * Contact::normal(depth));
-      // the loss within a step is integrated by three points, where the load varies
+      // three Gauss points integrate the loss within a step of varying load
       EXPECT_NEAR(many.heat, one.heat, 2e-3 * one.heat + 1e-18);
     }
   }
 }
 
-/// Work, energy and loss over a step of second order: against the work of small steps.
+/// Work of a step equals energy plus loss to second order; the work is computed with small steps.
 TEST(PartialSlip, WorkIsEnergyAndLoss) {
   Random random;
-  double residue[2] = {0.0, 0.0};  // of all histories: that of one may pass through zero
+  // sums over all histories, because the residue of a single one may be zero
+  double residue[2] = {0.0, 0.0};
   double scale = 0.0;
   for (int history = 0; history < 20; ++history) {
     for (int refined = 0; refined < 2; ++refined) {
@@ -428,11 +430,11 @@ TEST(PartialSlip, WorkIsEnergyAndLoss) {
     random.uniform(0.0, 1.0);
   }
   EXPECT_LE(residue[0], 1e-4 * scale);
-  EXPECT_LE(residue[1], 0.3 * residue[0]);  // 1/4 of it: second order
+  EXPECT_LE(residue[1], 0.3 * residue[0]);  // ideally 1/4: second order
 }
 
-/// Many flat punches side by side, as springs with Coulomb's law of their own; each straight path
-/// in small steps. Written apart from the law: no memory, no geometry of steps.
+/// Many flat punches in parallel, each a spring with its own Coulomb limit; every straight path is
+/// made in small steps. Independent of the law under test: no memory, no geometry of steps.
 class Punches {
  public:
   Punches(int count, double largest_depth)
@@ -472,7 +474,7 @@ class Punches {
 };
 
 struct Difference {
-  double worst = 0.0, mean_square = 0.0;  // of mu F_N at the usual depth
+  double worst = 0.0, mean_square = 0.0;  // fractions of mu F_N at the usual depth
   int points = 0;
 };
 
@@ -484,14 +486,14 @@ Difference against_punches(int histories, int turns, int punches, int steps, boo
     Contact contact;
     Punches row(punches, 2e-6);
     for (int turn = 0; turn < turns; ++turn) {
-      // one in twelve turns opens the contact, and the next closes it
+      // about one in twelve turns opens the contact, and the next one closes it
       const bool open = random.uniform(0.0, 1.0) < 1.0 / 12.0;
       const double depth = open ? -1e-7 : usual_depth * random.uniform(0.01, 2.0);
       const double scale = 1.5 * Contact::gross(usual_depth);
       const double along = random.uniform(-scale, scale);
       const double across = in_plane ? random.uniform(-scale, scale) : 0.0;
       const Tangent slide{along, across};
-      // both see an opening or closing as a whole step
+      // both models make an opening or closing in a single step
       const bool whole = depth <= 0.0 || contact.depth <= 0.0;
       const Tangent wanted = row.to(contact.depth, contact.slide, depth, slide, whole ? 1 : steps);
       if (in_plane && !whole) {
@@ -511,8 +513,8 @@ Difference against_punches(int histories, int turns, int punches, int steps, boo
   return found;
 }
 
-/// 1000 random histories, nested reversals, loss and return of contact. The difference is that of
-/// the punches: their rim falls with the power 3/2 of their width.
+/// 1000 random histories with nested reversals, loss and return of contact. The discretization of
+/// the punches determines the difference: their rim converges with the power 3/2 of their width.
 TEST(PartialSlip, RandomHistoriesAgainstManyPunches) {
   const Difference coarse = against_punches(1000, 30, 50, 8, false);
   const Difference fine = against_punches(1000, 30, 200, 8, false);
@@ -525,7 +527,7 @@ TEST(PartialSlip, RandomHistoriesAgainstManyPunches) {
 }
 
 TEST(PartialSlip, RandomHistoriesInThePlane) {
-  // one step a turn: straight paths in a new direction each; chords of 1e-4 of the force per piece
+  // one step per turn: a straight path in a new direction; chords of 1e-4 of the force per piece
   const Difference one = against_punches(200, 30, 400, 1, true);
   EXPECT_LE(one.mean_square, 5e-4);
   EXPECT_LE(one.worst, 4e-3);
@@ -534,11 +536,11 @@ TEST(PartialSlip, RandomHistoriesInThePlane) {
   EXPECT_LE(eight.mean_square, 2e-3);
 }
 
-/// Round a circle twice at constant load. What a chord goes off is measured over the slide after
-/// which rings forget, so that many small steps are as good as few.
+/// Two circles at constant load. The error of a chord is defined relative to the slide that erases
+/// the memory, so many small steps are as accurate as few.
 TEST(PartialSlip, ASlideThatTurnsIsFollowedWhateverTheNumberOfSteps) {
   struct Round {
-    double share;  // of the slide of gross slip
+    double share;  // fraction of the slide of gross slip
     int steps;
   };
   for (const auto& [share, steps] :
@@ -564,16 +566,16 @@ TEST(PartialSlip, ASlideThatTurnsIsFollowedWhateverTheNumberOfSteps) {
     worst /= mu * Contact::normal(usual_depth);
     const std::string which = (share < 1.0 ? "_small_" : "_") + std::to_string(steps);
     RecordProperty("off" + which, std::to_string(worst));
-    // What is lost without being flushed.
+    // Work that appears neither as energy nor as loss.
     const double missing = (work - contact.response.elastic - contact.heat) / work;
     RecordProperty("missing" + which, std::to_string(missing));
-    // Some ten chords of 1e-4 each, all off to one side; the row has 200 punches.
+    // About ten chords of 1e-4 each with errors of the same sign; the row has 200 punches.
     EXPECT_LE(std::abs(missing), 1e-3) << share << ", " << steps;
     EXPECT_LE(worst, 1e-3) << share << ", " << steps;
   }
 }
 
-/// A straight path in any direction is that in one: turned by 30 degrees.
+/// The result along a straight path is independent of its direction: here rotated by 30 degrees.
 TEST(PartialSlip, DirectionDoesNotMatter) {
   Random random;
   Contact along;
@@ -590,8 +592,8 @@ TEST(PartialSlip, DirectionDoesNotMatter) {
   }
 }
 
-/// A load that follows a curve leaves a point a step: they are merged, and what that changes stays
-/// below what the memory says.
+/// A load along a curve adds a point per step. Points are merged, and the resulting change of force
+/// is at most what merged() reports.
 TEST(PartialSlip, MemoryIsBounded) {
   const double pi = testing::pi;
   double force[3], merged[3];
@@ -614,7 +616,7 @@ TEST(PartialSlip, MemoryIsBounded) {
   EXPECT_LE(merged[2], 1e-3 * limit);
 }
 
-/// Curved paths: of second order in the step.
+/// Curved paths: second order in the step.
 TEST(PartialSlip, OrderOnACurvedPath) {
   const auto led = [](int steps) {
     Contact contact = pressed();
@@ -630,7 +632,7 @@ TEST(PartialSlip, OrderOnACurvedPath) {
   const double coarse = std::abs(led(16) - end);
   const double fine = std::abs(led(64) - end);
   const double finer = std::abs(led(256) - end);
-  EXPECT_LE(fine, coarse / 12.0);  // 1/16: second order
+  EXPECT_LE(fine, coarse / 12.0);  // ideally 1/16: second order
   EXPECT_LE(finer, fine / 12.0);
 }
 
@@ -654,7 +656,7 @@ TEST(PartialSlip, NoDriftOver10000Cycles) {
   }
 }
 
-/// A normal load that cycles under a held slide: nothing bleeds after the first fall.
+/// Cyclic normal load at fixed slide: the force does not decay further after the first unloading.
 TEST(PartialSlip, HeldUnderACyclicLoad) {
   Contact contact = pressed();
   contact.to(usual_depth, 0.3 * Contact::gross(usual_depth));
@@ -675,7 +677,8 @@ TEST(PartialSlip, LossOfContact) {
   contact.to(-1e-9, contact.slide);
   EXPECT_EQ(contact.response.force.a, 0.0);
   EXPECT_EQ(contact.memory.size(), 0);
-  EXPECT_NEAR(contact.heat, stored, 2e-3 * stored);  // three points over rings that slip late
+  // three Gauss points over annuli that begin to slip late
+  EXPECT_NEAR(contact.heat, stored, 2e-3 * stored);
   contact.to(usual_depth, contact.slide);
   EXPECT_EQ(contact.response.force.a, 0.0);
   PartialSlipMemory memory;
@@ -701,7 +704,7 @@ void random_walk(long steps) {
   }
 }
 
-/// Whoever asks for no energies gets the same forces and memory, bit for bit.
+/// If energies are not requested, forces and memory are the same, bit for bit.
 TEST(PartialSlip, ForcesDoNotDependOnWhetherEnergiesAreAskedFor) {
   Random random;
   Contact with;

@@ -14,11 +14,11 @@ namespace statejump::kernel::testing {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// Random inputs with a fixed seed: every run and every compiler sees the same.
+/// Random inputs with a fixed seed, equal for every run and every compiler.
 class Random {
  public:
   double uniform(double low, double high) {
-    // mt19937's raw output is fixed by the standard; distributions are not.
+    // The standard specifies the raw output of mt19937, but not that of distributions.
     return low + (high - low) * (static_cast<double>(generator_()) / 4294967296.0);
   }
   Eigen::Vector3d vector(double size) {
@@ -41,8 +41,8 @@ class Random {
   std::mt19937 generator_{20210110};
 };
 
-/// How bodies move, by position, that one rigid motion about a random point carries along: at up to
-/// 5 m/s.
+/// Random rigid motion about a random point, at up to 5 m/s: returns the motion of a body at a
+/// given position.
 inline auto rigid_motion(Random& random) {
   const Eigen::Vector3d origin = random.vector(0.1);
   const Eigen::Vector3d drift = random.vector(1.0);
@@ -52,7 +52,7 @@ inline auto rigid_motion(Random& random) {
   };
 }
 
-/// |a - b| relative to |b|, for vectors.
+/// Expects |a - b| <= tolerance for vectors.
 inline void expect_vector_near(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double tolerance,
                                const char* what) {
   EXPECT_LE((a - b).norm(), tolerance)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A contact led along a path, against the laws written down again.
+// Compares a contact driven along a path with independently written laws.
 #include "statejump/kernel/laws/driven_contact.hpp"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,8 @@ TEST(DrivenContact, SpringThenSlideBothWays) {
   EXPECT_EQ(begun.tangential_force_x, 0.0);
   const double stick = 0.5 * limit / stiffness;
   const DrivenState held = drive(contact, begun, at(depth, stick));
-  EXPECT_NEAR(held.tangential_force_x, 0.5 * limit, 1e-13 * limit);  // positive with the slide
+  // positive in the direction of the slide
+  EXPECT_NEAR(held.tangential_force_x, 0.5 * limit, 1e-13 * limit);
   EXPECT_NEAR(held.tangential_elastic_energy, 0.25 * limit * stick, 1e-13 * limit * stick);
   const DrivenState slid = drive(contact, held, at(depth, -10.0 * stick));
   EXPECT_NEAR(slid.tangential_force_x, -limit, 1e-13 * limit);
@@ -82,8 +83,7 @@ TEST(DrivenContact, ForcesAreTurnedIntoDepthAndSlide) {
   EXPECT_EQ(let_go.depth, 0.0);
 }
 
-/// Where the depth is 0 the contact closes: the slide until then does not count. Half of the path
-/// below is in the air.
+/// The contact closes at depth 0: earlier slide does not count. Half of this path is in the air.
 TEST(DrivenContact, LossAndReturnOfContact) {
   const DrivenContact contact = stuck();
   const double depth = 1e-6;
@@ -95,7 +95,7 @@ TEST(DrivenContact, LossAndReturnOfContact) {
   EXPECT_EQ(state.normal_force, 0.0);
   EXPECT_EQ(state.tangential_force_x, 0.0);
   EXPECT_EQ(state.tangential_elastic_energy, 0.0);
-  // what was in the spring and the work until the contact opened, half of the step, are lost
+  // the spring energy, and the work until the contact opens at half of the step, are dissipated
   const double old = 0.5 * stiffness * 1e-16;
   EXPECT_NEAR(state.friction_dissipation, old + 0.5 * stiffness * 1e-8 * 1e-8, 1e-12 * old);
   state = drive(contact, state, at(depth, 3e-8));
@@ -105,7 +105,7 @@ TEST(DrivenContact, LossAndReturnOfContact) {
   EXPECT_NEAR(state.tangential_force_x, stiffness * 1e-8, 1e-12 * stiffness * 1e-8);
 }
 
-/// Every law of the catalogue along one path: forces within their bounds, nothing gained.
+/// Every law of the catalogue along one path: forces within their bounds, no energy is created.
 template <class Law>
 void leads(Law JointLaw::*member) {
   for (const std::string& name : law_names<Law>()) {
@@ -148,7 +148,7 @@ TEST(DrivenContact, RadiiFromEffectiveRadiusAndClearance) {
   EXPECT_THROW(driven_geometry(0.01, 0.0, 0.01), OutOfRange);
   JointLaw line;
   line.normal = Johnson{};
-  EXPECT_THROW(validate(contact_with(line)), OutOfRange);  // of a flat wall
+  EXPECT_THROW(validate(contact_with(line)), OutOfRange);  // a line contact has no flat wall
 }
 
 }  // namespace

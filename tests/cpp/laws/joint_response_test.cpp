@@ -13,7 +13,7 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-/// Journal in bearing in a random state of contact; Table 2 of the paper.
+/// Journal in a bearing in a random state of contact; data of the paper's Table 2.
 struct RandomJoint {
   std::mt19937_64 generator{7};
   double uniform(double low, double high) {
@@ -54,7 +54,7 @@ JointLaw law_of(const char* normal, const char* dissipation, const char* frictio
   return law;
 }
 
-// k_t = 4 (G*/E*) 2 E* a against 8 G* a: a few roundings, passed on by the step of the spring.
+// k_t = 4 (G*/E*) 2 E* a compared with 8 G* a: a few roundings, propagated by the spring.
 TEST(JointResponse, DefaultLawsAreHertzMindlin) {
   const JointLaw law = law_of("hertz_internal", "none", "mindlin", "material");
   RandomJoint joint;
@@ -100,8 +100,8 @@ TEST(JointResponse, DefaultLawsAreHertzMindlin) {
   EXPECT_GT(sticking_damped, 50);
 }
 
-// A unit of force that is 2^40 times as large: the same answer to the last bit, whatever the laws,
-// so that none of them holds a force, stiffness or energy of its own against zero.
+// With a unit of force 2^40 times as large, every law gives the same result to the last bit. So no
+// law compares a force, stiffness or energy with a fixed threshold other than zero.
 TEST(JointResponse, UnitOfForceDoesNotMatter) {
   const double unit = std::ldexp(1.0, -40);
   for (const std::string& normal : law_names<NormalLaw>()) {
@@ -119,7 +119,7 @@ TEST(JointResponse, UnitOfForceDoesNotMatter) {
           small.elastic.effective_shear_modulus *= unit;
           small.effective_mass *= unit;
           JointKinematics at = joint.next();
-          at.time_step = 1e-9;  // short of slipping
+          at.time_step = 1e-9;  // too short to slip
           ContactHistory history;
           ContactHistory small_history;
           for (int step = 0; step < 3; ++step) {
@@ -141,8 +141,8 @@ TEST(JointResponse, UnitOfForceDoesNotMatter) {
   }
 }
 
-// Whatever the laws, what the bodies lose is what the contact takes: power of the wrench on the
-// bodies = power of the contact force with the velocity that friction saw.
+// For all laws the bodies lose the energy that the contact receives: power of the wrench on the
+// bodies = power of the contact force at the velocity used by friction.
 TEST(JointResponse, VelocityAndWrenchBelongTogether) {
   RandomJoint joint;
   const ContactParameters parameters = aluminium(0.0, 0.0);
@@ -170,7 +170,7 @@ TEST(JointResponse, VelocityAndWrenchBelongTogether) {
   }
 }
 
-// F (1 + (chi/K) v) with the impact speed of the contact, floored.
+// F (1 + (chi/K) v) with the impact speed of the contact, not below smallest_impact_speed.
 TEST(JointResponse, DissipationUsesTheImpactSpeed) {
   JointLaw law = law_of("hertz_internal", "hunt_crossley", "none", "material");
   law.smallest_impact_speed = 0.02;
@@ -193,7 +193,7 @@ TEST(JointResponse, DissipationUsesTheImpactSpeed) {
   }
 }
 
-// The viscous part belongs to a spring that sticks; a law without a spring has none.
+// The viscous part belongs to a sticking spring; a law without a spring has none.
 TEST(JointResponse, TangentialDampingNeedsTheSpring) {
   RandomJoint joint;
   JointKinematics at = joint.next();
@@ -213,7 +213,7 @@ TEST(JointResponse, TangentialDampingNeedsTheSpring) {
   EXPECT_DOUBLE_EQ(found.friction_slope, 0.3 * found.contact.normal_force / 1e-3);
 }
 
-// Hertz: V = 2/5 K delta^2.5, so dV/dR = V/(2 R) of the effective radius; at a flat wall R = R1.
+// Hertz: V = 2/5 K delta^2.5, so dV/dR = V/(2 R) for the effective radius; R = R1 at a flat wall.
 TEST(RadiusEnergyChange, HertzInClosedForm) {
   const NormalMaterial material{38e9};
   const double depth = 2e-6;
@@ -224,7 +224,8 @@ TEST(RadiusEnergyChange, HertzInClosedForm) {
   // d ln R_eff = dR1/R1 + dR2/R2 - d(R2 - R1)/(R2 - R1)
   const double relative = 2e-9 + 1e-9 - (5.1e-12 - 10e-12) / 1e-4;
   EXPECT_NEAR(radius_energy_change(law, material, depth, before, after), 0.5 * energy * relative,
-              2e-7 * 0.5 * energy * relative);  // the step 1e-9 itself is rounded to 2e-7 of it
+              // the radius change of 1e-9 is itself rounded, by 2e-7 of it
+              2e-7 * 0.5 * energy * relative);
   const double infinity = std::numeric_limits<double>::infinity();
   const NormalGeometry wall{0.05, infinity, 0.01};
   const NormalGeometry grown{0.05 * (1 + 1e-8), infinity, 0.01};
@@ -235,7 +236,7 @@ TEST(RadiusEnergyChange, HertzInClosedForm) {
   EXPECT_EQ(radius_energy_change(law, material, -depth, wall, grown), 0.0);
 }
 
-// There and back: the change is taken in the middle of both radii, so that it only turns its sign.
+// The change is evaluated at the mean radii, so it only changes its sign if the radii are swapped.
 TEST(RadiusEnergyChange, TurnsItsSignWithTheChange) {
   const NormalMaterial material{38e9};
   const double infinity = std::numeric_limits<double>::infinity();
@@ -245,7 +246,7 @@ TEST(RadiusEnergyChange, TurnsItsSignWithTheChange) {
         NormalGeometry{5.001e-3, 5.103e-3, 0.01}}) {
     const double there = radius_energy_change(HertzInternal{}, material, 2e-6, one, other);
     const double back = radius_energy_change(HertzInternal{}, material, 2e-6, other, one);
-    // Both differences are the same but for rounding of V over the step, 1e-5.
+    // Both are the same difference, except for rounding of V over the step of 1e-5.
     EXPECT_NEAR(there, -back, 1e-10 * std::abs(there));
     EXPECT_NE(there, 0.0);
   }
@@ -256,7 +257,7 @@ TEST(RadiusEnergyChange, TurnsItsSignWithTheChange) {
               1e-10 * there);
 }
 
-// Any law: with the part -F dc it is the whole change of V at fixed eccentricity.
+// Together with -F dc it is the whole change of V at fixed eccentricity, for any law.
 TEST(RadiusEnergyChange, ClosesAFiniteChangeForEveryLaw) {
   const NormalMaterial material{38e9};
   for (const std::string& name : law_names<NormalLaw>()) {
@@ -283,12 +284,12 @@ TEST(RadiusEnergyChange, ClosesAFiniteChangeForEveryLaw) {
     }
     const double expected = state(steps).elastic_energy - state(0).elastic_energy;
     EXPECT_GT(expected, 0.1 * state(0).elastic_energy);
-    // Trapezoidal rule: V''' h^3/12 per step, h/delta = 0.3/200; (h/delta)^2/12 of the whole.
+    // Trapezoidal rule: error V''' h^3/12 per step, h/delta = 0.3/200, (h/delta)^2/12 of all.
     EXPECT_NEAR(work, expected, 1e-6 * expected) << name;
   }
 }
 
-// A hole that shrinks on a pin at rest is an impact like any other: the depth grows at -dc/dt.
+// A hole that shrinks onto a pin at rest is an impact like any other: the depth grows at -dc/dt.
 TEST(JointResponse, DissipationSeesTheRateOfTheDepth) {
   const JointLaw law = law_of("hertz_internal", "hunt_crossley", "none", "material");
   RandomJoint joint;
@@ -310,7 +311,7 @@ TEST(JointResponse, DissipationSeesTheRateOfTheDepth) {
   EXPECT_DOUBLE_EQ(hole.contact.normal_force, bodies.contact.normal_force);
   EXPECT_DOUBLE_EQ(hole.contact.damping_dissipation, bodies.contact.damping_dissipation);
   EXPECT_GT(hole.dissipation_force, 0.0);
-  // Neither: the hole grows as fast as the pin comes.
+  // No approach: the hole grows as fast as the pin moves.
   EXPECT_NEAR(with(closing, closing).contact.normal_force, bodies.contact.elastic_normal_force,
               1e-12 * bodies.contact.normal_force);
 }

@@ -21,7 +21,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 const NormalGeometry joint{5e-3, 5.1e-3, 0.01};
 const NormalMaterial aluminium{70e9 / (2.0 * 0.91)};
 
-// R2 - R1 of rounded radii carries 4e-15 of c; laws pass it on at most amplified threefold.
+// R2 - R1 of rounded radii has an error of 4e-15 of c; the laws amplify it at most threefold.
 constexpr double rounding = 3e-14;
 
 NormalState at(const std::string& name, double depth) {
@@ -32,15 +32,15 @@ void expect_relative(double value, double expected, double tolerance, const char
   EXPECT_NEAR(value, expected, tolerance * std::abs(expected)) << what;
 }
 
-// Digits: 40-digit arithmetic for K; F at delta = 1 um is K 1e-9.
+// Expected values: 40-digit arithmetic for K; F at delta = 1 um is K 1e-9.
 TEST(NormalLaws, HertzAtTable2) {
   expect_relative(at("hertz_paper", 1e-6).force, 2.576765e9 * 1e-9, 2e-7, "external K");
   expect_relative(at("hertz_internal", 1e-6).force, 25.896166508620712701, rounding, "internal K");
   expect_relative(at("hertz_internal", 1e-6).contact_width, std::sqrt(0.255 * 1e-6), rounding, "a");
 }
 
-// Digits: 25-digit root of the printed relation delta(f) by bisection in ln f, stiffness by
-// differentiating that relation, energy F delta - integral of delta dF by quadrature.
+// Expected values: 25-digit root of the printed relation delta(f) by bisection in ln f, stiffness
+// as derivative of that relation, energy F delta - integral of delta dF by quadrature.
 TEST(NormalLaws, LineContactsAgainstHighPrecision) {
   const NormalState johnson = at("johnson", 1e-5);
   expect_relative(johnson.force, 2947.2120306520961, rounding, "F");
@@ -48,7 +48,7 @@ TEST(NormalLaws, LineContactsAgainstHighPrecision) {
   expect_relative(johnson.elastic_energy, 0.0129389022106475615, rounding, "U");
   const NormalState deep = at("johnson", 5e-5);
   expect_relative(deep.force, 41573.0584663178223, rounding, "F");
-  // u - 1 = 0.26 there: dR's rounding is amplified 15-fold
+  // u - 1 = 0.26 there: the rounding error of dR is amplified 15-fold
   expect_relative(deep.stiffness, 2665982167.80889568, 15 * rounding, "k");
   const NormalState esdu = at("esdu_78035", 1e-5);
   expect_relative(esdu.force, 1838.66469143979695, rounding, "F");
@@ -56,8 +56,8 @@ TEST(NormalLaws, LineContactsAgainstHighPrecision) {
   expect_relative(esdu.elastic_energy, 0.00849385432061475483, rounding, "U");
 }
 
-// Digits by another route: Persson's pressure integrated with the logarithmic Green's function of
-// disc and hole for the gap at phi = 0, 25 digits; stiffness from its central difference, good to
+// Independent values: gap at phi = 0 from Persson's pressure, integrated with the logarithmic
+// Green's function of disc and hole to 25 digits; stiffness by a central difference, accurate to
 // 1e-11; energy by quadrature of delta dF. epsilon is the half angle of the arc.
 TEST(NormalLaws, PerssonAgainstPressureIntegral) {
   const NormalState light = at("persson", 1e-6);
@@ -74,7 +74,7 @@ TEST(NormalLaws, PerssonAgainstPressureIntegral) {
   expect_relative(deep.elastic_energy, 2.6982981204902, rounding, "U");
 }
 
-// Persson's depth is fixed to Johnson's for light loads: the ratio tends to 1 with delta/dR.
+// Persson's depth is defined to equal Johnson's at light load: the ratio tends to 1 with delta/dR.
 TEST(NormalLaws, PerssonTendsToJohnson) {
   for (const double depth : {1e-14, 1e-11, 1e-9, 1e-8}) {
     const double ratio = at("persson", depth).force / at("johnson", depth).force;
@@ -82,8 +82,8 @@ TEST(NormalLaws, PerssonTendsToJohnson) {
   }
 }
 
-// Over the range: positive, F and a rise, dF/d(delta) and energy agree with differences and
-// quadrature of F.
+// Over the range of each law: F is positive, F and a increase, and stiffness and energy agree with
+// differences and quadrature of F.
 class EveryNormalLaw : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(EveryNormalLaw, IsMonotoneAndConsistent) {
@@ -102,7 +102,7 @@ TEST_P(EveryNormalLaw, IsMonotoneAndConsistent) {
     const double h = 1e-5;
     const double slope = (force(depth * (1 + h)) - force(depth * (1 - h))) / (2 * h * depth);
     expect_relative(slope, state.stiffness, 2e-8, "dF/d(delta)");
-    // x = depth s^2 takes the square root of Hertz's force away; ln remains, 61 points suffice
+    // x = depth s^2 removes Hertz's square root; a logarithm remains, 61 points suffice
     const double energy = boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
         [&](double s) { return 2.0 * s * depth * force(depth * s * s); }, 0.0, 1.0, 8, 1e-12);
     expect_relative(energy, state.elastic_energy, 1e-10, "energy");
@@ -148,7 +148,7 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, EveryNormalLaw,
                                            "persson"),
                          [](const auto& law) { return std::string(law.param); });
 
-// The turning points, where u = 1: f = 4 pi E* dR/e^2 and 4 pi E* dR. The approach to it is a
+// Turning points, u = 1: f = 4 pi E* dR/e^2 and 4 pi E* dR. F approaches them as a
 // square root: 1 - f/f_max = sqrt(2 (1 - delta/delta_max)), 1.4e-6 at 1e-12.
 TEST(NormalLaws, TurningPoints) {
   const double load =
@@ -167,7 +167,8 @@ TEST(NormalLaws, BadInputIsNamed) {
   EXPECT_THROW(validate(joint, {nan}), std::invalid_argument);
 }
 
-// Impact m delta'' = -F by RK4 until the force ends, against the energy integral of damped_force().
+// Impact m delta'' = -F by RK4 until the force vanishes, compared with the integral in
+// damped_force().
 double impact_restitution(const NormalLaw& law, double ratio, double v0) {
   const double mass = 1.0;
   const auto acceleration = [&](double x, double v) {
@@ -175,7 +176,7 @@ double impact_restitution(const NormalLaw& law, double ratio, double v0) {
   };
   double x = 0.0;
   double v = v0;
-  const double dt = 2e-8 / v0;  // depths of 10 um and more: some 500 steps and more
+  const double dt = 2e-8 / v0;  // depths of at least 10 um: at least some 500 steps
   for (int i = 0; i < 10000000; ++i) {
     const double a1 = acceleration(x, v);
     const double v2 = v + 0.5 * dt * a1;
@@ -207,7 +208,7 @@ TEST(Dissipation, ImpactReturnsTheRestitutionOfItsEnergyIntegral) {
       for (const double e : {0.3, 0.9}) {
         const double v0 = 0.2;
         const double ratio = damping_ratio(dissipation_law(name), {e, v0});
-        // contact starts like delta^1.5 or delta/ln delta: RK4 loses order there, 1e-5 is left
+        // at first contact F is like delta^1.5 or delta/ln delta, so RK4 loses order: 1e-5 remains
         EXPECT_NEAR(impact_restitution(normal_law(normal), ratio, v0),
                     expected_restitution(ratio * v0), 1e-5)
             << normal << ", " << name << ", e = " << e;
@@ -217,7 +218,7 @@ TEST(Dissipation, ImpactReturnsTheRestitutionOfItsEnergyIntegral) {
 }
 
 TEST(Dissipation, SmallLossLimit) {
-  const double lost = 1e-5;  // second order: 1e-5 relative and a small factor
+  const double lost = 1e-5;  // second-order term: 1e-5 relative, times a small factor
   const auto slope = [&](const char* name) {
     return (1 - expected_restitution(damping_ratio(dissipation_law(name), {1 - lost, 1.0}))) / lost;
   };
@@ -243,11 +244,8 @@ TEST(Dissipation, PointValuesClipAndBadInput) {
   EXPECT_NO_THROW(validate(ImpactParameters{1.0, 1.0}));
 }
 
-/// A free impact in depth: v dv/(1 + lambda v) = -(F/m) d(delta) integrated from touch to parting,
-/// v as a function of the elastic energy w = V(delta)/(m v0^2), dv/dw = -(1 + a v)/v, v0 = 1. From
-/// the deepest point back the speed is found by the same equation.
-// Of the coefficient that was asked for, of another one, of the one that stands for none; and of laws
-// that have nothing to prepare.
+// Laws give the same ratio after prepare(): for the prepared e, for another e and for e = 1. Laws
+// without a coefficient to prepare are included.
 TEST(Dissipation, WhatIsPreparedAnswersTheSame) {
   for (const std::string& name : law_names<DissipationLaw>()) {
     DissipationLaw prepared = dissipation_law(name);
@@ -262,10 +260,13 @@ TEST(Dissipation, WhatIsPreparedAnswersTheSame) {
   EXPECT_EQ(none({0.0, 1.0}), ExactRestitution{}({0.0, 1.0}));
 }
 
+/// Free impact: v dv/(1 + lambda v) = -(F/m) d(delta), integrated from touch to separation. With
+/// the elastic energy w = V(delta)/(m v0^2) and v0 = 1, dw = -v dv/(1 + a v). Approach and rebound
+/// pass the same w.
 TEST(Dissipation, ExactRestitutionReturnsWhatIsAsked) {
   for (const double e : {1.0, 0.999, 0.9, 0.8, 0.6, 0.4, 0.2, 0.1}) {
     const double a = damping_ratio(dissipation_law("exact_restitution"), {e, 1.0});
-    // by many steps of Simpson's rule; below e = 0.1 its end is too near the pole at a e = 1
+    // Simpson's rule with many steps; below e = 0.1 the limit is too close to the pole a e = 1
     const auto depth = [a](double from, double to) {  // w(v): integral of v/(1 + a v) dv
       const int n = 200000;
       const double h = (to - from) / n;
@@ -279,7 +280,7 @@ TEST(Dissipation, ExactRestitutionReturnsWhatIsAsked) {
     EXPECT_NEAR(depth(0.0, 1.0), -depth(-e, 0.0), 1e-9) << e;
   }
   EXPECT_EQ(damping_ratio(dissipation_law("exact_restitution"), {1.0, 1.0}), 0.0);
-  // so strong a damper that 1e-6 comes back: a e -> 1 from below
+  // e = 0 is replaced by 1e-6, a very strong damper: a e -> 1 from below
   EXPECT_NEAR(damping_ratio(dissipation_law("exact_restitution"), {0.0, 1.0}), 1e6, 1.0);
   EXPECT_NEAR(damping_ratio(dissipation_law("exact_restitution"), {0.7, 0.5}),
               2.0 * ExactRestitution::coefficient(0.7), 1e-14);
@@ -307,8 +308,8 @@ TEST(Friction, AmbrosioRampAndCreep) {
   EXPECT_FALSE(has(law, Trait::holds_static_load));
 }
 
-// A mass pushed by half of the Coulomb limit: laws that remember hold it, ambrosio creeps at v0 +
-// (v1 - v0)/2, none lets it go.
+// A mass pushed by half of the Coulomb limit: laws with a memory hold it, with ambrosio it creeps
+// at v0 + (v1 - v0)/2, with none it accelerates.
 TEST(Friction, StaticLoad) {
   const FrictionParameters parameters{0.3, 1e-4, 1e-3};
   for (const std::string& name : law_names<FrictionLaw>()) {
@@ -320,7 +321,7 @@ TEST(Friction, StaticLoad) {
     for (int i = 0; i < 100000; ++i) {
       const FrictionResponse response =
           evaluate(law, parameters, {100.0, 1e5, Vector3(v, 0, 0), dt, Vector3::UnitZ()}, history);
-      // a dashpot of critical size damps the stuck oscillation
+      // a dashpot with critical damping for the oscillation of the stuck mass
       const double damping = has(law, Trait::has_memory) ? 2 * std::sqrt(1e5) : 0.0;
       v += dt * (15.0 + response.force_on_1.x() - damping * v);
       x += dt * v;
@@ -339,7 +340,7 @@ TEST(Friction, StaticLoad) {
   }
 }
 
-// A contact that opens keeps nothing, neither spring nor axis: it is as if it had never touched.
+// An opened contact keeps neither spring nor axis: it is like a contact that never touched.
 TEST(Friction, OpenContactForgets) {
   const FrictionParameters parameters{0.3, 0.0, 1e-3};
   for (const char* name : {"mindlin", "mindlin_deresiewicz"}) {
@@ -356,7 +357,7 @@ TEST(Friction, OpenContactForgets) {
   }
 }
 
-// Loaded at a constant ratio of both forces no ring slips: the force as given, and it stays.
+// Loaded at a constant ratio of both forces no annulus slips: the given force is kept.
 TEST(Friction, PartialSlipBeginsWithoutSlipWhereLoadedObliquely) {
   const FrictionParameters parameters{0.3, 0.0, 1e-3};
   const double stiffness = 1e6;
@@ -392,7 +393,7 @@ class JointMotion : public ::testing::Test {
   }
 };
 
-// eq. (15) by differentiating the points of eq. (14) numerically.
+// Compares eq. (15) with a numerical derivative of the points of eq. (14).
 TEST_F(JointMotion, PaperVelocityIsTheDerivativeOfThePoints) {
   const auto points = [&](double time) {
     const Vector3 c = journal.position + time * journal.velocity;
@@ -400,14 +401,14 @@ TEST_F(JointMotion, PaperVelocityIsTheDerivativeOfThePoints) {
     const Vector3 n = (c - d).normalized();
     return Vector3(c + joint.journal_radius * n - d - joint.bearing_radius * n);
   };
-  const double h = 1e-9;  // against |d|/|d'| = 1e-4 s: h^2 1e8 = 1e-10; rounding 1e-18/h = 1e-9
+  const double h = 1e-9;  // relative to |d|/|d'| = 1e-4 s: h^2 1e8 = 1e-10; rounding 1e-18/h = 1e-9
   const Vector3 difference = (points(h) - points(-h)) / (2 * h);
   const Vector3 v = PaperVelocity{}.velocity(contact(), journal, bearing, axis);
   EXPECT_LT((v - difference).norm(), 1e-8);
 }
 
-// A tight joint whose parts happen to be concentric touches all around: the normal is any, there is
-// no way to slide along, and nothing is divided by the eccentricity.
+// Concentric bodies without clearance touch all around: the normal is arbitrary, there is no
+// sliding direction, and nothing is divided by the eccentricity.
 TEST_F(JointMotion, PaperVelocityOfConcentricPartsHasNoTangentialPart) {
   JointContact c = contact();
   c.eccentricity = 0.0;
@@ -440,7 +441,7 @@ TEST_F(JointMotion, WrenchIsTheTransposeOfTheVelocity) {
   check(PaperVelocity{}, "paper");
 }
 
-// The moment that the paper's forces leave: delta n x F_t. Contact forces of `material` balance.
+// The paper's forces leave the moment delta n x F_t unbalanced; those of `material` balance.
 TEST_F(JointMotion, MomentBalance) {
   const JointContact c = contact();
   const Vector3 force(120.0, -45.0, 0.0);

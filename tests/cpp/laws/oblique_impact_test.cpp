@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A sphere that hits a wall at an angle: published numbers. Tests 4 and 5 of Chung and Ooi (Granul.
-// Matter 13, 2011, 643-656), whose figures were read off to about half a per cent of their scales.
+// Oblique impact of a sphere on a wall, compared with published numbers: tests 4 and 5 of Chung and
+// Ooi (Granul. Matter 13, 2011, 643-656). Their figures were read to about 0.5 % of the scales.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,13 +21,13 @@ struct Sphere {
 };
 
 struct Rebound {
-  double normal, tangential;  // of the centre [m/s]
-  double contact_point;       // along the wall [m/s]
-  double angular;             // [rad/s], negative: the wall holds back the side that touches
-  double dissipated, lost;    // by friction; of the kinetic energy [J]
+  double normal, tangential;  // velocities of the centre [m/s]
+  double contact_point;       // velocity of the contact point along the wall [m/s]
+  double angular;             // [rad/s]; negative, because the wall decelerates the contact point
+  double dissipated, lost;    // loss by friction; loss of kinetic energy [J]
 };
 
-/// Leapfrog on a rigid wall from touch to parting.
+/// Leapfrog of the sphere on a rigid wall from first touch to separation.
 Rebound rebound(const Sphere& sphere, const std::string& friction, double normal, double tangential,
                 int steps = 20000) {
   JointLaw law;
@@ -35,7 +35,7 @@ Rebound rebound(const Sphere& sphere, const std::string& friction, double normal
   law.friction_parameters.friction_coefficient = sphere.friction;
   law.restitution = sphere.restitution;
   law.dissipation = dissipation_law("exact_restitution");
-  // against a rigid wall the moduli are those of the sphere alone
+  // against a rigid wall only the sphere's elastic constants count
   const double shear = sphere.young / (2.0 * (1.0 + sphere.poisson));
   const ElasticPair pair{sphere.young / (1.0 - sphere.poisson * sphere.poisson),
                          shear / (2.0 - sphere.poisson)};
@@ -44,7 +44,7 @@ Rebound rebound(const Sphere& sphere, const std::string& friction, double normal
   const double inertia = 0.4 * mass * sphere.radius * sphere.radius;
   const double stiffness = hertz_stiffness(pair.effective_young_modulus, sphere.radius);
   const double deepest = std::pow(1.25 * mass * normal * normal / stiffness, 0.4);
-  const double step = 2.94 * deepest / normal / steps;  // of Hertz's contact time
+  const double step = 2.94 * deepest / normal / steps;  // fraction of Hertz's contact time
   const double ratio = damping_ratio(law, normal);
   Rebound at{normal, tangential, tangential, 0.0, 0.0, 0.0};
   ContactHistory history;
@@ -79,9 +79,9 @@ struct Reading {
   double at, value;
 };
 
-/// Measured by Kharaz, Gorham and Salman (Powder Technol. 120, 2001): tangential restitution
-/// against the angle of incidence [degrees], spin after the impact [rad/s], angle at which the
-/// contact point leaves [degrees].
+/// Measured by Kharaz, Gorham and Salman (Powder Technol. 120, 2001) against the angle of incidence
+/// [degrees]: tangential restitution; spin after the impact [rad/s]; rebound angle of the contact
+/// point [degrees].
 const std::vector<Reading> measured_restitution{
     {2.24, 0.797},  {4.22, 0.746},  {9.84, 0.675},  {20.22, 0.599}, {30.36, 0.690},
     {39.54, 0.774}, {49.60, 0.848}, {71.07, 0.937}, {79.23, 0.970}, {85.17, 0.979}};
@@ -134,12 +134,13 @@ TEST(ObliqueImpact, MeasuredReboundOfAluminiumOxide) {
   }
   const char* law = "mindlin_deresiewicz";
   EXPECT_LE(root_mean_square(measured_restitution, law, 90.0, restitution_of), 0.02);
-  EXPECT_LE(root_mean_square(measured_spin, law, 90.0, spin_of), 25.0);  // of 612
+  EXPECT_LE(root_mean_square(measured_spin, law, 90.0, spin_of), 25.0);  // of 612 rad/s
   EXPECT_LE(root_mean_square(measured_angle, law, 90.0, angle_of), 1.5);
 }
 
-/// Test 5: spheres of steel at 5 m/s across the wall, contact point after against before, both over
-/// mu times the normal speed. Finite elements of Wu (as quoted there).
+/// Test 5: steel spheres with a normal speed of 5 m/s. Tangential velocity of the contact point
+/// after against before the impact, both over mu times the normal speed. Finite elements of Wu
+/// (quoted there).
 const std::vector<Reading> elements_contact_point{
     {0.272, -0.027}, {0.586, -0.027}, {0.876, -0.080}, {1.190, -0.213}, {1.553, -0.373},
     {1.915, -0.627}, {2.314, -0.947}, {2.785, -1.253}, {3.317, -1.520}, {3.970, -1.720},
@@ -152,7 +153,7 @@ const std::vector<Reading> elements_spin{
 const Sphere steel{208e9, 0.3, 7850.0, 0.1, 0.3, 1.0};
 
 TEST(ObliqueImpact, FiniteElementsOfASteelSphere) {
-  double rms[2][2];  // contact point and spin, of a spring and of partial slip
+  double rms[2][2];  // contact point and spin, for the simple spring and for partial slip
   for (int i = 0; i < 2; ++i) {
     const char* law = compared_laws[i];
     double point = 0.0;
@@ -174,16 +175,15 @@ TEST(ObliqueImpact, FiniteElementsOfASteelSphere) {
     std::printf("%-20s rms over mu v_n: contact point %.3f, spin %.3f\n", law, rms[i][0],
                 rms[i][1]);
   }
-  // mesh and reading leave some hundredths; the spring is five times as far away
+  // tolerance of some hundredths for mesh and reading; the simple spring is four times worse
   EXPECT_LE(rms[1][0], 0.08);
   EXPECT_LE(rms[1][1], 0.06);
   EXPECT_GE(rms[0][0], 4.0 * rms[1][0]);
 }
 
-/// Maw, Barber and Fawcett (Wear 38, 1976), in psi = v_t/(mu kappa v_n), kappa = E*/(4 G*) and
-/// chi = 7/(4 kappa) of a sphere: it slides throughout from psi_1 = 4 chi - 1 on, with psi_2 =
-/// psi_1
-/// - 4 chi, and sticks at first touch below psi_1 = 1.
+/// Maw, Barber and Fawcett (Wear 38, 1976), with psi = v_t/(mu kappa v_n), kappa = E*/(4 G*) and
+/// chi = 7/(4 kappa) for a sphere. It slides throughout for psi_1 >= 4 chi - 1, then psi_2 = psi_1
+/// - 4 chi. For psi_1 < 1 it sticks at first touch.
 TEST(ObliqueImpact, BoundsOfGrossSlip) {
   const double kappa = (2.0 - steel.poisson) / (2.0 * (1.0 - steel.poisson));
   const double chi = 7.0 / (4.0 * kappa);
@@ -195,9 +195,9 @@ TEST(ObliqueImpact, BoundsOfGrossSlip) {
   for (const double beyond : {0.02, 0.5, 3.0}) {
     EXPECT_NEAR(leaves_with(bound + beyond), bound + beyond - 4.0 * chi, 2e-3) << beyond;
   }
-  // below the bound friction falls before the end: less is taken
+  // below the bound, friction decreases before the end and takes less momentum
   EXPECT_GT(leaves_with(bound - 0.3), bound - 0.3 - 4.0 * chi + 5e-3);
-  // without dissipation at the rim nothing would be lost: what is lost is what friction books
+  // the lost kinetic energy equals the friction loss, which annuli at the rim cause here
   const Rebound gentle = rebound(steel, "mindlin_deresiewicz", 5.0, 0.5 * scale, 40000);
   EXPECT_GT(gentle.dissipated, 0.0);
   EXPECT_NEAR(gentle.lost, gentle.dissipated, 2e-3 * gentle.dissipated + 1e-7 * 0.5 * 25.0);

@@ -45,7 +45,7 @@ TEST(KnownLaw, HasTheParametersOfTheLaw) {
   });
 }
 
-// Open, stuck and slipping contacts, loaded and unloaded, with dashpots and without.
+// Open, sticking and slipping contacts during loading and unloading, with and without dashpots.
 TEST(KnownLaw, AnswersWithTheBitsOfTheLaw) {
   const JointLaw law = joint_law({"hertz_internal", "none", "mindlin", "material"});
   std::mt19937_64 generator{7};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Laws behind a table of functions, as shared objects hold them; here the table is made in place.
+// Laws accessed through a table of functions, as in shared objects; here built in this file.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 const NormalGeometry joint{5e-3, 5.1e-3, 0.01};
 const NormalMaterial aluminium{70e9 / (2.0 * 0.91)};
 
-/// Hertz again; below 1 um it is out of order.
+/// Hertz law that throws for depths below 1 um.
 struct Moody {
   static constexpr LawInfo info{
       "moody", "F", "the tests", "any", Trait::holds_static_load | Trait::needs_axis, {}};
@@ -29,7 +29,7 @@ struct Moody {
   }
 };
 
-/// The catalogue with one law more, and one that cannot be used, as the loader leaves it.
+/// The catalogue with an additional law and an unusable one, as the loader would add them.
 class UserLawTest : public ::testing::Test {
  protected:
   UserLawTest() {
@@ -166,9 +166,9 @@ TEST(UserLaws, EveryKindGoesThroughItsTable) {
             Vector3(-1.0, 0.0, 0.0));
 }
 
-// ---- laws that answer with one number that is none; which one is told through an input
+// ---- laws that return one invalid number; an input selects which one
 
-/// NaN in place of the entry `at` of what a law answers, if it is the wanted one.
+/// Replaces `entry` by a wrong number (NaN) if `at` is the selected index.
 void spoil(double wanted, int at, double& entry, double wrong = nan) {
   if (wanted == at) entry = wrong;
 }
@@ -277,7 +277,7 @@ TEST(UserLaws, EveryNumberOfAnAnswerIsLookedAt) {
     const FrictionKinematics kinematics{100.0, 1e7, Vector3::Zero(), static_cast<double>(i),
                                         Vector3::UnitZ()};
     const std::string said = refused([&] { UserFrictionLaw{friction}({}, kinematics, history); });
-    EXPECT_EQ(said.empty(), i == 10) << i << said;  // a negative dissipation may be a law's own
+    EXPECT_EQ(said.empty(), i == 10) << i << said;  // a negative dissipation is allowed
   }
   EXPECT_NE(refused([&] { UserFrictionLaw{friction}.largest_slope({}, -1.0); }), "");
 
@@ -294,7 +294,7 @@ TEST(UserLaws, EveryNumberOfAnAnswerIsLookedAt) {
   }
 }
 
-// What a loader looks at before it trusts a table.
+// Fields that a loader checks before it uses a table.
 TEST(UserLaws, TableSaysWhatItIs) {
   const UserLawTable& table = *user_law_table<Doubling>("a hash");
   EXPECT_EQ(table.version, user_law_version);
@@ -302,7 +302,7 @@ TEST(UserLaws, TableSaysWhatItIs) {
   EXPECT_STREQ(table.name, "doubling");
   EXPECT_STREQ(table.kernel, "a hash");
   EXPECT_EQ(table.info, &Doubling::info);
-  // Its digits to the base of 31, modulo 2^32, are the sizes; here from the last one on.
+  // The number encodes the sizes as digits of base 31, modulo 2^32; here from the last digit.
   std::uint32_t expected = 0;
   std::uint32_t weight = 1;
   for (const std::size_t size :

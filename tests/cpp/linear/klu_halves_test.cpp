@@ -17,8 +17,9 @@ namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
 
-/// Nodes in a ring, two unknowns each that also depend on those of both neighbours, and a
-/// multiplier that holds a combination of them: zeros on the diagonal, entries of 1e7 and of 1.
+/// Matrix of a ring of nodes. The two unknowns of each node also depend on those of both
+/// neighbours, and a multiplier constrains a combination of them: zeros on the diagonal, entries of
+/// order 1e7 and 1.
 Matrix ring(int nodes, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> entry(0.5, 1.5);
@@ -41,7 +42,7 @@ Matrix ring(int nodes, unsigned seed) {
   return made;
 }
 
-/// Factors of a matrix by KLU, ordered in halves.
+/// KLU factorization of a matrix, ordered in halves.
 struct Klu {
   explicit Klu(Matrix matrix) : of(std::move(matrix)) {
     klu_defaults(&common);
@@ -61,7 +62,7 @@ struct Klu {
   int size() const { return static_cast<int>(of.rows()); }
   int* columns() { return of.outerIndexPtr(); }
   int* rows() { return of.innerIndexPtr(); }
-  /// Every entry of the factors, column by column, and what KLU divides the rows by.
+  /// All entries of the factors, column by column, and KLU's row scaling.
   std::vector<double> all() {
     const auto entries = static_cast<std::size_t>(numeric->lnz + numeric->unz);
     std::vector<int> begins(2 * index(size() + 1)), rows_of(entries);
@@ -87,12 +88,13 @@ TEST(KluHalves, ARingIsCutAtTwoPlaces) {
   ASSERT_EQ(made.symbolic->nblocks, 1);
   ASSERT_TRUE(made.order.is_cut());
   EXPECT_EQ(made.order.second, made.size() / 2);
-  // Rows of a node reach both of its neighbours: at each end two nodes, and one that is cut itself.
+  // Rows of a node reach both neighbours. The separator has two nodes at each end of a half and a
+  // node that is cut.
   EXPECT_LE(made.size() - made.order.separator, 2 * 3 * 3);
   HalvedFactors halves;
   halves.begin(*made.numeric, *made.symbolic, made.order);
   EXPECT_TRUE(halves.are_halved());
-  // Pivots that do not keep to the halves are not taken for such.
+  // A wrong order, whose pivots are not confined to the halves, is detected.
   HalvedOrder wrong = made.order;
   wrong.second += 3;
   halves.begin(*made.numeric, *made.symbolic, wrong);
@@ -113,7 +115,7 @@ TEST(KluHalves, FactorsAreThoseOfKluToTheLastBit) {
                               *in_halves.numeric, *in_halves.symbolic));
   EXPECT_EQ(in_halves.all(), by_klu.all());
 
-  // Solutions differ in the order of what both halves add to the separator only.
+  // The solutions differ only by the order in which the halves are added to the separator.
   const Eigen::VectorXd right = Eigen::VectorXd::LinSpaced(next.rows(), -1.0, 2.0);
   Eigen::VectorXd one = right, other = right;
   klu_solve(by_klu.symbolic, by_klu.numeric, by_klu.size(), 1, one.data(), &by_klu.common);
@@ -136,7 +138,7 @@ TEST(KluHalves, APivotOfZeroIsTold) {
 }
 
 TEST(KluHalves, WhatHangsTogetherEverywhereIsNotCut) {
-  // Every fortieth node also depends on one far away: no narrow separator.
+  // Every fortieth node also depends on a remote node: there is no narrow separator.
   Matrix matrix = ring(4000, 1);
   std::vector<Eigen::Triplet<double>> more;
   std::mt19937 random(3);
@@ -158,8 +160,8 @@ TEST(SparseFactor, LargeMatricesAreSolvedAsWell) {
     const Eigen::VectorXd solution = factor.solve(right);
     const Eigen::VectorXd left = matrix * solution - right;
     const Eigen::VectorXd added = matrix.cwiseAbs() * solution.cwiseAbs() + right.cwiseAbs();
-    // Backward error: rounding of the six to eight entries of a row, times what pivots that are
-    // kept may multiply rows by.
+    // Backward error: rounding of the six to eight entries of a row, times the growth that reused
+    // pivots may cause.
     const double rounding = 8.0 * SparseFactor::stable_growth * 1.1e-16;
     EXPECT_LT((left.array() / added.array()).abs().maxCoeff(), rounding);
   }

@@ -34,13 +34,13 @@ TEST(SparseFactor, FactorsAnEmptyMatrix) {
 }
 
 TEST(SparseFactor, NamesAMatrixThatIsSingularToRounding) {
-  // The third row is twice the second less the first. None of the entries is a binary fraction, so
-  // that elimination leaves 1e-17 instead of zero.
+  // The third row is twice the second minus the first. No entry is a binary fraction, so
+  // elimination leaves a pivot of 1e-17 instead of zero.
   Eigen::Matrix3d dense;
   dense << 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9;
   SparseFactor factor;
   EXPECT_FALSE(factor.factorize(sparse(dense)));
-  // A chain of springs, one of them a sum of thirds, without a support.
+  // Chain of springs without a support; one stiffness is a sum of rounded thirds.
   const double k = 1.0 / 3.0;
   dense << k, -k, 0.0, -k, k + 0.7, -0.7, 0.0, -0.7, 0.7;
   SparseFactor chain;
@@ -48,7 +48,7 @@ TEST(SparseFactor, NamesAMatrixThatIsSingularToRounding) {
 }
 
 TEST(SparseFactor, TellsTheSignOfTheDeterminant) {
-  // Blocks, so that KLU finds a triangular form; every order of the rows once.
+  // Block structure, for which KLU finds a block triangular form; all permutations of the rows.
   Eigen::Matrix4d dense;
   dense << 2.0, 1.0, 0.3, 0.0, 1.0, -3.0, 0.0, 0.2, 0.0, 0.0, 0.5, 4.0, 0.0, 0.0, 1.0, 0.25;
   std::array<int, 4> order{0, 1, 2, 3};
@@ -62,8 +62,9 @@ TEST(SparseFactor, TellsTheSignOfTheDeterminant) {
 }
 
 TEST(SparseFactor, ChoosesOtherPivotsWhereThoseOfTheLastMatrixDoNotServe) {
-  // One pattern: the pivots of the first matrix are on the diagonal. Of the second they would be
-  // 1e-14 of the entries beside them, and the solution would have two digits; of the third zero.
+  // All matrices have the same pattern. The pivots of the first one are on the diagonal. In the
+  // second, the diagonal is 1e-14 of the other entries, so these pivots would leave two digits; in
+  // the third it is zero.
   Eigen::Matrix3d dense;
   dense << 4.0, 1.0, 0.5, 1.0, 5.0, 1.0, 0.25, 1.0, 3.0;
   SparseFactor factor;
@@ -78,11 +79,11 @@ TEST(SparseFactor, ChoosesOtherPivotsWhereThoseOfTheLastMatrixDoNotServe) {
     ASSERT_TRUE(factor.factorize(next));
     EXPECT_LT((next * factor.solve(right) - right).norm(), 1e-14);
     EXPECT_EQ(factor.determinant_sign(), Eigen::Matrix3d(next).determinant() < 0.0 ? -1 : 1);
-    // And back again.
+    // Return to the first matrix.
     ASSERT_TRUE(factor.factorize(pattern));
     EXPECT_LT((dense * factor.solve(right) - right).norm(), 1e-14);
   }
-  // One that is singular is told, and the next one is solved.
+  // A singular matrix is reported, and the next one is solved.
   Eigen::SparseMatrix<double> singular = sparse(dense);
   for (int column = 0; column < 3; ++column) {
     singular.coeffRef(2, column) = 2.0 * singular.coeff(0, column);
@@ -97,7 +98,7 @@ TEST(SparseFactor, KeepsPivotsThatLeaveHalfOfTheDigitsForWhoRefines) {
   dense << 4.0, 1.0, 0.5, 1.0, 5.0, 1.0, 0.25, 1.0, 3.0;
   SparseFactor factor;
   ASSERT_TRUE(factor.factorize(sparse(dense)));
-  // Of the next matrix the first pivot is a 30,000th of the entries beside it.
+  // In the next matrix the first pivot is 1/30,000 of the other entries.
   Eigen::SparseMatrix<double> next = sparse(dense);
   next.coeffRef(0, 0) = 1.0 / 30000.0;
   const Eigen::Vector3d right(1.0, -2.0, 0.25);
@@ -111,7 +112,7 @@ TEST(SparseFactor, KeepsPivotsThatLeaveHalfOfTheDigitsForWhoRefines) {
   EXPECT_EQ(factor.determinant_sign(), Eigen::Matrix3d(next).determinant() < 0.0 ? -1 : 1);
   found -= factor.solve(next * found - right);
   EXPECT_LT((next * found - right).norm(), 1e-15);
-  // What such pivots leave of one that is singular is no pivot.
+  // A matrix that is singular within the accuracy of such pivots is reported as singular.
   Eigen::SparseMatrix<double> singular = next;
   for (int column = 0; column < 3; ++column) {
     singular.coeffRef(2, column) = 0.7 * next.coeff(0, column) + 0.3 * next.coeff(1, column);
@@ -139,14 +140,14 @@ TEST(SparseFactor, SharesItsOrderAndLetsGoOfItsFactors) {
 }
 
 TEST(SparseFactor, TakesColumnsOfDifferentUnits) {
-  // Newtons and metres of a stiff part: the smallest pivot is 1e-18 of the largest.
+  // Rows in newtons and metres, for a stiff element: the smallest pivot is 1e-18 of the largest.
   Eigen::Matrix2d dense;
   dense << 1e9, 1.0, 1.0, -1e-9;
   SparseFactor factor;
   ASSERT_TRUE(factor.factorize(sparse(dense)));
   const Eigen::Vector2d right(1.0, 1e-9);
   EXPECT_LT((dense * factor.solve(right) - right).norm(), 1e-15);
-  // Soft by 1e-12, as the softest mode of a long ring: rounding leaves four digits of it.
+  // A soft mode of relative stiffness 1e-12, as in a long ring: rounding leaves four digits.
   dense << 1.0, 1.0, 1.0, 1.0 + 1e-12;
   SparseFactor soft;
   EXPECT_TRUE(soft.factorize(sparse(dense)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every law of the catalogue in the rib's dynamics, and the adaptive method beside the fixed steps.
+// Every law of the catalogue in the dynamics of the rib; adaptive steps compared with fixed ones.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -35,14 +35,14 @@ TEST(LinkageLaws, AccountClosesForEveryCombination) {
         for (const std::string& velocity : law_names<TangentialVelocityLaw>()) {
           const Linkage model = with_laws({normal, dissipation, friction, velocity});
           const std::string which = normal + " " + dissipation + " " + friction + " " + velocity;
-          if (!incompatibility(model.law).empty()) {  // laws that do not go together are refused
+          if (!incompatibility(model.law).empty()) {  // incompatible laws are rejected
             EXPECT_THROW(run(model, 40000), std::invalid_argument) << which;
             continue;
           }
           const linkage::Run fine = run(model, 40000);
           ASSERT_GT(fine.contacts, 0) << which;
-          // The impact speed and the slip limit are met within a step, so the account is of second
-          // order in ω h = 0.0125, ω = 1e4 rad/s being that of journal and links in contact.
+          // Impact speed and slip limit are located only to a step: energy balance of second order
+          // in ω h = 0.0125. ω = 1e4 rad/s is the frequency of journal and links in contact.
           const double scale = fine.samples.back().account.dissipation();
           EXPECT_LT(std::abs(fine.energy_residue), 1.6e-4 * scale) << which;
           EXPECT_EQ(fine.samples.back().account.impact_dissipation > 0.0, dissipation != "none")
@@ -56,12 +56,13 @@ TEST(LinkageLaws, AccountClosesForEveryCombination) {
 }
 
 TEST(LinkageLaws, PaperVelocityDoesNotSeeTheSpins) {
-  // Concentric bodies apart, journal and bearing turn against each other: only `material` rubs.
+  // Without relative motion of the centres, journal and bearing rotate against each other: only
+  // `material` has friction.
   Linkage model = with_laws({"hertz_internal", "none", "ambrosio", "paper"});
   State state = initial_state(model, Start::rest, 0.0, {1e-4, 0.0});
   const Eigen::Vector2d ab = state.bearing_centre;
   state.journal_centre.x() += 1e-8;
-  state.bearing_velocity = {-ab.y(), ab.x()};  // 1 rad/s about A, both tips alike
+  state.bearing_velocity = {-ab.y(), ab.x()};  // 1 rad/s about A, the same for both tips
   state.journal_velocity = state.bearing_velocity;
   EXPECT_DOUBLE_EQ(joint_state(model, state, 0.0, 0.0).tangential_force, 0.0);
   model.law.tangential_velocity = kernel::laws::MaterialVelocity{};
@@ -82,7 +83,7 @@ TEST(LinkageLaws, StateSaysWhatTheJointDoes) {
     EXPECT_EQ(joint.tangential_force, 0.5);
     EXPECT_NEAR(joint.penetration_depth, 1e-8, 1e-15);
   }
-  // Of a run: an impact speed while in contact and at no other time.
+  // During a run the impact speed is set in contact and only then.
   const linkage::Run done =
       simulate(model, heating(0.05), initial_state(model, Start::rest, 0.0), {20000, 1});
   int touching = 0;
@@ -95,8 +96,8 @@ TEST(LinkageLaws, StateSaysWhatTheJointDoes) {
 }
 
 TEST(LinkageLaws, FrictionSeesTheMaterialAtTheContactPoint) {
-  // Each link turns about its pin; the friction of `ambrosio` rises from 0 at 1e-5 m/s to Coulomb's
-  // at 1e-4 m/s, so that it says how fast the surfaces slide.
+  // Each link rotates about its pin. The friction of `ambrosio` rises from 0 at 1e-5 m/s to
+  // Coulomb's at 1e-4 m/s, so it indicates the sliding velocity.
   const Linkage model = with_laws({"hertz_internal", "none", "ambrosio", "material"});
   State state = initial_state(model, Start::rest, 0.0, {1e-4, 0.0});
   state.journal_centre.x() += 1e-8;
@@ -106,7 +107,8 @@ TEST(LinkageLaws, FrictionSeesTheMaterialAtTheContactPoint) {
     for (const double turn_bc : {7e-4, -9e-4}) {
       state.bearing_velocity = turn_ab * Eigen::Vector2d(-ab.y(), ab.x());
       state.journal_velocity = turn_bc * Eigen::Vector2d(-bc.y(), bc.x());
-      // Along (0, 1), at the point half-way between the surfaces, 5.1 mm + 5 nm from the bearing.
+      // Velocity along (0, 1) at the point half-way between the surfaces, 5.1 mm + 5 nm from the
+      // bearing's centre.
       const double speed = turn_bc * (bc.x() + 5e-3 - 5e-9) - turn_ab * (ab.x() + 5.1e-3 + 5e-9);
       const double share = (std::abs(speed) - 1e-5) / 9e-5;
       ASSERT_TRUE(share > 0.1 && share < 0.99) << share;
@@ -131,7 +133,7 @@ TEST(LinkageLaws, RunThatStartsInContactSaysSo) {
 }
 
 TEST(LinkageLaws, DepthOutsideTheRangeStopsWithTheInstant) {
-  // Johnson's formula ends at 4 e^-2 ΔR = 0.54 ΔR; a journal that arrives at 30 m/s goes beyond.
+  // Johnson's formula is valid up to 4 e^-2 ΔR = 0.54 ΔR; the fast journal exceeds it.
   const Linkage model = with_laws({"johnson", "none", "none", "material"});
   State state = initial_state(model, Start::rest, 0.0);
   state.journal_velocity = {200.0, 0.0};
@@ -144,7 +146,7 @@ TEST(LinkageLaws, DepthOutsideTheRangeStopsWithTheInstant) {
     EXPECT_EQ(fields.cause.find("johnson: penetration_depth = "), 0u) << fields.cause;
     ASSERT_TRUE(fields.time && fields.temperature_change);
     EXPECT_GT(*fields.time, 0.0);
-    // A triangle of 100 K within 0.05 s.
+    // Triangle of 100 K within 0.05 s.
     EXPECT_NEAR(*fields.temperature_change, *fields.time / 0.025 * 100.0, 1e-9);
     const std::string text = failure.what();
     EXPECT_NE(text.find(fields.cause + " at a temperature change of "), std::string::npos) << text;
@@ -165,7 +167,7 @@ TEST(LinkageLaws, StateThatCeasesToBeFiniteStopsWithTheInstant) {
 }
 
 TEST(LinkageAdaptive, AgreesWithFixedStepsUntilTheLargestTemperature) {
-  // Damped, so that errors do not grow: both converge to one solution.
+  // With damping, so that errors do not grow and both methods converge to the same solution.
   for (const char* friction : {"none", "ambrosio"}) {
     const Linkage model = with_laws({"hertz_internal", "hunt_crossley", friction, "material"});
     const State start = initial_state(model, Start::rest, 0.0);
@@ -183,7 +185,7 @@ TEST(LinkageAdaptive, AgreesWithFixedStepsUntilTheLargestTemperature) {
     std::printf("%s: %g m apart, %ld steps, %d and %d contacts, residue %g J\n", friction, largest,
                 adaptive.steps, adaptive.contacts, fixed.contacts, adaptive.energy_residue);
     EXPECT_EQ(fixed.contacts, adaptive.contacts);
-    // The fixed steps scale dissipation by a speed that is off by O(h): 1e-7 s of 1e-3 s.
+    // Fixed steps scale the dissipation by an impact speed with an error O(h): 1e-7 s of 1e-3 s.
     EXPECT_LT(largest, 1e-4 * model.radial_clearance());
   }
 }
@@ -197,8 +199,8 @@ TEST(LinkageAdaptive, FirstContactAndEnergy) {
     EXPECT_NEAR(result.first_contact->temperature_change, c / (alpha * frame), 1e-6) << c;
     EXPECT_EQ(result.samples.size(), 2u);
   }
-  // The error of a step is as the tolerance and steps grow as its -1/5th power: 250 times less over
-  // three decades, less what the contacts' random phases take.
+  // The error per step is proportional to the tolerance, and the step length to its power -1/5.
+  // Over three decades the residue decreases by 250, less an effect of random phases.
   double coarse = 0.0;
   for (const double tolerance : {1e-7, 1e-10}) {
     const Linkage model = umbrella();

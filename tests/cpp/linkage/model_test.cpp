@@ -21,7 +21,7 @@ TEST(Linkage, StandsWhereTheProjectSays) {
   const Linkage model = umbrella();
   const State state = initial_state(model, Start::rest, 0.0);
   const Coordinates q = coordinates(model, state);
-  // Half a unit of the last digit that the project publishes.
+  // Half a unit of the last published digit.
   EXPECT_NEAR(state.bearing_centre.x(), 28.750e-3, 5e-9);
   EXPECT_NEAR(state.bearing_centre.y(), 40.907670e-3, 5e-10);
   EXPECT_NEAR(q.theta2, 54.900368 * degree, 5e-7 * degree);
@@ -176,7 +176,7 @@ TEST(Linkage, MatchedStartGrowsWithTheLinks) {
   Linkage model = umbrella();
   model.link_bc.thermal_expansion = 2.0 * alpha;
   const State state = initial_state(model, Start::matched, 200.0);
-  // Along each link, at its own expansion times its length and the rate.
+  // The velocity is along each link: expansion coefficient times length times heating rate.
   EXPECT_NEAR(state.bearing_velocity.norm(), alpha * 200.0 * 0.05, 1e-18);
   EXPECT_NEAR(state.bearing_velocity.dot(state.bearing_centre), alpha * 200.0 * 0.0025, 1e-19);
   const Eigen::Vector2d bc = state.journal_centre - Eigen::Vector2d(frame, 0.0);
@@ -200,13 +200,13 @@ TEST(Linkage, JointThatIsApartCarriesNothing) {
   Linkage model = umbrella();
   model.law.friction = kernel::laws::MindlinFriction{};
   model.law.friction_parameters.friction_coefficient = 0.3;
-  model.journal_radius = 0.5;  // a clearance without rounding
+  model.journal_radius = 0.5;  // a clearance without rounding error
   model.bearing_radius = 1.0;
   State state;
   state.bearing_centre = {0.0, 0.04};
   state.contact.tangential_force = {0.5, 0.0, 0.0};
   state.contact.slipping = true;
-  for (const double apart : {0.25, 0.5}) {  // the second touches without a depth
+  for (const double apart : {0.25, 0.5}) {  // 0.5: contact with zero depth
     state.journal_centre = {apart, 0.04};
     state.journal_velocity = {3.0, 7.0};
     const Joint joint = joint_state(model, state, 0.0, 0.0);
@@ -224,7 +224,7 @@ TEST(Linkage, EnergyByHand) {
   model.torsion_stiffness = 2.0;
   model.torsion_free_angle = 1.5;
   State state;
-  state.bearing_centre = {0.03, 0.04};  // unstrained, at acos(0.6)
+  state.bearing_centre = {0.03, 0.04};  // unstrained, at the angle acos(0.6)
   state.journal_centre = {0.03, 0.04};
   state.bearing_velocity = {3.0, 4.0};
   state.journal_velocity = {0.0, 2.0};
@@ -234,7 +234,7 @@ TEST(Linkage, EnergyByHand) {
   EXPECT_NEAR(found.axial, 0.5 * 6.3e5 / 0.1 * std::pow(bc - 0.1, 2), 1e-13);
   const double flare = std::atan2(0.04, -0.09) - std::atan2(0.04, 0.03);
   EXPECT_NEAR(found.torsion, std::pow(flare - 1.5, 2), 1e-14);
-  // Heated by 50 K: AB is pressed by its own growth.
+  // After heating by 50 K, AB is compressed by its own expansion.
   found = energy(model, state, 50.0);
   const double ab = 0.05 * (1.0 + alpha * 50.0), other = 0.1 * (1.0 + alpha * 50.0);
   EXPECT_NEAR(found.axial,

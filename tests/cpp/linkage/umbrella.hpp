@@ -8,7 +8,7 @@ namespace statejump::linkage {
 inline constexpr double frame = 0.120;
 inline constexpr double alpha = 23.75e-6;
 
-/// Tables 2 and 3 of the paper; the section of the links is that of its Table 1.
+/// Tables 2 and 3 of the paper; the cross-section of the links is that of its Table 1.
 inline Linkage umbrella(double clearance = 1e-4) {
   Linkage model;
   model.frame_length = frame;
@@ -19,7 +19,7 @@ inline Linkage umbrella(double clearance = 1e-4) {
   return model;
 }
 
-/// 0 → 100 K → 0 within `duration` [s].
+/// Temperature change 0 → 100 K → 0 within `duration` [s].
 inline thermal::Program heating(double duration = 1.0, double peak = 100.0) {
   thermal::Program program;
   program.shape = thermal::Shape::triangle;

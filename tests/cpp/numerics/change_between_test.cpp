@@ -16,7 +16,7 @@ TEST(ChangeBetween, EndsAtNeighboursOnBothSidesOfTheChange) {
   EXPECT_TRUE(beyond(up.after));
   EXPECT_EQ(std::nextafter(up.before, 2.0), up.after);
   EXPECT_NEAR(up.after, std::numbers::sqrt2, 2.3e-16);
-  // Downwards the other end is the far one.
+  // In descending direction the other end is the far one.
   const Change down = change_between(2.0, 0.0, [&](double x) { return !beyond(x); });
   EXPECT_EQ(down.before, up.after);
   EXPECT_EQ(down.after, up.before);
@@ -29,7 +29,7 @@ TEST(ChangeBetween, StopsAtTheTolerance) {
     return x >= 0.3;
   };
   const Change found = change_between(0.0, 1.0, beyond, 0x1p-10);
-  EXPECT_EQ(asked, 10);  // and not at the ends
+  EXPECT_EQ(asked, 10);  // no evaluation at the ends
   EXPECT_EQ(found.after - found.before, 0x1p-10);
   EXPECT_LT(found.before, 0.3);
   EXPECT_GE(found.after, 0.3);

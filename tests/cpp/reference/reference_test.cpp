@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random contacts of every law against the formulas of docs/reference/laws.md in 50 digits, written apart
-// from the kernel: both sides of every branch, extreme ratios. And what no unit, no axes and no
-// order of the bodies may change.
+// Compares every law in random contacts with the formulas of docs/reference/laws.md in 50-digit
+// arithmetic, written independently of the kernel: both sides of every branch, extreme ratios. Also
+// tests invariance under changes of units, axes and order of the bodies.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -40,7 +40,7 @@ const Big& pi() {
   return value;
 }
 
-/// One contact, its law and its history.
+/// One contact with its laws and its history.
 struct Configuration {
   JointLawNames names;
   JointLaw law;
@@ -104,7 +104,7 @@ Configuration drawn(Random& random) {
   at.geometry.bearing_radius = at.geometry.journal_radius + clearance;
   at.geometry.length = c.law.contact_length;
   const double gap = at.geometry.clearance();  // as rounded
-  // From far below the clearance to just below the limit of the law; sometimes a gap or nothing.
+  // Depth from far below the clearance to just below the limit of the law; sometimes a gap or zero.
   const double limit =
       std::visit([&](const auto& l) { return l.largest_depth(at.geometry); }, c.law.normal);
   const double deepest = std::min(limit, at.geometry.journal_radius);
@@ -130,8 +130,8 @@ Configuration drawn(Random& random) {
   at.clearance_rate = random.below(2) ? 0.1 * random.uniform(-speed, speed) : 0.0;
   at.time_step = random.log_uniform(1e-9, 1e-2);
 
-  // What the contact remembers: nothing, or a force within, at and beyond the present limit, stored
-  // at a smaller, the same or a larger stiffness.
+  // History: empty, or a force within, at and beyond the present limit, stored at a smaller, equal
+  // or larger stiffness.
   if (random.below(3)) {
     const NormalState state = evaluate(c.law.normal, depth, at.geometry,
                                        NormalMaterial{p.elastic.effective_young_modulus});
@@ -148,10 +148,11 @@ Configuration drawn(Random& random) {
 
 struct BigNormal {
   Big force, stiffness, energy;
-  Big condition{1};  ///< relative change of the force for one of the depth, at least 1
+  /// condition number: relative change of the force per relative change of the depth, at least 1
+  Big condition{1};
 };
 
-/// delta = f/(pi E*) (ln(4 pi E* dR/f) + s), the branch of small loads, by Newton's method.
+/// Solves delta = f/(pi E*) (ln(4 pi E* dR/f) + s) on the branch of small loads by Newton's method.
 BigNormal line_contact(const Big& depth, const Big& clearance, const Big& modulus,
                        const Big& length, int s) {
   const Big m = pi() * modulus;
@@ -174,7 +175,7 @@ BigNormal line_contact(const Big& depth, const Big& clearance, const Big& modulu
   return found;
 }
 
-/// Persson's contact: load and depth by t, in units of E* dR and dR.
+/// Persson's contact: load and depth as functions of t, in units of E* dR and dR.
 Big persson_load(const Big& t) {
   return 2 * pi() * t * (1 + t) / (2 - log(1 + t) - 2 * t * t);
 }
@@ -231,15 +232,15 @@ BigNormal normal_reference(const std::string& name, const Configuration& c,
 }
 
 struct Reference {
-  Big normal_force, normal_scale;  ///< a scale is the sum of the sizes of all terms
+  Big normal_force, normal_scale;  ///< a scale is the sum of the magnitudes of all terms
   BigVector tangential;
   Big tangential_scale;
   BigVector relative_velocity;
   BigNormal normal;
-  bool is_at_a_step = false;  ///< within rounding of where the viscous force ends
+  bool is_at_a_step = false;  ///< the viscous force starts or ends within rounding of this state
 };
 
-/// The contact step as docs/reference/laws.md and the class comments state it.
+/// The contact step as specified by docs/reference/laws.md and the class comments.
 Reference reference(const Configuration& c, const NormalState& kernel) {
   Reference r;
   r.normal = normal_reference(c.names.normal, c, kernel);
@@ -247,9 +248,10 @@ Reference reference(const Configuration& c, const NormalState& kernel) {
   const JointContact& contact = c.at.contact;
   const BigVector n = big(contact.normal);
   const Big depth = contact.penetration_depth;
-  // velocity that friction sees
+  // velocity used by friction
   BigVector v = big(contact.relative_velocity);
-  const Big whole_speed = norm(v);  // of which parts along and across the normal are differences
+  // its normal and tangential components are differences of terms of this size
+  const Big whole_speed = norm(v);
   if (c.names.tangential_velocity == "paper") {
     const BigVector axis = big(c.at.axis);
     const BigVector d = sum(1, v, -dot(v, axis), axis);
@@ -289,7 +291,7 @@ Reference reference(const Configuration& c, const NormalState& kernel) {
     if (speed > v0) {
       const Big share = std::min(Big(1), Big((speed - v0) / (v1 - v0)));
       r.tangential = sum(-limit * share / speed, slide_rate, 0, slide_rate);
-      // near v0 the difference cancels, and the normal part of v is subtracted from it before
+      // near v0 the difference cancels; before that, the normal component was subtracted from v
       r.tangential_scale *= 1 + speed / (v1 - v0) + whole_speed / speed;
     }
   } else if (c.names.friction == "mindlin") {
@@ -297,7 +299,7 @@ Reference reference(const Configuration& c, const NormalState& kernel) {
                    Big(p.elastic.effective_young_modulus) * r.normal.stiffness;
     const Big k0 = c.history.tangential_stiffness;
     if (kt > 0 && limit > 0) {
-      // loading keeps the force, unloading the slide
+      // loading keeps the force, unloading keeps the slide
       const Big kept = k0 > 0 ? (kt >= k0 ? Big(1) : Big(kt / k0)) : Big(0);
       const BigVector before = big(c.history.tangential_force);
       const BigVector trial = sum(kept, before, -kt * dt, slide_rate);
@@ -306,7 +308,7 @@ Reference reference(const Configuration& c, const NormalState& kernel) {
       const Big terms = kept * norm(before) + kt * dt * whole_speed;
       if (size > limit) {
         r.tangential = sum(limit / size, trial, 0, trial);
-        r.tangential_scale *= 1 + terms / size;  // of the direction
+        r.tangential_scale *= 1 + terms / size;  // for the direction
       } else {
         const Big damping = 2 * Big(p.tangential_damping_ratio) * sqrt(Big(p.effective_mass) * kt);
         r.tangential = sum(1, trial, -damping, slide_rate);
@@ -356,7 +358,7 @@ TEST(Reference, EveryLawInFiftyDigits) {
     };
     const Big condition = r.normal.condition;
     note(c.names.normal + " force", state.force - r.normal.force, condition * r.normal.force);
-    // F turns over where k is infinite: there k, and damping by it, is as uncertain as the square.
+    // At the turning point of F, k is infinite: the error of k and of damping is the square.
     note(c.names.normal + " stiffness", state.stiffness - r.normal.stiffness,
          condition * condition * r.normal.stiffness);
     note(c.names.normal + " energy", state.elastic_energy - r.normal.energy,
@@ -375,7 +377,7 @@ TEST(Reference, EveryLawInFiftyDigits) {
     std::printf("%-28s %8.2f units of rounding (configuration %d)\n", what.c_str(), one.units,
                 one.number);
   EXPECT_LT(steps, count / 50);
-  // Of a million configurations the worst had 8.0 units.
+  // The worst of a million configurations had 8.0 units.
   for (const auto& [what, one] : worst) EXPECT_LT(one.units, 16) << what;
 }
 
@@ -389,8 +391,8 @@ Configuration turned(Configuration c, const Eigen::Matrix3d& rotation) {
 }
 
 TEST(Reference, AxesDoNotMatter) {
-  // A turn by a quarter about any axis of the frame, and a mirror image of two: signs and places of
-  // components change, nothing is rounded anew but sums of three terms in another order.
+  // Quarter rotations about the axes of the frame, and reflections of two axes. Components only
+  // change sign and position; rounding differs only by the order of sums of three terms.
   Random random;
   const int count = std::min(configurations(), 100000);
   for (int i = 0; i < count; ++i) {
@@ -403,7 +405,7 @@ TEST(Reference, AxesDoNotMatter) {
     const JointResponse a = joint_response(c.law, c.parameters, c.at, one);
     const Configuration d = turned(c, rotation);
     const JointResponse b = joint_response(d.law, d.parameters, d.at, other);
-    if (one.slipping != other.slipping) continue;  // at the limit to rounding
+    if (one.slipping != other.slipping) continue;  // at the Coulomb limit within rounding
     const Reference r =
         reference(c, evaluate(c.law.normal, c.at.contact.penetration_depth, c.at.geometry,
                               NormalMaterial{c.parameters.elastic.effective_young_modulus}));
@@ -413,8 +415,8 @@ TEST(Reference, AxesDoNotMatter) {
 }
 
 TEST(Reference, OrderOfTheBodiesDoesNotMatter) {
-  // Body 2 against body 1: normal, velocity and stored force turn round, and so does the answer, to
-  // the last bit.
+  // Bodies 1 and 2 swapped: normal, velocity and stored force change sign, and the response must do
+  // so, to the last bit.
   Random random;
   for (int i = 0; i < std::min(configurations(), 100000); ++i) {
     Configuration c = drawn(random);
@@ -434,8 +436,8 @@ TEST(Reference, OrderOfTheBodiesDoesNotMatter) {
 }
 
 TEST(Reference, UnitsDoNotMatter) {
-  // Other units of length, mass and time, each by a power of 4, so that no number and no square
-  // root is rounded otherwise: the same answer in the new units, to the last bit.
+  // Other units of length, mass and time, each by a power of 4, so that rounding of numbers and
+  // square roots is unchanged: the same response in the new units, to the last bit.
   Random random;
   for (int i = 0; i < std::min(configurations(), 100000); ++i) {
     Configuration c = drawn(random);

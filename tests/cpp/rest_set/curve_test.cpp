@@ -74,7 +74,7 @@ TEST(RestOnCurve, WithoutFrictionIsolatedPoints) {
 }
 
 TEST(RestOnCurve, ThreeNodes) {
-  // N turns by 2 pi / 3 between nodes, through the angle pi as well.
+  // N rotates by 2 pi / 3 between nodes, also across the angle pi.
   Curve coarse;
   coarse.closed = true;
   coarse.at = [](double t) {
@@ -105,7 +105,7 @@ TEST(RestOnCurve, TwoForces) {
   }
 }
 
-/// Of a lobed bore under F: what a fine walk around it counts.
+/// Number of parts and length of the rest set of a lobed bore under F, counted in fine steps.
 std::pair<int, double> counted(double eps, const Vector2d& force, double mu) {
   const int n = 200000;
   const Curve curve = lobed_curve(c, eps, 3);
@@ -133,7 +133,7 @@ TEST(RestOnCurve, LobedBore) {
       const RestSet set = rest_on_curves({lobed_curve(c, eps, 3)}, {to_crest}, mu).any;
       const auto [parts, length] = counted(eps, to_crest, mu);
       EXPECT_EQ(static_cast<int>(set.parts.size()), parts) << eps << " " << mu;
-      // Both ends of a part are counted to one step of some 4e-9 m.
+      // Both ends of a part are counted to one step of about 4e-9 m.
       EXPECT_NEAR(set.length, length, 8e-9 * parts) << eps << " " << mu;
       std::printf("eps %.2f mu %.2f: %zu parts, length %.4f um, diameter %.4f um\n", eps, mu,
                   set.parts.size(), 1e6 * set.length, 1e6 * set.diameter);
@@ -145,7 +145,7 @@ TEST(RestOnCurve, LobedBore) {
 }
 
 TEST(RestOnCurve, LobedCurveIsClosed) {
-  // Without lobes a circle, all the way round; the force points to where it begins and ends.
+  // Without lobes the curve is a closed circle; the force points to its first and last node.
   const Curve curve = lobed_curve(c, 0.0, 1);
   EXPECT_TRUE(curve.closed);
   const RestSet set = rest_on_curves({curve}, {Vector2d(1.0, 0.0)}, 0.3).any;
@@ -154,7 +154,7 @@ TEST(RestOnCurve, LobedCurveIsClosed) {
 }
 
 TEST(RestOnCurve, FarthestPairOfOppositeArcsIsADiameter) {
-  // Between nodes, where the search along both arcs has to find it.
+  // The farthest pair lies between nodes, where the search along both arcs has to find it.
   const auto curves = circle(11);
   for (const double direction : {0.1, 0.7, 1.3}) {
     const Vector2d force(std::cos(direction), std::sin(direction));
@@ -184,7 +184,7 @@ TEST(RestOnCurve, LobedCurveAsImplicitFunction) {
 }
 
 TEST(RestOnCurve, CurveThatLeavesTheBox) {
-  // A floor y = 0 with the free side above: under a force downwards it holds everywhere.
+  // Floor y = 0 with the free side above: under a downward force every point is a rest position.
   const auto floor = implicit_curves([](const Vector2d& p) { return -p.y(); },
                                      [](const Vector2d&) -> Vector2d {
                                        return {0.0, -1.0};
@@ -198,7 +198,8 @@ TEST(RestOnCurve, CurveThatLeavesTheBox) {
 }
 
 TEST(RestOnCurve, CurveThatComesBackToTheSideItEntersByIsOnePiece) {
-  // x = y², free to the right: entered and left at x = 1, farthest from there in its middle.
+  // x = y², free side to the right: the curve enters and leaves at x = 1 and is farthest from there
+  // in the middle.
   const auto curves = implicit_curves([](const Vector2d& p) { return p.y() * p.y() - p.x(); },
                                       [](const Vector2d& p) -> Vector2d {
                                         return {-1.0, 2.0 * p.y()};
@@ -213,7 +214,7 @@ TEST(RestOnCurve, CurveThatComesBackToTheSideItEntersByIsOnePiece) {
 }
 
 TEST(RestOnCurve, PointsOfTheGridOnTheCurveAreOneNodeEach) {
-  // A diagonal: the roots on both grid lines through such a point are it.
+  // A diagonal through grid points: the roots on both grid lines there are the same point.
   const auto curves = implicit_curves([](const Vector2d& p) { return p.x() - p.y(); },
                                       [](const Vector2d&) -> Vector2d {
                                         return {1.0, -1.0};
@@ -234,12 +235,12 @@ TEST(JournalInProfile, RoundBoreGivesTheClearanceCircle) {
 }
 
 TEST(JournalInProfile, LobesOfTheWall) {
-  // Lobes small against the radius: to first order the centre's curve has the wall's profile.
+  // Lobes small compared with the radius: to first order the centre's curve has the wall's profile.
   const double lobe = 1e-5;
   const auto rho = [lobe](double theta) { return 5.1e-3 + lobe * std::cos(3.0 * theta); };
   const Curve curve = journal_in_profile(rho, 5e-3);
   for (const CurvePoint& p : curve.nodes) {
-    // Nowhere overlap; contact somewhere.
+    // No overlap anywhere, contact somewhere.
     double gap = 1.0;
     for (int i = 0; i < 20000; ++i) {
       const double theta = 2.0 * pi * i / 20000;
@@ -298,7 +299,7 @@ TEST(RestOnCurve, Refusals) {
     EXPECT_EQ(refusal([&, r = radius] { journal_in_profile([r](double) { return r; }, 5e-3); }),
               std::string(told) + "allowed is finite, > 0 m");
   }
-  // Where it does not is told: a quarter of the way round.
+  // The message names the angle at which it does not hold: a quarter turn.
   const auto dented = [](double theta) { return theta < 1.57 ? 5.1e-3 : 4e-3; };
   EXPECT_EQ(refusal([&] { journal_in_profile(dented, 5e-3); }).find("rho(1.570796) = 0.004"), 0u);
   EXPECT_EQ(refusal([&] {

@@ -59,7 +59,7 @@ TEST(RestOnMesh, ImplicitSphere) {
     const Mesh mesh = implicit_sphere(cells);
     const RestSet set = rest_on_mesh(mesh, {force}, mu).study.any;
     ASSERT_EQ(set.parts.size(), 1u);
-    // Measured between points of the sphere. (There linear normals are exact too, so this does not
+    // Measured between points of the sphere. (There linear normals are exact, too, so this does not
     // test the roots on edges.)
     EXPECT_NEAR(set.diameter / exact.diameter, 1.0, 1e-8);
     const double area = std::abs(set.area / exact.area - 1.0);
@@ -74,7 +74,7 @@ TEST(RestOnMesh, ImplicitSphere) {
 }
 
 TEST(RestOnMesh, BorderOnAnImplicitSurfaceIsWhereTheConeEnds) {
-  // An ellipsoid: unlike on a sphere the normal is not linear along an edge.
+  // An ellipsoid, because on it the normal is not linear along an edge, unlike on a sphere.
   const Vector3d axes(1.0e-4, 0.7e-4, 0.5e-4), force(0.3, -0.5, 1.0);
   const double mu = 0.5;
   const Mesh mesh = implicit_surface(
@@ -102,28 +102,28 @@ TEST(RestOnMesh, BorderOnAnImplicitSurfaceIsWhereTheConeEnds) {
         total += weight;
         least = std::min(least, weight);
       }
-      // Between its edges the border follows the linear normals.
+      // Inside a triangle the border follows the linearly interpolated normals.
       if (corner || least > 1e-9 * total) continue;
       const auto beyond = [&](const Vector3d& normal) {
         return std::abs(std::atan2(force.cross(normal).norm(), -force.dot(normal)) - std::atan(mu));
       };
       ++borders;
-      // 60 halvings of a fifth of an edge.
+      // 60 bisections of a fifth of an edge.
       exact += beyond(mesh.normal(mesh.project(point))) < 1e-9;
       linear = std::max(linear, beyond(flat / total));
     }
   }
   EXPECT_GT(borders, 50);
-  // A few are where the curve of linear normals, drawn between the roots, meets an edge beside
-  // them.
+  // The others are points where the border of linear normals, drawn between the roots, crosses an
+  // edge beside them.
   EXPECT_GT(exact, 0.8 * borders);
   std::printf("%d of %d places on edges are exact\n", exact, borders);
-  // So it was worth the roots of the true normal.
+  // The roots of the true normal do differ from those of linear normals.
   EXPECT_GT(linear, 1e-5);
 }
 
 TEST(RestOnMesh, CapInsideOneTriangle) {
-  // The cone is far smaller than a triangle: no corner and no side of it is in the set.
+  // The cone is far smaller than a triangle: no corner and no side of the triangle is in the set.
   const Mesh mesh = clearance_sphere(c, 2);
   const Vector3d force(0.31, -0.52, 1.0);
   const double mu = 1e-3;
@@ -156,7 +156,7 @@ TEST(RestOnMesh, TwoForces) {
     EXPECT_NEAR(found.study.any.diameter, exact.any.diameter, 3e-3 * c);
     EXPECT_NEAR(found.study.all.diameter, exact.all.diameter, 3e-3 * c);
     EXPECT_NEAR(found.study.each[1].area, exact.each[1].area, 3e-3 * exact.any.area);
-    // The pieces are the whole mesh.
+    // The pieces cover the whole mesh.
     double whole = 0.0;
     for (const Piece& piece : found.pieces) {
       for (std::size_t i = 1; i + 1 < piece.polygon.size(); ++i) {
@@ -170,7 +170,7 @@ TEST(RestOnMesh, TwoForces) {
 }
 
 Mesh box_of_soup() {
-  // A closed box with faces of their own corners, right-hand normals inwards.
+  // A closed box whose faces share no vertices; right-hand normals point inwards.
   Mesh mesh;
   for (int axis = 0; axis < 3; ++axis) {
     for (const double side : {-1.0, 1.0}) {
@@ -188,7 +188,7 @@ Mesh box_of_soup() {
 }
 
 TEST(RestOnMesh, FlatFaces) {
-  // Not welded: every face has its own normal, the set is whole faces.
+  // Faces are not welded, so every face has its own normal and the set consists of whole faces.
   const RestSet one = rest_on_mesh(box_of_soup(), {Vector3d(0.1, 0.1, 1.0)}, 0.2).study.any;
   ASSERT_EQ(one.parts.size(), 1u);
   EXPECT_NEAR(one.area, 4.0 * c * c, 1e-20);
@@ -202,13 +202,13 @@ TEST(RestOnMesh, FlatFaces) {
   EXPECT_EQ(two.any.parts.size(), 2u);
   EXPECT_TRUE(two.all.parts.empty());
   EXPECT_NEAR(two.any.diameter, std::sqrt(12.0) * c, 1e-18);
-  // Without friction a face that is met squarely is in the set as a whole.
+  // Without friction a face perpendicular to the force belongs to the set as a whole.
   EXPECT_NEAR(rest_on_mesh(box_of_soup(), {Vector3d(0, 0, 1)}, 0.0).study.any.area, 4.0 * c * c,
               1e-20);
 }
 
 TEST(RestOnMesh, TorusHasTwoParts) {
-  // The tube of a torus about z, free inside the tube: a force along z presses it on a whole ring.
+  // Torus about z, free inside the tube: a force along z presses on a whole ring.
   const auto rho = [](const Vector3d& p) { return std::hypot(p.x(), p.y()); };
   const Mesh mesh = implicit_surface(
       [rho](const Vector3d& p) { return std::pow(rho(p) - 3.0, 2) + p.z() * p.z() - 1.0; },
@@ -222,13 +222,13 @@ TEST(RestOnMesh, TorusHasTwoParts) {
   ASSERT_EQ(ring.parts.size(), 1u);
   EXPECT_NEAR(ring.area / (2.0 * pi * 3.0 * 2.0 * phi), 1.0, 0.02);
   EXPECT_NEAR(ring.diameter, 2.0 * (3.0 + std::sin(phi)), 0.01);
-  // Along x: the outermost and the innermost place both have their normal against it.
+  // Along x: at the outermost and at the innermost point the normal opposes the force.
   const RestSet two = rest_on_mesh(mesh, {Vector3d(1, 0, 0)}, 0.3).study.any;
   EXPECT_EQ(two.parts.size(), 2u);
 }
 
 TEST(RestOnMesh, ErrorOfTheDiameterIsTwiceASagitta) {
-  // Of the longest edge L on a sphere of half the box' diagonal D: 2 L²/(8 D/2).
+  // Sagitta of the longest edge L on a sphere with half the box diagonal D as radius: 2 L²/(8 D/2).
   const Mesh mesh = clearance_sphere(c, 1);
   double longest = 0.0;
   Eigen::AlignedBox3d box;
@@ -253,7 +253,7 @@ TEST(RestOnMesh, VertexOfNoTriangleNeedsNoNormal) {
 }
 
 TEST(RestOnMesh, WithoutFrictionALineHasALengthAndNoArea) {
-  // A tube along y, pressed down: its lowest line.
+  // Tube along y, pressed down: the set is its lowest line.
   const auto tube = implicit_surface(
       [](const Vector3d& p) { return p.x() * p.x() + p.z() * p.z() - c * c; },
       [](const Vector3d& p) -> Vector3d {

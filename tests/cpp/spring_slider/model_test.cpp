@@ -26,7 +26,7 @@ TEST(SpringSlider, SlidingBalancesTheForces) {
   for (const int sense : {-1, 1}) {
     for (const double change : {-80.0, 3.0, 150.0}) {
       const double x = sliding_displacement(model, change, sense);
-      // The force is a difference of displacements of 2e-3 m, rounded to 4e-19, times k = 1.3e6.
+      // Force: difference of displacements of 2e-3 m, rounded to 4e-19 m, times k = 1.3e6 N/m.
       EXPECT_NEAR(axial_force(model, change, x) - 2e5 * x, sense * f, 1e-11);
       EXPECT_NEAR(sliding_temperature(model, x, sense), change, 1e-12 * std::abs(change));
     }
@@ -40,7 +40,7 @@ TEST(SpringSlider, NoTemperatureSlidesALinkThatDoesNotExpand) {
 }
 
 TEST(SpringSlider, EulerLoadOfASquareBar) {
-  // 3 x 3 mm bar: I = 0.003^4/12.
+  // Square bar of 3 x 3 mm: I = 0.003^4/12.
   const double moment = 0.003 * 0.003 * 0.003 * 0.003 / 12.0;
   const double pinned = std::numbers::pi * std::numbers::pi * 70e9 * moment / 0.25;
   EXPECT_NEAR(euler_load(table1(), EndCondition::pinned_pinned), pinned, close(pinned));
@@ -59,7 +59,7 @@ TEST(SpringSlider, RefusesWhatIsOutOfRange) {
     model.*field = value;
     return refusal([&model] { model.validate(); });
   };
-  // Each by itself: without stiffness no friction is allowed either.
+  // One at a time: without stiffness no friction is allowed either.
   for (const auto& [field, name] :
        {std::pair{&SpringSlider::young_modulus, "young_modulus"},
         std::pair{&SpringSlider::cross_section_area, "cross_section_area"},

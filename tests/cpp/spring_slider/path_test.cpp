@@ -36,7 +36,7 @@ void expect_events(const Path& path, const std::vector<Expected>& expected) {
   }
 }
 
-// Roots of E A (α l0 ΔT − x) = s f l0 (1 + α ΔT), written out by hand.
+// Roots of E A (α l0 ΔT − x) = s f l0 (1 + α ΔT) in closed form.
 double root(double x, double s) {
   return (EA * x + s * f * l0) / (alpha * l0 * (EA - s * f));
 }
@@ -51,7 +51,7 @@ TEST(SpringSliderPath, Table1MeetsItsClosedForms) {
                        {EventKind::stop_left, Stage::S4, Stage::S5, root(c, -1)},
                        {EventKind::cycle_end, Stage::S5, Stage::S5, 0.0}});
   EXPECT_NEAR(path.state_jump(), f * l0 / EA, close(f * l0 / EA));
-  // The digits that the project publishes.
+  // Published digits.
   EXPECT_NEAR(path.events[0].temperature_change, 2.035099, 5e-7);
   EXPECT_NEAR(path.events[1].temperature_change, 87.509255, 5e-7);
   EXPECT_NEAR(path.events[4].temperature_change, 83.431111, 5e-7);
@@ -77,7 +77,7 @@ TEST(SpringSliderPath, EventsStandAtTheTimeOfTheirTemperature) {
 
 TEST(SpringSliderPath, WideClearanceRunsTheFiveStages) {
   const Path path = solve(table1(2e-3), cycle());
-  // At the peak x = x_T − f l_T/(E A); it stays while the force goes from f to −f.
+  // At the peak x = x_T − f l_T/(E A); x stays constant while the force changes from f to −f.
   const double peak = l0 * alpha * 100.0 - f * l0 * (1.0 + alpha * 100.0) / EA;
   expect_events(path, {{EventKind::first_slip, Stage::S1, Stage::S2, root(0.0, 1)},
                        {EventKind::reversal, Stage::S2, Stage::S3, 100.0},
@@ -111,7 +111,7 @@ TEST(SpringSliderPath, PreloadReducesTheJump) {
     const double g = s * f + kp * x;
     return (EA * x + g * l0) / (alpha * l0 * (EA - g));
   };
-  // k_p c = 100 N keeps the link compressed: the force never changes sign, S4 is missing.
+  // k_p c = 100 N keeps the link compressed: the force never changes sign, so stage S4 is missing.
   expect_events(path,
                 {{EventKind::first_slip, Stage::S1, Stage::S2, root(0.0, 1)},
                  {EventKind::stop_reached, Stage::S2, Stage::at_stop_plus, preloaded_root(c, 1)},
@@ -123,8 +123,8 @@ TEST(SpringSliderPath, PreloadReducesTheJump) {
 }
 
 TEST(SpringSliderPath, PreloadForceSeatsTheBlockOnAStop) {
-  // P = k c + 3 f holds the block on the stop at −c with 3 f. Heating unloads it, f is left to
-  // friction, and the block leaves when the link pushes with f more than the spring pulls.
+  // P = k c + 3 f presses the block on the stop at −c with 3 f. Heating unloads the stop until only
+  // friction f remains. The block leaves when the link pushes by f more than the spring pulls.
   SpringSlider model = table1();
   model.preload_force = EA / l0 * c + 3.0 * f;
   const auto loaded_root = [&](double x, double s) {
@@ -148,7 +148,7 @@ TEST(SpringSliderPath, PreloadForceSeatsTheBlockOnAStop) {
 }
 
 TEST(SpringSliderPath, StartsStuckOrWithoutFriction) {
-  // With k_p and a tension P < f: D = −P at the start where it is stuck. Slipping back, D = −f.
+  // With k_p and a tension P < f, the start is stuck with D = −P. After slipping back, D = −f.
   SpringSlider model = table1();
   model.preload_stiffness = 1e5;
   model.preload_force = 2.0 / 3.0 * f;
@@ -163,13 +163,13 @@ TEST(SpringSliderPath, StartsStuckOrWithoutFriction) {
               close(c));
   EXPECT_NEAR(settled.state_jump(), f / stiffness, close(c));
   EXPECT_EQ(state_jump(model), f / stiffness);
-  // P > f: the block slides as far as friction does not hold it, and comes back to there.
+  // P > f: the block slides until friction holds it, and returns to that position.
   model.start_friction = StartFriction::stuck;
   model.preload_force = 3.0 * f;
   const Path slid = solve(model, cycle());
   EXPECT_NEAR(slid.segments.front().start_displacement, -2.0 * f / stiffness, close(c));
   EXPECT_NEAR(slid.state_jump(), 0.0, close(c));
-  // Pulled the other way, it starts at the other limit: 2 f lie between both.
+  // Pulled in the other direction, it starts at the opposite limit: both differ by 2 f.
   model.preload_force = -3.0 * f;
   EXPECT_NEAR(solve(model, cycle()).state_jump(), 2.0 * f / stiffness, close(c));
   EXPECT_NEAR(state_jump(model), 2.0 * f / stiffness, close(c));
@@ -196,7 +196,7 @@ TEST(SpringSliderPath, WithoutFrictionNothingRemains) {
       const Path path = solve(model, program);
       EXPECT_EQ(path.state_jump(), 0.0);
       for (const Segment& segment : path.segments) {
-        EXPECT_NE(segment.motion, BlockMotion::stick);  // no sliver of stick from rounding
+        EXPECT_NE(segment.motion, BlockMotion::stick);  // no spurious stick segment from rounding
         EXPECT_EQ(segment.friction_dissipation, 0.0);
       }
     }
@@ -262,7 +262,7 @@ TEST(SpringSliderPath, SineVisitsBothStops) {
 }
 
 TEST(SpringSliderPath, TableOfATriangleIsTheTriangle) {
-  // Many collinear points: the events may not depend on where the table is cut.
+  // Many collinear points: the events must not depend on the subdivision of the table.
   const thermal::Program points =
       table({0.0, 0.1, 0.25, 0.5, 0.6, 0.9, 1.0}, {0.0, 20.0, 50.0, 100.0, 80.0, 20.0, 0.0});
   const Path expected = solve(table1(), cycle(thermal::Shape::triangle));
@@ -278,7 +278,7 @@ TEST(SpringSliderPath, TableOfATriangleIsTheTriangle) {
 }
 
 TEST(SpringSliderPath, ReloadingAStopAndHoldingKeepTheState) {
-  // Against the stop, unloaded but not left, loaded again, held, then home.
+  // Pressed against the stop, unloaded but not separated, loaded again, held, then back.
   const thermal::Program points =
       table({0.0, 1.0, 2.0, 3.0, 4.0, 5.0}, {0.0, 95.0, 84.0, 95.0, 95.0, 0.0});
   const Path path = solve(table1(), points);
@@ -318,8 +318,8 @@ TEST(SpringSliderPath, CyclesThatAreLeftOutAreComputed) {
     EXPECT_EQ(some.displacement, all.displacement);
     EXPECT_EQ(some.thermal_work, all.thermal_work);
     EXPECT_EQ(some.stage, all.stage);
-    // Cycle 142 and its neighbours, the first two, the last two: seven of 300, each as in the
-    // whole.
+    // Cycle 142 with its neighbours, the first two and the last two: seven of 300 cycles, each as
+    // in the complete path.
     std::vector<int> kept;
     std::size_t at = 0;
     for (const Segment& segment : path.segments) {
@@ -341,7 +341,7 @@ TEST(SpringSliderPath, CyclesThatAreLeftOutAreComputed) {
 }
 
 TEST(SpringSliderPath, MemoryOfALongProgramIsThatOfTheTimes) {
-  // Of any number of cycles the same are kept; one double a cycle is left, its end.
+  // For any number of cycles the same segments are stored; per cycle only its end remains.
   const auto kept = [](int cycles) {
     const thermal::Program program = cycle(thermal::Shape::sine, cycles);
     const Eigen::Vector2d ends(0.0, program.duration());
@@ -359,8 +359,9 @@ TEST(SpringSliderPath, LargestForceIsThatOfAFineHistory) {
   for (const SpringSlider& model : {table1(), table1(2e-3), preloaded}) {
     for (const thermal::Shape shape : {thermal::Shape::triangle, thermal::Shape::sine}) {
       const Path path = solve(model, cycle(shape, 2));
-      // 4000 samples a cycle hold the crests of both shapes, where a stick or a stop has its
-      // largest force; a slide has it at an event, between two samples: 0.1 K and 2 k c α away.
+      // 4000 samples per cycle contain the crests of both shapes, where stick and stops have their
+      // largest force. During slip the largest force occurs at an event between two samples, up to
+      // 0.1 K and 2 k c α away.
       const History h = sample(path, Eigen::VectorXd::LinSpaced(8001, 0.0, 2.0));
       const double sampled = h.axial_force.cwiseAbs().maxCoeff();
       EXPECT_LE(sampled, path.largest_axial_force + close(sampled));
@@ -370,8 +371,8 @@ TEST(SpringSliderPath, LargestForceIsThatOfAFineHistory) {
   }
 }
 
-/// Steps ΔT and corrects the trial state, as a finite-element code would: an answer that shares no
-/// formula with solve(). Linear in x at fixed ΔT, so one correction is the solution.
+/// Return mapping in steps of ΔT, as in finite-element codes; it shares no formula with solve().
+/// The problem is linear in x at fixed ΔT, so one correction is exact.
 double return_mapping(const SpringSlider& model, double change, double x) {
   const double length = model.stress_free_length * (1.0 + model.thermal_expansion * change);
   const double stiffness = model.young_modulus * model.cross_section_area / length;
@@ -394,7 +395,7 @@ class Uniform {
   std::mt19937_64 random_;
 };
 
-/// Times and temperature changes of a table: five random changes and two plateaus.
+/// Times and temperature changes of a table: five random values and two plateaus.
 std::pair<std::vector<double>, std::vector<double>> seven_changes(Uniform& uniform) {
   std::vector<double> times{0.0};
   std::vector<double> changes{0.0};
@@ -414,17 +415,17 @@ TEST(SpringSliderPath, EqualsSmallStepsForRandomModels) {
     model.clearance_plus = uniform(1e-4, 2e-3);
     model.clearance_minus = uniform(1e-4, 2e-3);
     model.preload_stiffness = run % 2 == 0 ? 0.0 : uniform(0.0, 2e6);
-    // Up to what presses the block on a stop all the way: 2 mm times 1.26e6 N/m.
+    // Up to the force that presses the block on a stop at all times: 2 mm times 1.26e6 N/m.
     model.preload_force = run % 3 == 0 ? 0.0 : uniform(-3e3, 3e3);
     if (run % 4 < 2) model.start_friction = StartFriction::frictionless;
     const auto [times, changes] = seven_changes(uniform);
     const Path path = solve(model, table(times, changes));
-    // Every turn of the program is a step, so the stepped path lags nowhere: between turns the map
-    // is a clamp onto monotone bounds and its result does not depend on the steps. What is left is
-    // rounding of l_T − l0, an ulp of 0.5 m, in every step that slides.
+    // Every reversal of the program is a step, so the steps cause no lag: between reversals the
+    // mapping is a clamp onto monotone bounds, whose result does not depend on the steps. The
+    // difference is rounding of l_T − l0, an ulp of 0.5 m, in every step that slides.
     const int steps = 400;
     const double tolerance = 7 * steps * 2e-16;
-    // From the middle; without friction it starts where the spring alone would hold it.
+    // Starts at the middle; without friction it starts in the equilibrium of the springs.
     SpringSlider before = model;
     if (model.start_friction == StartFriction::frictionless) before.friction_force = 0.0;
     double x = return_mapping(before, 0.0, 0.0);
@@ -448,7 +449,7 @@ TEST(SpringSliderPath, PlayOpensAtEveryReversal) {
   const double w = 2e-4;
   model.play = w;
   const Path path = solve(model, cycle());
-  // Where nothing rubs the link is unloaded, x = α l0 ΔT.
+  // Without friction the link is unloaded: x = α l0 ΔT.
   const auto free = [](double x) { return x / (alpha * l0); };
   expect_events(path, {{EventKind::play_closed, Stage::in_play, Stage::S1, free(0.5 * w)},
                        {EventKind::first_slip, Stage::S1, Stage::S2, root(0.5 * w, 1)},
@@ -476,8 +477,8 @@ TEST(SpringSliderPath, PlayWiderThanTheClearanceLeavesTheStopsFree) {
 
 namespace {
 
-/// Block in its play, moved by one step: its place depends on the middle p of the play alone, for
-/// where D = 0 is within it, or at an end that friction holds or not.
+/// Block in its play after one step. Its position depends only on the middle p of the play: it is
+/// the position with D = 0 if that lies within the play, else an end of the play.
 struct Played {
   double x;
   double middle;
@@ -487,7 +488,7 @@ Played moved_in_play(const SpringSlider& model, double change, double middle) {
   const double k = EA / (l0 * (1.0 + model.thermal_expansion * change));
   const double grown = model.thermal_expansion * l0 * change;
   const double soft = std::isinf(model.stop_stiffness) ? 0.0 : model.stop_stiffness;
-  // Where the load that friction has to hold is `level`; it falls with x, piece by piece.
+  // Position at which friction has to carry the load `level`, which decreases with x.
   const auto at_load = [&](double level) {
     const double stiffness = k + model.preload_stiffness;
     const double x = (k * grown - model.preload_force - level) / stiffness;
@@ -522,7 +523,7 @@ TEST(SpringSliderPath, PlayEqualsSmallStepsForRandomModels) {
     if (run % 4 < 2) model.start_friction = StartFriction::frictionless;
     const auto [times, changes] = seven_changes(uniform);
     const Path path = solve(model, table(times, changes));
-    // As without play; a place within the play is that of p, which adds up as x does.
+    // Tolerance as without play; doubled, because the error of p accumulates as well as that of x.
     const int steps = 400;
     const double tolerance = 2 * 7 * steps * 2e-16;
     Played at = moved_in_play(model, 0.0, 0.0);
@@ -546,7 +547,7 @@ TEST(SpringSliderPath, PlayEqualsSmallStepsForRandomModels) {
             << "run " << run << " time " << time;
       }
     }
-    // The balance of energies; works are known to 1e-15 of themselves.
+    // Energy balance; works are accurate to 1e-15 of their size.
     const Eigen::VectorXd all = Eigen::VectorXd::LinSpaced(701, 0.0, 7.0);
     const History history = sample(path, all);
     const Eigen::ArrayXd stored = history.elastic_energy + history.preload_energy;
@@ -565,7 +566,7 @@ TEST(SpringSliderPath, WarnsBeyondTheEulerLoad) {
   EXPECT_NE(loaded[0].find("the clamped-clamped Euler load"), std::string::npos) << loaded[0];
   EXPECT_NE(loaded[0].find("74.61 N"), std::string::npos) << loaded[0];
   const std::vector<std::string> free = warnings(solve(table1(2e-3), cycle()));
-  ASSERT_EQ(free.size(), 1u);  // 30 N lie between the two loads
+  ASSERT_EQ(free.size(), 1u);  // 30 N lie between the two Euler loads
   EXPECT_NE(free[0].find("the pinned-pinned Euler load"), std::string::npos) << free[0];
   SpringSlider slippery = table1(2e-3);
   slippery.friction_force = 10.0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Four contacts at once give the bits of one after the other. Scene::run(1) makes its one step
-// without batches, so n of them are the reference of run(n); tests/yade compares those with YADE's
-// own loop.
+// Batches of four contacts give the same bits as contacts stepped one by one. Scene::run(1) makes
+// its single step without batches, so n such runs are the reference for run(n). tests/yade compares
+// single steps with YADE's own loop.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@
 namespace statejump::stepper {
 namespace {
 
-/// What a scene was seen to do step by step, so that a test knows that it tests something.
+/// Counts of what happened in a scene, to prove that a test covers these cases.
 struct Seen {
   long began = 0, ended = 0, slipped = 0, stuck = 0;
 };
@@ -35,7 +35,7 @@ Seen make_one_by_one(Scene& scene, long steps, const Scene::CreatePhysics& make)
   return seen;
 }
 
-/// Both ways, and with the instructions of both sorts of processors.
+/// Compares single steps and runs, with and without AVX2 instructions.
 Seen expect_same_bits(Scene scene, long steps, const Scene::CreatePhysics& make = scenes::maker()) {
   scene.prepare();
   Scene one_by_one = scene;
@@ -51,7 +51,7 @@ Seen expect_same_bits(Scene scene, long steps, const Scene::CreatePhysics& make 
   return seen;
 }
 
-/// Journals that fly about in their bearings, or balls in their sockets.
+/// Journals that bounce in their bearings, or balls in their sockets.
 Scene rattling(Joint joint, std::size_t joints) {
   Scene scene = scenes::crowd(joints);
   scene.newton.damping = 0;
@@ -122,7 +122,7 @@ TEST(Batches, DampedMotionUnderGravityKeepsItsBits) {
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
       Body& each = scene.bodies[i];
       each.damped = i % 4 != 1;
-      if (i % 6 == 2) {  // a bearing that moves, and one that is driven
+      if (i % 6 == 2) {  // a bearing that moves freely, and one with prescribed motion
         each.blocked = i % 12 == 2 ? scenes::planar : all_dofs;
         each.motion.velocity = Vector3(0.01, 0, -0.0);
       }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// All numbers of a scene that a step leaves behind, and whether two scenes have the same bits.
+// All numbers of a scene that a step writes, and a bitwise comparison of two scenes.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is asked in every step: asked at one comparison, in batches or one by one, a run ends before
-// the same step.
+// Fast checks of every step. Whether the steps are made in batches or one by one, a run must end
+// before the same step.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,15 +14,14 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// Steps that can be made one by one, which no batch takes part in, and after which all is a
-/// number.
+/// Number of steps that can be made one by one, without batches, with a finite state after each.
 long steps_alone(Scene scene, const Scene::CreatePhysics& make, long most) {
   long made = 0;
   while (made < most && scene.run(1, make) == 1 && scene.has_finite_state()) ++made;
   return made;
 }
 
-/// @return steps that a run makes in one go, with the instructions of either sort of processors
+/// @return number of steps of a single run, equal with and without AVX2
 long steps_of_a_run(const Scene& scene, const Scene::CreatePhysics& make, long most) {
   Scene narrow = scene, wide = scene;
   narrow.uses_avx2 = false;
@@ -91,7 +90,7 @@ TEST(Questions, NoStiffnessIsPlainForNumbersThatAreNone) {
 }
 
 TEST(Questions, BatchesEndBeforeTheStepThatIsTooLongForAContact) {
-  // A journal that comes deeper than its load presses it, with a mass that is too small there.
+  // A journal moves deeper than its load presses it; its mass is too small for the stiffness there.
   Scene scene = scenes::crowd(6, 0.4, scenes::pressed() - 2e-7);
   scene.newton.damping = 0;
   scene.prepare();
@@ -120,11 +119,11 @@ double time_of(const Scene& scene, long step) {
   return static_cast<double>(step) * scene.time_step;
 }
 
-/// Of the link below: none of the steps has a temperature at which its length is 0, and its force
-/// none.
+/// Relative shortening of the link per kelvin. At no step is the length exactly 0, where the force
+/// would be infinite.
 constexpr double shrinks = 0.9;  // [1/K]
 
-/// A crowd with one more link that shrinks by its own length within some steps.
+/// A crowd with an additional link whose length becomes negative within some steps.
 Scene shrinking(bool moves) {
   Scene scene = scenes::held_crowd(5);
   scene.programs.front().temperature_change_max = 1e6;
@@ -178,7 +177,7 @@ TEST(Questions, ARunEndsBeforeAStrainLeavesNoLength) {
     scene.heaters.front().targets[target].expansion = none;
     scene.prepare();
     EXPECT_EQ(steps_of_a_run(scene, scenes::maker(), 100), 0);
-    // A strain of a part that touches nothing.
+    // A strain of a body that touches nothing.
     scene.strains.emplace_back();
     scene.heaters.front().targets[target] = {2, -1};
     scene.prepare();

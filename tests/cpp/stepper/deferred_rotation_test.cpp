@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tips that their links turn in the plane: the turn itself, and steps that leave out what the
-// integrator would turn before.
+// Tips that rotate with their links in the plane: the rotation itself, and steps in which the
+// integrator defers its own rotation of the tip.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,8 +19,7 @@ Quaternion about_z(double angle) {
   return Quaternion(std::cos(angle / 2), 0, 0, std::sin(angle / 2));
 }
 
-// Quotient, root and the two components round a few times each, and the directions are unit to
-// 2^-53 only.
+// Quotient, root and both components are rounded a few times; directions are unit to 2^-53.
 constexpr double rounding = 8 * 0x1p-53;
 
 TEST(Link, TheTurnInThePlaneIsThatOfTheAngle) {
@@ -28,7 +27,7 @@ TEST(Link, TheTurnInThePlaneIsThatOfTheAngle) {
   const double pi = kernel::testing::pi;
   for (int i = 0; i < 2000; ++i) {
     const double start = random.uniform(-pi, pi);
-    // All decades from either end, a quarter turn from both sides, and half a turn.
+    // All decades of small angles, both sides of a quarter turn, and half a turn.
     const double small = std::pow(10.0, random.uniform(-15, 0)) * (i % 2 == 0 ? 1 : -1);
     const double ends[] = {small, pi / 2 + small, pi + small, 0, pi};
     const double angle = ends[i % 5];
@@ -44,7 +43,7 @@ TEST(Link, TheTurnInThePlaneIsThatOfTheAngle) {
   }
 }
 
-// The rib in one piece, and as single steps, of which each turns its tips to the end.
+// Compares one run of the rib with single steps, which never defer the rotation of a tip.
 void expect_same_bits(const std::function<void(Scene&)>& change, bool may_wait) {
   Scene whole = scenes::rib();
   change(whole);
@@ -71,7 +70,7 @@ TEST(Link, ATurnThatWaitsChangesNoBit) {
 }
 
 TEST(Link, ATurnThatWaitedIsMadeUpForWhereItsLinkLeavesThePlane) {
-  // Pushed along z, the tip turns about z in its first step and is out of the plane in the second.
+  // Pushed along z, the tip rotates about z in its first step and leaves the plane in the second.
   expect_same_bits(
       [](Scene& scene) {
         tip(scene, 0).blocked &= ~4U;
@@ -97,7 +96,7 @@ TEST(Link, ATurnDoesNotWaitWhereAFaceTurnsWithTheTip) {
     Contact contact = scene.contacts.front();
     contact.joint = Joint::plane;
     contact.face_normal = Vector3::UnitX();
-    contact.length_2 = 1;  // far away
+    contact.length_2 = 1;  // no contact
     scene.contacts.push_back(contact);
   };
   expect_same_bits(add_face, false);

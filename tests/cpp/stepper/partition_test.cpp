@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Subscenes in several threads: the same bits as the whole in one.
+// Subscenes in several threads give the same bits as the whole scene in one thread.
 //
-// The thread sanitizer says nothing of a race whose first access it no longer remembers. A test for
-// it makes few steps, and two races have to be noticed (docs/validation/reliability_methods.md has
-// the trials).
+// The thread sanitizer misses a race if it no longer remembers the first access. So its tests make
+// few steps, and two deliberate races must be found (trials:
+// docs/validation/reliability_methods.md).
 #include "statejump/stepper/partition.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@
 namespace statejump::stepper {
 namespace {
 
-constexpr int joints = 100;  // four parts
+constexpr int joints = 100;  // four subscenes
 
 /// Journals that fall through their clearances, each in its own direction.
 Scene falling() {
@@ -57,7 +57,7 @@ TEST(Partition, AnyNumberOfThreadsGivesTheBitsOfTheWhole) {
   const auto make_alone = [&](std::size_t) { return ++alone, aluminium(); };
   ASSERT_EQ(whole.run(steps, make_alone), steps);
   const std::vector<double> expected = numbers(whole);
-  ASSERT_GE(alone, joints);  // they have all touched
+  ASSERT_GE(alone, joints);  // all joints have touched
   const int before = omp_get_max_threads();
   for (const int threads : {1, 2, 4}) {
     omp_set_num_threads(threads);
@@ -66,7 +66,8 @@ TEST(Partition, AnyNumberOfThreadsGivesTheBitsOfTheWhole) {
     ASSERT_EQ(partition.size(), 4U);
     std::atomic<int> made = 0;
     const auto make = [&](std::size_t) {
-      made.fetch_add(1, std::memory_order_relaxed);  // orders no threads, which would hide races
+      // relaxed: does not order threads, which would hide races
+      made.fetch_add(1, std::memory_order_relaxed);
       return aluminium();
     };
     ASSERT_EQ(partition.run(steps, make), steps);
@@ -79,7 +80,8 @@ TEST(Partition, AnyNumberOfThreadsGivesTheBitsOfTheWhole) {
 
 constexpr long few = 20;
 
-/// Every thread's accesses are remembered. @param make as of Scene::run(); called in the first step
+/// Makes so few steps that the sanitizer remembers all accesses.
+/// @param make as for Scene::run(); called in the first step
 void step_side_by_side(const Scene::CreatePhysics& make) {
   omp_set_num_threads(4);
   for (int i = 0; i < 5; ++i) {
@@ -103,7 +105,7 @@ constexpr bool looks_for_races = __has_feature(thread_sanitizer);
 constexpr bool looks_for_races = false;
 #endif
 
-/// Steps with a race, in a process that the sanitizer ends with its status.
+/// Steps with a race; the sanitizer ends this process with its own exit status.
 void race(const Scene::CreatePhysics& make) {
   step_side_by_side(make);
   std::exit(0);
@@ -130,7 +132,7 @@ TEST(PartsDeathTest, TheThreadSanitizerSeesARaceOfOneAccessInEachPart) {
 
 TEST(Partition, ReturnsTheFewestStepsOfAnySubscene) {
   Scene scene = falling();
-  // The last journal has no materials: its part stops where it would touch.
+  // The last journal has no material: its subscene stops when it would touch.
   Partition partition(scene);
   const auto make = [](std::size_t contact) {
     return contact + 1 == joints ? std::nullopt : aluminium();

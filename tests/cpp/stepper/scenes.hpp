@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scenes of the stepper for its tests and its benchmark: bodies, contacts and links as the plugin
-// would gather them.
+// Scenes for tests and benchmark of the stepper: bodies, contacts and links as the plugin gathers
+// them.
 #pragma once
 
 #include <cmath>
@@ -13,12 +13,12 @@
 
 namespace statejump::stepper::scenes {
 
-// Table 2 of Chen et al. (2021), and one load for all joints, as studies/bench/pairs.py has it.
+// Table 2 of Chen et al. (2021), and one load for all joints as in studies/bench/pairs.py.
 constexpr double young = 70e9, poisson = 0.3, friction = 0.3;                // Pa, -, -
 constexpr double expansion_journal = 23.75e-6, expansion_bearing = 22e-6;    // 1/K
 constexpr double radius = 5e-3, clearance = 1e-4, mass = 0.01;               // m, m, kg
 constexpr double load = 10, inclination = 0.5 * friction, time_step = 1e-6;  // N, -, s
-constexpr unsigned planar = 4 | all_rotations;  // free to move across the axis
+constexpr unsigned planar = 4 | all_rotations;  // free to move perpendicular to the axis
 
 inline ContactPhysics physics(double effective_mass) {
   const kernel::ElasticPair pair = kernel::elastic_pair(young, poisson, young, poisson);
@@ -51,7 +51,7 @@ inline int add_body(Scene& scene, const Vector3& place, unsigned blocked, double
   return static_cast<int>(scene.bodies.size()) - 1;
 }
 
-/// Temperature that rises slowly.
+/// Slowly rising temperature.
 inline thermal::Program rising() {
   thermal::Program program;
   program.shape = thermal::Shape::triangle;
@@ -60,14 +60,14 @@ inline thermal::Program rising() {
   return program;
 }
 
-/// Distance of a journal from the centre of its bearing at which the contact carries the load [m].
+/// Distance [m] of a journal from its bearing's centre at which the contact carries the load.
 inline double pressed() {
   return clearance + depth(radius * (radius + clearance) / clearance);
 }
 
-/// Joints beside each other: a journal pressed into a fixed bearing, both expanding. Not prepared.
-/// @param spread how much the directions of the loads differ from joint to joint [rad]
-/// @param offset where journals start [m]
+/// Independent joints: a journal pressed into a fixed bearing, both expanding. Not prepared.
+/// @param spread range of the load directions over the joints [rad]
+/// @param offset initial distance of the journals from their bearings' centres [m]
 inline Scene crowd(std::size_t joints, double spread = 0, double offset = pressed()) {
   Scene scene;
   scene.time_step = time_step;
@@ -99,7 +99,7 @@ inline Scene crowd(std::size_t joints, double spread = 0, double offset = presse
   return scene;
 }
 
-/// A crowd, each journal held to a fixed point by a link that heats up. Not prepared.
+/// A crowd in which a heated link connects each journal to a fixed point. Not prepared.
 inline Scene held_crowd(std::size_t joints, double offset = pressed()) {
   Scene scene = crowd(joints, 1, offset);
   Links links;
@@ -119,7 +119,7 @@ inline Scene held_crowd(std::size_t joints, double offset = pressed()) {
   return scene;
 }
 
-/// Blocks on floors, each held to the next by a link that heats up. Not prepared.
+/// Blocks on floors, each connected to the next by a heated link. Not prepared.
 inline Scene chain(std::size_t joints) {
   Scene scene;
   scene.time_step = time_step;
@@ -156,8 +156,8 @@ inline Scene chain(std::size_t joints) {
   return scene;
 }
 
-/// The rib of an umbrella antenna: two links on pins, a clearance joint by named laws between their
-/// tips, which turn with them, and an account of its energies. Not prepared.
+/// Rib of an umbrella antenna with energy tracking: two links on pins, whose tips rotate with them
+/// and form a clearance joint with named laws. Not prepared.
 inline Scene rib() {
   Scene scene;
   scene.time_step = 2.5e-6;

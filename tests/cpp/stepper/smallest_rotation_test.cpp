@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The turn that keeps a tip along its link.
+// The smallest rotation, which keeps a tip aligned with its link.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,12 +16,12 @@ TEST(Link, TheSmallestTurnTakesOneDirectionToTheOther) {
   for (int i = 0; i < 2000; ++i) {
     const Vector3 from = random.unit();
     const Vector3 across = from.cross(random.unit()).normalized();
-    // From 1e-12 to half a turn less 1e-12: of either end all decades.
+    // From 1e-12 to half a turn minus 1e-12: all decades from either end.
     const double small = std::pow(10.0, random.uniform(-12, 0));
     const double angle = i % 2 == 0 ? small : pi - small;
     const Vector3 to = std::cos(angle) * from + std::sin(angle) * across;
     const Quaternion turn = smallest_rotation(from, to).normalized();
-    // Next to half a turn 1 + cos keeps 1e-16 of sin = pi - angle.
+    // Close to half a turn, 1 + cos is accurate to 1e-16 relative to sin = pi - angle.
     EXPECT_LE((turn * from - to).norm(), 1e-15 * (4 + 1 / std::sin(angle)) + 1e-14) << angle;
     EXPECT_NEAR(turn.vec().dot(from), 0.0, 1e-15 * (4 + 1 / std::sin(angle))) << angle;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a step of a link asks without roots, against the function that has them.
+// Compares the fast stability check of a link, without roots, with stable_step().
 #include "statejump/stepper/stable_link.hpp"
 
 #include <gtest/gtest.h>

@@ -7,7 +7,7 @@
 
 namespace statejump::testing {
 
-/// 1e-12 of the expected value, what the project promises for a closed form.
+/// 1e-12 of the expected value: the documented accuracy of closed forms.
 inline double close(double expected) {
   return 1e-12 * std::abs(expected);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // find_active_set() on linear complementarity problems z >= 0, w = M z + q >= 0, z w = 0, which
-// have exactly one solution where M is a P-matrix.
+// have exactly one solution if M is a P-matrix.
 #include "active_set.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Statuses = std::vector<bool>;  // whether z may be above 0; else it is 0
+using Statuses = std::vector<bool>;  // true: z >= 0 and w = 0; false: z = 0
 
 class Complementarity {
  public:
@@ -60,7 +60,7 @@ class Complementarity {
     w_ = m_ * z_ + q_;
     return true;
   }
-  /// Largest violation, of the equations too.
+  /// Largest violation of the inequalities and of complementarity.
   double violation() const {
     const double negative = std::max(-z_.minCoeff(), -w_.minCoeff());
     return std::max(negative, z_.cwiseProduct(w_).cwiseAbs().maxCoeff());
@@ -87,19 +87,19 @@ TEST_P(ActiveSet, SolvesProblemsWithAPMatrix) {
     const Index n = 3 + problem % 6;
     const MatrixXd root = MatrixXd::NullaryExpr(n, n, draw);
     const MatrixXd skew = 3.0 * MatrixXd::NullaryExpr(n, n, draw);
-    // A positive definite symmetric part makes a P-matrix. Blocks alone cycle for about a tenth of
-    // these matrices, because the antisymmetric part is larger.
+    // A matrix with positive definite symmetric part is a P-matrix. Block pivots alone cycle for
+    // about a tenth of these matrices, because the antisymmetric part is larger.
     const MatrixXd m = 0.1 * (root * root.transpose() + MatrixXd::Identity(n, n)) + skew -
                        MatrixXd(skew.transpose());
     Complementarity system(m, VectorXd::NullaryExpr(n, draw));
     ASSERT_TRUE(find_active_set(system, GetParam())) << "problem " << problem;
-    // Numbers of order 10 to 100, a factor of condition of at most some thousands.
+    // Entries of order 10 to 100, condition number at most some thousands.
     EXPECT_LT(system.violation(), 1e-9) << "problem " << problem;
     blocks += system.blocks;
     singles += system.singles;
   }
   EXPECT_GT(blocks, 200);
-  EXPECT_GT(singles, 0);  // both kinds of pivots are tested
+  EXPECT_GT(singles, 0);  // both types of pivots are tested
 }
 
 TEST_P(ActiveSet, EndsWhereNoStatusesSolveTheProblem) {

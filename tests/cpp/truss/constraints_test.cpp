@@ -32,14 +32,14 @@ Constraint tie(const std::string& name, int first, const Vector3d& one, int seco
   return {name, {{first, one}, {second, other}}};
 }
 
-/// What a constraint lacks of 0 at displacements of the nodes [m].
+/// Violation of a constraint at the given displacements of the nodes [m].
 double gap(const Constraint& constraint, const Matrix3Xd& moved) {
   double sum = 0.0;
   for (const ConstraintTerm& term : constraint.terms) sum += term.factor.dot(moved.col(term.node));
   return sum;
 }
 
-/// Two bars on one line that heating pushes towards each other: B, on a block with friction, and C
+/// Two collinear bars that heating pushes towards each other. B is on a block with friction; C is
 /// at the tip of a bar that does not expand.
 Model facing_bars() {
   Model model = testing::sliding_bar();
@@ -59,7 +59,7 @@ TEST(Constraints, AreTheLimitOfAStiffSpring) {
     model.springs = {{"stiff", 1, 2, stiffness, 0.5, false}};
     return (solve(model).states.back().displacement - exact.states.back().displacement).norm();
   };
-  // The spring gives way by its force over its stiffness: ten times as stiff, a tenth.
+  // The spring deforms by force over stiffness: ten times the stiffness, a tenth of the error.
   const double soft = error(1e10);
   EXPECT_GT(soft, 0.0);
   EXPECT_LT(soft, 1e-3 * exact.states.back().displacement.norm());
@@ -80,11 +80,11 @@ TEST(Constraints, LeverCarriesByItsRatio) {
   const double k = 70e9 * 9e-6 / 0.5;
   const double other = 4e5 / 0.5;
   const Path path = solve(model);
-  // On a line lengths are linear.
+  // Along a line the lengths are linear in the displacements.
   EXPECT_NEAR(path.states.back().displacement(0, 1), force / (k + other / 9.0), 1e-10 * force / k);
 }
 
-/// A pyramid on four feet, two of which move on tilted planes, with two constraints.
+/// Pyramid on four feet, two of which move on tilted planes, with two constraints.
 Model pyramid() {
   Model model;
   model.programs = {triangle(60.0)};
@@ -127,7 +127,7 @@ TEST(Constraints, RotateWithTheTruss) {
   }
   const State one = solve(model).states.back();
   const State other = solve(turned).states.back();
-  // Newton's method leaves 1e-12 of forces; the condition of this pyramid is below 1e3.
+  // Newton's tolerance is 1e-12 of the forces; the condition number of this pyramid is below 1e3.
   EXPECT_LT((by * one.displacement - other.displacement).norm(), 1e-9 * one.displacement.norm());
   for (const Constraint& constraint : model.constraints) {
     EXPECT_NEAR(gap(constraint, one.displacement), 0.0, 16 * epsilon * one.displacement.norm());
@@ -135,7 +135,7 @@ TEST(Constraints, RotateWithTheTruss) {
 }
 
 TEST(Constraints, CompatibleExpansionIsFreeOfForce) {
-  // All bars expand alike: u = α ΔT X, which fulfils X_C u_B = X_B u_C along each axis.
+  // All bars expand equally: u = α ΔT X, which satisfies X_C u_B = X_B u_C along each axis.
   Model model;
   model.programs = {triangle(100.0)};
   model.nodes = {node("A", 0, 0, 0), node("B", 1.0, 0.2, 2), node("C", 0.7, 1.1, 2),
@@ -152,7 +152,7 @@ TEST(Constraints, CompatibleExpansionIsFreeOfForce) {
   const Path path = solve(model);
   for (const State& state : path.states) {
     const Eigen::VectorXd axial = element_output<Bar>(model, state).row(0);
-    // Against E A α ΔT = 1000 N of bars that are held.
+    // Compared with E A α ΔT = 1000 N in constrained bars.
     EXPECT_LT(axial.lpNorm<Eigen::Infinity>(), 1e-8);
     const double grown = 2e-5 * state.temperature_change;
     EXPECT_NEAR(state.displacement(0, 1), grown * 1.0, 1e-12);
@@ -172,7 +172,7 @@ TEST(Constraints, RedundantOnesAreListed) {
   }
   model.constraints.push_back(tie("of supports", 0, x, 3, y));
   EXPECT_EQ(model.redundant_constraints(), (std::vector<int>{2, 3}));
-  // They change nothing.
+  // Redundant constraints do not change the result.
   const State with = solve(model).states.back();
   EXPECT_EQ(with.displacement, solve(pyramid()).states.back().displacement);
 }
@@ -202,7 +202,7 @@ TEST(Constraints, WrongTermsAndJointsThatHoldTheSameAreRefused) {
   EXPECT_THROW(model.validate(), std::invalid_argument);
   model.constraints = {tie("small", 1, x, 2, 1e-10 * x)};
   EXPECT_THROW(model.validate(), std::invalid_argument);
-  // A slider between two nodes holds them together across its axis, as the constraint does.
+  // A slider between two nodes constrains them perpendicular to its axis, as this constraint does.
   model.nodes[2].position = model.nodes[1].position;
   model.nodes[1].freedoms = model.nodes[2].freedoms = 2;
   std::get<Slider>(model.joints[0]).second = 2;
@@ -212,7 +212,7 @@ TEST(Constraints, WrongTermsAndJointsThatHoldTheSameAreRefused) {
   EXPECT_NO_THROW(model.validate());
 }
 
-/// Two masses on springs along x, of which the second moves twice as far.
+/// Two masses on springs along x; the second is constrained to move twice as far.
 Model two_masses(double seconds) {
   Model model;
   model.programs = {lasting(seconds)};
@@ -240,7 +240,7 @@ TEST(Constraints, MassesSwingTogetherAndKeepTheirEnergy) {
     return std::abs(motion.states.back().displacement(0, 1));
   };
   const Motion fine = run(4000);
-  // The midpoint rule is late by (ω h)²/12 of the time.
+  // The phase lag of the midpoint rule is (ω h)²/12 of the time.
   EXPECT_LT(error(fine), 1e-3 * 0.01);
   EXPECT_NEAR(error(run(2000)) / error(fine), 4.0, 0.1);
   const State& end = fine.states.back();
@@ -249,12 +249,12 @@ TEST(Constraints, MassesSwingTogetherAndKeepTheirEnergy) {
   EXPECT_EQ(2.0 * speed(0, 1), speed(0, 2));
   const double energy = fine.states.front().elastic_energy;
   EXPECT_NEAR(energy, 0.5 * 1100.0 * 1e-4, 1e-12);
-  // The midpoint rule conserves quadratic energies: rounding of 4000 steps is left.
+  // The midpoint rule conserves quadratic energies: only rounding of 4000 steps remains.
   EXPECT_NEAR(scenes::residue(fine), 0.0, 4000 * 4 * epsilon * energy);
 }
 
 TEST(Constraints, ExplicitStepsMoveWhatIsTied) {
-  // Equal displacements keep lumped masses apart from each other.
+  // With equal displacements the lumped mass matrix remains diagonal.
   Model model = testing::sliding_bar(0.05);
   Slider& slider = std::get<Slider>(model.joints[0]);
   slider.tangential_stiffness = 1e6;
@@ -273,7 +273,7 @@ TEST(Constraints, ExplicitStepsMoveWhatIsTied) {
   const State& one = explicit_steps.states.back();
   const State& other = implicit_steps.states.back();
   EXPECT_EQ(one.displacement(0, 1), one.displacement(0, 2));
-  // 30 N of friction bend its spring by 3e-5 m. Both schemes are of second order.
+  // Friction of 30 N deflects its spring by 3e-5 m. Both schemes are of second order.
   EXPECT_NEAR(one.displacement(0, 1), other.displacement(0, 1), 1e-4 * 3e-5);
   model.constraints = {tie("twice", 1, 2.0 * x, 2, -x)};
   EXPECT_NO_THROW(simulate_regularised(model, inertia, "mindlin", options));

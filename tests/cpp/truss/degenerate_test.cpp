@@ -19,7 +19,7 @@ namespace {
 using Eigen::Vector3d;
 using testing::triangle;
 
-/// Heats to a temperature, holds it, heats on, cools.
+/// Heats to a temperature, holds it, continues heating, cools.
 thermal::Program held(double at, double largest) {
   thermal::Program program;
   program.shape = thermal::Shape::table;
@@ -58,13 +58,13 @@ Model bar(thermal::Program program) {
   return model;
 }
 
-/// Slide of the bar's block while it slides one way: x_T − s f l_T/(E A).
+/// Slide [m] of the bar's block during slip in one direction: x_T − s f l_T/(E A).
 double sliding(double change, double sense) {
   const double free = length * (1.0 + expansion * change);
   return length * expansion * change - sense * friction * free / rigidity;
 }
 
-/// Spokes of a wheel from a free hub to blocks on radial rails, which tyre bars hold together.
+/// Wheel with spokes from a free hub to blocks on radial rails, which tyre bars connect.
 Model wheel(int blocks) {
   Model model;
   model.programs = {triangle(100.0)};
@@ -99,7 +99,7 @@ Model wheel(int blocks) {
     model.springs.push_back({"tyre", i + 1, next + 1, 1e5 * side, side, false});
   }
   if (blocks == 2) {
-    // Two spokes in a line do not hold their hub across, nor along it where both blocks slide.
+    // Two collinear spokes do not constrain their hub laterally, nor axially if both blocks slide.
     model.nodes[0].freedoms = 1;
     Node wall;
     wall.name = "wall";
@@ -117,7 +117,8 @@ TEST_P(Wheel, BlocksThatSlipAtTheSameInstantDoSoTogether) {
   const int blocks = GetParam();
   const Model model = wheel(blocks);
   const Path path = solve(model);
-  // By symmetry the hub rests and all blocks do the same: heating, both ways back.
+  // By symmetry the hub does not move and all blocks behave equally: slip on heating, stick and
+  // slip on cooling.
   ASSERT_EQ(path.events.size(), 3u * std::size_t(blocks));
   for (int i = 0; i < blocks; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -127,8 +128,8 @@ TEST_P(Wheel, BlocksThatSlipAtTheSameInstantDoSoTogether) {
                                           JointStatus::slip_minus})[k]);
     }
   }
-  // The tyre's bars of stiffness k L0 stretch by the share that the radius grows: on each block
-  // they press with k x (2 sin(π/n))² L0; the spoke's force is E A/l (x_T − x).
+  // The relative elongation of the tyre bars, of stiffness k L0, equals that of the radius. They
+  // press on each block with k x (2 sin(π/n))² L0; the spoke's force is E A/l (x_T − x).
   const double turn = 2.0 * std::sin(std::numbers::pi / blocks);
   const double tyre = blocks > 2 ? 1e5 * turn * turn * turn : 0.0;
   const double jump = friction / (rigidity + tyre);
@@ -136,7 +137,7 @@ TEST_P(Wheel, BlocksThatSlipAtTheSameInstantDoSoTogether) {
     EXPECT_NEAR(slide(model, path.states.back(), i), jump, 1e-10 * jump) << i;
   }
   EXPECT_LT(path.states.back().displacement.col(0).norm(), 1e-15);
-  // Five blocks and fifty do as many solves as one does.
+  // Five or fifty blocks need as many solves as one.
   EXPECT_LT(path.solves, 200);
 }
 
@@ -151,7 +152,7 @@ TEST(Degenerate, BlocksThatSlipAtTheSameInstantAndLeaveAMechanismAreAnError) {
   } catch (const Failure& failed) {
     EXPECT_EQ(failed.fields().kind, FailureKind::friction_exhausted);
     EXPECT_EQ(failed.fields().joints.size(), 2u);
-    // They slip where E A α ΔT = f (1 + α ΔT).
+    // The blocks slip when E A α ΔT = f (1 + α ΔT).
     EXPECT_NEAR(*failed.fields().temperature_change, friction / (rigidity - friction) / expansion,
                 1e-6);
   }
@@ -174,7 +175,7 @@ TEST(Degenerate, SlipThatStopsAtACornerGoesOnAtTheNextOne) {
         }
       }
       EXPECT_NEAR(slide(model, path.states.back()), sliding(0.0, -1.0), 1e-15);
-      // Nothing slides while nothing moves: heat is that of the way there and back.
+      // Nothing slides during the hold: the heat is that of the slide on heating and back.
       const double way = sliding(100.0, 1.0) + (sliding(100.0, 1.0) - sliding(0.0, -1.0));
       EXPECT_NEAR(path.states.back().joint_dissipation.sum(), friction * way,
                   1e-12 * friction * way);
@@ -184,7 +185,7 @@ TEST(Degenerate, SlipThatStopsAtACornerGoesOnAtTheNextOne) {
 
 TEST(Degenerate, StopThatIsReachedAsTheTemperatureTurns) {
   const double farthest = sliding(100.0, 1.0);
-  // Exactly, by rounding earlier and later, by the tolerance of events, by a nanometre.
+  // Exactly, earlier and later by rounding, by the tolerance of events and by a nanometre.
   for (const double early : {0.0, 1e-16, -1e-16, 1e-15, -1e-15, 1e-12, -1e-12, 1e-9, -1e-9}) {
     for (const bool locate : {true, false}) {
       Model model = bar(triangle(100.0));
@@ -243,7 +244,7 @@ TEST(Degenerate, ClearanceNearlyZeroHoldsAsNone) {
       for (const State& state : path.states) {
         EXPECT_LE(std::abs(slide(model, state)), clearance + 1e-18) << clearance;
       }
-      // Held at its stop until friction alone carries the bar's force.
+      // The block stays at its stop until friction alone can carry the bar's force.
       EXPECT_NEAR(slide(model, path.states.back()), clearance, 1e-18) << clearance;
       EXPECT_LE(path.events.size(), 6u) << clearance;
     }

@@ -20,7 +20,7 @@ using testing::triangle;
 
 constexpr double rigidity = 1e6;
 
-/// Flat arch under prestress, friction holds its apex: past its limit point but for that.
+/// Prestressed flat arch beyond its limit point; friction holds its apex.
 Model arch() {
   Model model;
   model.programs = {triangle(100.0)};
@@ -41,7 +41,7 @@ Model arch() {
   return model;
 }
 
-/// Arch whose loaded apex thrusts a foot outwards against friction and a spring.
+/// Arch whose loaded apex pushes a foot outwards against friction and a spring.
 Model footed(double stiffness) {
   Model model;
   model.programs = {triangle(-100.0)};
@@ -62,7 +62,7 @@ Model footed(double stiffness) {
   return model;
 }
 
-/// Temperature at which the foot has slid by x while it slides.
+/// Temperature change at which the sliding foot has moved by x.
 double footed_at(double stiffness, double x) {
   const double thrust = 110.0 + stiffness * x;
   const double half_span = 1.0 + 0.5 * x;
@@ -71,7 +71,7 @@ double footed_at(double stiffness, double x) {
   return (free / std::hypot(1.0, 0.1) - 1.0) / 1e-3;
 }
 
-/// @param coarsest increments of a branch where events are not located
+/// @param coarsest fewest increments of a branch for the runs without event location
 void expect_end(const Model& model, double change, double tolerance, int coarsest = 1) {
   for (const bool locate : {true, false}) {
     for (const int increments : {1, 7, 50, 333}) {
@@ -102,7 +102,7 @@ TEST(Instability, SlipThatNothingSlowsEndsThePathWhereItBegins) {
   expect_end(footed(0.0), footed_at(0.0, 0.0), 2e-7);
 }
 
-/// Arches beside each other.
+/// Several independent arches.
 Model arches(int count) {
   Model model = arch();
   for (int i = 1; i < count; ++i) {
@@ -144,7 +144,7 @@ TEST(Instability, ManyThatSlipUnstablyAtTheSameInstantAreAllNamed) {
 TEST(Instability, OneOfManyThatSlipAtTheSameInstantIsNamedIfItAloneDoesSoUnstably) {
   constexpr int count = 12;
   Model model = arches(count);
-  // Ties slow all slips but that of the first arch.
+  // Springs stabilize all slips except that of the first arch.
   for (int i = 1; i < count; ++i) {
     Node sky = node("sky", 0.0, 1.01, 0);
     sky.position.z() = i;
@@ -185,13 +185,13 @@ TEST(Instability, SlipThatTheTrussOvertakesEndsThePathAtTheLimitPoint) {
   }
   ASSERT_GT(inner, 1e-3);
   ASSERT_LT(inner, 0.04);
-  // Slip begins 0.9 K before it runs away; a longer increment without location steps over both.
+  // Slip starts 0.9 K before it becomes unstable; without location, a longer increment skips both.
   expect_end(footed(stiffness), footed_at(stiffness, inner), 1e-6, 50);
 }
 
 TEST(Instability, AStrutThatStaysStraightBeyondItsBucklingLoadIsRefused) {
-  // Two bars in line, pressed by heat; their pin buckles sideways where 2 P / L is the stiffness of
-  // the spring that guides it: 2400 N/m at 100 K. Nothing pushes the pin aside.
+  // Two collinear bars compressed by heating. Their pin buckles sideways when 2 P / L equals the
+  // stiffness of its lateral spring, 2400 N/m at 100 K. Nothing pushes the pin sideways.
   const auto strut = [](double stiffness) {
     Model model;
     model.programs = {triangle(100.0)};
@@ -209,13 +209,13 @@ TEST(Instability, AStrutThatStaysStraightBeyondItsBucklingLoadIsRefused) {
     ADD_FAILURE();
   } catch (const Failure& failed) {
     EXPECT_EQ(failed.fields().kind, FailureKind::buckled) << failed.what();
-    EXPECT_EQ(failed.fields().time, 0.5);  // looked for where the temperature turns
+    EXPECT_EQ(failed.fields().time, 0.5);  // the check runs when the temperature reverses
     ASSERT_FALSE(failed.fields().modes.empty());
     EXPECT_EQ(failed.fields().modes[0][0].node, "pin");
   }
 }
 
-/// Arch of one freedom, without joints, that its load presses through when its bars have become
+/// Arch with one dof and no joints, which snaps through under its load when its bars have become
 /// short.
 Model loaded_arch() {
   Model model;
@@ -232,8 +232,8 @@ Model loaded_arch() {
 }
 
 TEST(Instability, ALimitPointWithoutSlipEndsThePathThere) {
-  // 2 E A (1 − l/l_T) y/l = P with l² = 1 + y²: past the shortest l_T on its way down it stands
-  // nowhere.
+  // 2 E A (1 − l/l_T) y/l = P with l² = 1 + y². Below the smallest l_T of the descending apex there
+  // is no equilibrium.
   double shortest = std::numeric_limits<double>::infinity();
   for (double height = 0.1; height > 0.02; height -= 1e-6) {
     const double length = std::hypot(1.0, height);

@@ -15,17 +15,17 @@
 
 namespace statejump::truss {
 
-/// Truss of links, springs and sliders followed by incremental energy minimisation; shares nothing
-/// with the solver but the model.
+/// Truss of links, springs and sliders, solved by incremental energy minimisation. It shares
+/// nothing with the solver but the model.
 ///
-/// At every instant the displacements x minimise, from the slips p_k of the instant before,
+/// At every instant the displacements x minimise, with the slips p_k of the previous instant,
 ///
 ///     E(x, t) − loads · x + Σ [k_t (s − p)²/2 + f |p − p_k|],   −c− <= s <= c+,
 ///
-/// s(x) being a slider's slide and p what of it has slipped (p = s where k_t is infinite). E is
-/// convex near the drawn shape of a braced truss, so the minimum is the only one. Sequential
-/// quadratic programming; the convex programs are solved in their dual, a quadratic one in bounds,
-/// by projected Gauss-Seidel sweeps: there is no status and no pivot.
+/// where s(x) is a slider's slide and p its slipped part (p = s if k_t is infinite). For a braced
+/// truss near its reference configuration E is convex, so the minimum is unique. Method: sequential
+/// quadratic programming. Each convex program is solved in its dual, a bound-constrained quadratic
+/// program, by projected Gauss-Seidel sweeps; it uses no statuses and no pivots.
 class MinimisingTruss {
  public:
   explicit MinimisingTruss(const Model& model) : model_(&model) {
@@ -55,7 +55,7 @@ class MinimisingTruss {
     heat_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.joints.size()));
   }
 
-  /// Moves on to the minimum at a time. @throws std::runtime_error if the programs do not end
+  /// Advances to the minimum at a time. @throws std::runtime_error if the programs do not converge
   void step(double time) {
     std::vector<Row*> active;
     for (Row& row : rows_) {
@@ -78,13 +78,13 @@ class MinimisingTruss {
         moved -= compliant.col(r) * active[std::size_t(r)]->multiplier;
       }
       x_ += moved;
-      // Quadratic convergence: the next step is below rounding.
+      // Quadratic convergence: the next step would be below rounding.
       if (moved.lpNorm<Eigen::Infinity>() < 1e-11) break;
       if (iteration == 29) throw std::runtime_error("quadratic programs do not converge");
     }
     for (std::size_t j = 0; j < friction_.size(); ++j) {
       Row& row = rows_[friction_[j]];
-      // Inside its bounds friction lets nothing slip; elsewhere rounding would add up to heat.
+      // A multiplier inside its bounds means stick; slip from rounding must not accumulate as heat.
       if (std::abs(row.multiplier) < row.upper) continue;
       const double slipped = row.gradient.dot(x_) - row.compliance * row.multiplier;
       heat_[Eigen::Index(j)] += row.upper * std::abs(slipped - row.target);
@@ -100,22 +100,22 @@ class MinimisingTruss {
     }
     return moved;
   }
-  /// Force of a slider along its axis, friction and stops together [N].
+  /// Force along a slider's axis, friction and stops together [N].
   double force(std::size_t joint) const {
     return rows_[friction_[joint]].multiplier + rows_[stop_plus_[joint]].multiplier +
            rows_[stop_minus_[joint]].multiplier;
   }
-  /// Heat of each slider's friction since the start [J].
+  /// Friction heat of each slider since the start [J].
   const Eigen::VectorXd& heat() const { return heat_; }
 
  private:
-  /// Linear function of x that a force acts on: gradient · x − target, by a multiplier in bounds.
+  /// Linear function of x, gradient · x − target, with a force (multiplier) within bounds.
   struct Row {
     Eigen::VectorXd gradient;
     double target;
     double lower;
     double upper;
-    double compliance;  ///< 1/k_t
+    double compliance;  ///< 1/k_t [m/N]
     double multiplier = 0.0;
   };
 
@@ -178,8 +178,8 @@ class MinimisingTruss {
     return {gradient, hessian};
   }
 
-  /// Multipliers of the quadratic program, from those of the last one.
-  /// @param free values of the rows without any multiplier
+  /// Multipliers of the quadratic program, starting from those of the previous one.
+  /// @param free values of the rows at zero multipliers
   static void minimise(const std::vector<Row*>& rows, const Eigen::MatrixXd& delassus,
                        const Eigen::VectorXd& free) {
     const auto m = static_cast<Eigen::Index>(rows.size());
@@ -187,8 +187,8 @@ class MinimisingTruss {
     for (Eigen::Index r = 0; r < m; ++r) {
       value -= delassus.col(r) * rows[std::size_t(r)]->multiplier;
     }
-    // A sweep that moves nothing by more than the rounding of bars of a metre, from which the
-    // values are, ends it.
+    // The sweeps end when no value changes by more than the rounding of the bars' lengths of about
+    // one metre, from which the values are computed.
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     for (int sweep = 0; sweep < 100000; ++sweep) {
       double largest = 0.0;
@@ -213,7 +213,7 @@ class MinimisingTruss {
   int unknowns_ = 0;
   std::vector<int> node_row_;
   std::vector<Row> rows_;
-  std::vector<std::size_t> friction_;  // rows of each slider
+  std::vector<std::size_t> friction_;  // indices of the rows of each slider
   std::vector<std::size_t> stop_plus_;
   std::vector<std::size_t> stop_minus_;
   Eigen::VectorXd x_;

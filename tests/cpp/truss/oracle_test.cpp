@@ -20,7 +20,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Draws of one seed, the same on every machine (those of the standard's distributions are not).
+/// Random numbers from one seed, the same on every machine (standard distributions are not).
 class Draw {
  public:
   explicit Draw(unsigned seed) : engine_(seed) {}
@@ -44,9 +44,9 @@ Vector3d in_plane(double angle) {
   return {std::cos(angle), std::sin(angle), 0.0};
 }
 
-/// Plane truss of so many sliders, on the ground and between two nodes, every node of which is
-/// braced by itself and tied to others: whatever slips, the energy stays convex. Two programs, each
-/// link with its own share of one.
+/// Plane truss with the given number of sliders, on the ground and between two nodes. Every node is
+/// braced separately and connected to others, so the energy is convex for any slip. There are two
+/// programs, and each link has its own fraction of one.
 Model random_truss(unsigned seed, int sliders) {
   Draw draw(seed);
   Model model;
@@ -114,7 +114,7 @@ Model random_truss(unsigned seed, int sliders) {
       movable.push_back(slider.first);
       movable.push_back(slider.second);
     }
-    // Held links carry E A times a strain of up to 3e-3, some kN.
+    // Constrained links carry E A times a strain of up to 3e-3, some kN.
     slider.friction_force = draw.logarithmic(1.0, 1000.0);
     if (draw.happens(0.1)) slider.friction_force = 0.0;
     if (draw.happens(0.1)) slider.friction_force = 1e6;
@@ -128,11 +128,11 @@ Model random_truss(unsigned seed, int sliders) {
   return model;
 }
 
-/// The same truss with its nodes, links and joints in another order.
+/// The same truss with nodes, links and joints in another order.
 struct Shuffled {
   Model model;
-  std::vector<int> node_of;   ///< New number of each node.
-  std::vector<int> joint_of;  ///< New number of each joint.
+  std::vector<int> node_of;   ///< new index of each node
+  std::vector<int> joint_of;  ///< new index of each joint
 };
 
 Shuffled shuffled(const Model& model, unsigned seed) {
@@ -154,7 +154,7 @@ Shuffled shuffled(const Model& model, unsigned seed) {
     Bar& link = made.model.links[std::size_t(link_of[l])] = model.links[l];
     link.first = made.node_of[std::size_t(link.first)];
     link.second = made.node_of[std::size_t(link.second)];
-    // A bar has no direction.
+    // The direction of a bar is arbitrary.
     if (draw.happens(0.5)) std::swap(link.first, link.second);
   }
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
@@ -169,7 +169,7 @@ Shuffled shuffled(const Model& model, unsigned seed) {
 class Oracle : public ::testing::TestWithParam<unsigned> {};
 
 TEST_P(Oracle, OrderOfPartsDoesNotMatter) {
-  // One truss in ten, of every size; all 200 agree.
+  // One truss in ten, with all numbers of sliders; all 200 trusses agree.
   const unsigned seed = 10 * GetParam() + GetParam() % 10;
   const Model model = random_truss(seed, 2 + static_cast<int>(seed) % 39);
   const Shuffled other = shuffled(model, seed + 1000);
@@ -183,19 +183,19 @@ TEST_P(Oracle, OrderOfPartsDoesNotMatter) {
                                   .norm());
     }
   }
-  // Displacements of mm, rounded to 2e-16 of that over a condition of 10 (links are equally stiff
-  // to a factor of that), and changes that are located a rounding apart.
+  // Rounding of displacements of some mm, 2e-16 relative, times the condition number 10 (ratio of
+  // link stiffnesses); located changes may differ by rounding.
   EXPECT_LT(apart, 1e-14) << "seed " << seed;
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
-    // kN over the 1e-12 m of a change that one of both located within a step.
+    // some kN times 1e-12 m, the uncertainty of a located change
     EXPECT_NEAR(path.cycle_ends.back().joint_dissipation[Eigen::Index(j)],
                 again.cycle_ends.back().joint_dissipation[other.joint_of[j]], 1e-9);
   }
 }
 
 TEST_P(Oracle, RandomTrussesMinimiseTheirEnergy) {
-  // Ten trusses a test. A located change is late by at most 1e-9 of a branch in which a joint
-  // slides some mm, 1e-12 m, each time; other joints follow by at most as much.
+  // Ten trusses per test. A change is located to 1e-9 of a branch, in which a joint slides some mm:
+  // 1e-12 m per change. Other joints follow by at most as much.
   constexpr double tolerance = 1e-11;
   std::size_t events = 0;
   for (unsigned seed = 10 * GetParam(); seed < 10 * GetParam() + 10; ++seed) {
@@ -205,14 +205,14 @@ TEST_P(Oracle, RandomTrussesMinimiseTheirEnergy) {
     const Path path = solve(model, options);
     events += path.events.size();
     MinimisingTruss minimum(model);
-    // The path begins where friction lets the drawn shape come to rest, and counts heat from there.
+    // The path starts from the rest position with friction, and counts heat from there.
     minimum.step(0.0);
     const Eigen::VectorXd cold = minimum.heat();
     double before = 0.0;
     double apart = 0.0;
     double force_apart = 0.0;
     double heat_apart = 0.0;
-    std::vector<double> begun;  // intervals within which something changed
+    std::vector<double> begun;  // starts of the intervals with changes
     for (const Event& event : path.events) begun.push_back(event.time - event.interval);
     auto next = begun.begin();
     for (std::size_t i = 1; i < path.states.size(); ++i) {
@@ -220,8 +220,8 @@ TEST_P(Oracle, RandomTrussesMinimiseTheirEnergy) {
       for (; next != begun.end() && *next < state.time; ++next) {
         if (*next > before) minimum.step(before = *next);
       }
-      // Its own increments between the states of the path: what the path misses between two of its
-      // states is not missed here.
+      // The reference makes additional increments between the states of the path, so that it also
+      // detects what the path misses between two states.
       constexpr double longest = 0.5 / 100;
       const int parts = static_cast<int>(std::ceil((state.time - before) / longest));
       for (int part = 1; part < parts; ++part) {
@@ -241,15 +241,15 @@ TEST_P(Oracle, RandomTrussesMinimiseTheirEnergy) {
           heat_apart, (minimum.heat() - cold - state.joint_dissipation).lpNorm<Eigen::Infinity>());
     }
     EXPECT_LT(apart, tolerance) << "seed " << seed;
-    // Stiffest part: 2 MN over 0.05 m.
+    // Stiffest element: 2 MN over 0.05 m.
     EXPECT_LT(force_apart, 4e7 * tolerance) << "seed " << seed;
     EXPECT_LT(heat_apart, 1e3 * tolerance) << "seed " << seed;
   }
-  EXPECT_GT(events, 200u);  // else little was compared
+  EXPECT_GT(events, 200u);  // otherwise the comparison would cover too little
 }
 
 INSTANTIATE_TEST_SUITE_P(Twenty, Oracle, ::testing::Range(0u, 2u));
-// Tests of `make check`.
+// Run by `make check` only.
 INSTANTIATE_TEST_SUITE_P(Campaign, Oracle, ::testing::Range(2u, 20u));
 
 }  // namespace

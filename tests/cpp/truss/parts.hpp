@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What tests put trusses together from.
+// Building blocks of trusses for tests.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace statejump::truss::testing {
 
-/// One triangle of heating.
+/// Program of a single triangle.
 inline thermal::Program triangle(double largest, double seconds = 1.0) {
   thermal::Program program;
   program.shape = thermal::Shape::triangle;
@@ -18,7 +18,7 @@ inline thermal::Program triangle(double largest, double seconds = 1.0) {
   return program;
 }
 
-/// @param freedoms how many directions it is free in, x, y, z in this order
+/// @param freedoms number of free directions, in the order x, y, z
 inline Node node(const std::string& name, const Eigen::Vector3d& position, int freedoms) {
   Node made;
   made.name = name;
@@ -31,8 +31,8 @@ inline Node node(const std::string& name, double x, double y, int freedoms) {
   return node(name, {x, y, 0.0}, freedoms);
 }
 
-/// The joint of a rib of two bars, the tip of the first (link 0, node 2) around that of the second
-/// (link 1, node 3): 5 mm of radius, 0.1 mm of clearance, without friction, rigid.
+/// Joint of a rib of two bars: the tip of the first (link 0, node 2) is the bearing, that of the
+/// second (link 1, node 3) the journal. Radius 5 mm, clearance 0.1 mm, frictionless, rigid.
 inline ClearanceRevolute rib_joint() {
   ClearanceRevolute joint;
   joint.name = std::string("joint");
@@ -45,7 +45,7 @@ inline ClearanceRevolute rib_joint() {
   return joint;
 }
 
-/// The bar of Table 1 on a block that slides on the ground, with 30 N of friction and no stops.
+/// Bar of Table 1 on a block that slides on the ground, with 30 N of friction and no stops.
 inline Model sliding_bar(double seconds = 1.0) {
   Model model;
   model.programs = {triangle(100.0, seconds)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a path begins: stuck in the drawn shape, or in the equilibrium without friction.
+// Start of a path: stuck in the reference configuration, or in the frictionless equilibrium.
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -16,7 +16,7 @@ constexpr double k = 70e9 * 9e-6 / 0.5;
 constexpr double k_p = 1e5;
 constexpr double P = 20.0;
 
-/// The bar of Table 1 with a spring beside it that pulls the block back with P.
+/// Bar of Table 1 with a parallel spring that pulls the block back with P.
 Model pulled_bar(double pull = P) {
   Model model = testing::sliding_bar();
   model.springs = {{"P", 0, 1, k_p, 0.5 - pull / k_p, false}};
@@ -37,8 +37,7 @@ double jump(const Path& path) {
   return along(path.states.back()) - along(path.states.front());
 }
 
-/// Newton's bounds on both ends of a path: closures to 1e-13 of 1.2 mm, forces to 1e-12 of 200 N
-/// over k, 1.6e-16 m.
+/// Newton's tolerances at both ends: closures 1e-13 of 1.2 mm; forces 1e-12 of 200 N/k, 1.6e-16 m.
 constexpr double close = 2.0 * (1.2e-16 + 1.6e-16);
 
 TEST(StartChoice, BarStartsStuckOrWithoutFriction) {
@@ -66,7 +65,7 @@ TEST(StartChoice, WithoutLoadBothAreTheDrawnShape) {
 }
 
 TEST(StartChoice, ContactsThatGiveBeginWithoutForce) {
-  // Their springs are unbent where friction begins, at a stop as well.
+  // Their springs are undeformed when friction begins, also at a stop.
   for (const int partial_slip : {0, 1}) {
     for (const double clearance : {1e-5, 1.0}) {
       Model model = pulled_bar();
@@ -79,10 +78,10 @@ TEST(StartChoice, ContactsThatGiveBeginWithoutForce) {
       const State& begin = path.states.front();
       const double free = -P / (k + k_p);
       EXPECT_NEAR(along(begin), std::max(free, -clearance), close);
-      // The stop carries what is left of P at the clearance.
+      // The stop carries the part of P that the springs do not carry at the clearance.
       const double pushed = clearance < -free ? -P + (k + k_p) * clearance : 0.0;
       EXPECT_NEAR(output(model, begin, 0, "slider_force_N")[0], pushed, 1e-10);
-      // Nothing springs back: 1e-6 K are 1.2e-11 m of expansion.
+      // No elastic recovery: 1e-6 K are 1.2e-11 m of expansion.
       EXPECT_NEAR(along(path.states[1]), along(begin), 1.2e-11);
     }
   }

@@ -27,7 +27,7 @@ ClearanceRevolute& revolute(Model& model, std::size_t i = 0) {
   return std::get<ClearanceRevolute>(model.joints[i]);
 }
 
-/// A number that the first joint has at a state.
+/// Output of the first joint at a state.
 double number(const Model& model, const State& state, std::string_view key) {
   return output(model, state, 0, key)[0];
 }
@@ -40,8 +40,8 @@ Model bar() {
   return testing::sliding_bar();
 }
 
-/// Rib of two bars with a clearance joint, a torsion spring and a cable, at rest in no special
-/// shape.
+/// Rib of two bars with a clearance joint, a torsion spring and a cable, in a general
+/// configuration.
 Model rib() {
   Model model;
   model.programs = {triangle(100.0)};
@@ -76,8 +76,8 @@ TEST(Truss, BarJumpsByFrictionOverStiffness) {
 }
 
 TEST(Truss, SliderBetweenTwoNodesHoldsAcrossItsAxis) {
-  // The same bar, its block on a carrier that a second bar holds upright: a load across the axis
-  // goes into the carrier.
+  // The same bar with its block on a carrier, which a second bar supports: a lateral load is
+  // transferred to the carrier.
   Model model = bar();
   model.nodes[1].freedoms = 2;
   model.nodes.push_back(node("D", 0.5, 0, 2));
@@ -94,7 +94,7 @@ TEST(Truss, SliderBetweenTwoNodesHoldsAcrossItsAxis) {
   EXPECT_NEAR(std::abs(number(model, end, "slider_force_N")), 30.0, 1e-9);
 }
 
-/// Heat of friction, elastic energy and the temperature's work since the start, over the heat.
+/// Energy residue (heat, elastic energy, thermal work since the start) relative to the heat.
 double relative_residue(const Path& path) {
   const State& start = path.states.front();
   const State& end = path.states.back();
@@ -105,7 +105,7 @@ double relative_residue(const Path& path) {
 }
 
 TEST(Truss, ElasticSliderBendsBeforeItSlips) {
-  // Bar and contact are springs in series until the friction is f: (E A/l_T) (l0 α ΔT − s) = k_t s.
+  // Bar and contact are springs in series up to friction f: (E A/l_T) (l0 α ΔT − s) = k_t s.
   Model model = bar();
   const double stiffness = 1e7;
   slider(model).tangential_stiffness = stiffness;
@@ -118,26 +118,27 @@ TEST(Truss, ElasticSliderBendsBeforeItSlips) {
     const double expected = axial(change) * growth * change / (axial(change) + stiffness);
     EXPECT_NEAR(slide(model, state), expected, 1e-12 * 30.0 / stiffness) << change;
   }
-  // It slips where (E A/l_T) (l0 α ΔT − f/k_t) = f. Located to 1e-9 of the branch of 100 K.
+  // It slips when (E A/l_T) (l0 α ΔT − f/k_t) = f. Located to 1e-9 of the branch of 100 K.
   const double slip = path.events.front().temperature_change;
   EXPECT_EQ(path.events.front().after, JointStatus::slip_plus);
   EXPECT_NEAR(axial(slip) * (growth * slip - 30.0 / stiffness), 30.0, axial(0) * growth * 1e-7);
-  // Back it slides as well: the jump is that of a rigid contact, the heat f times the slides less
-  // the bend, f/k_t heating and 2 f/k_t cooling.
+  // It also slides back, so the jump is that of a rigid contact. The heat is f times the slides
+  // minus the elastic deflection, f/k_t on heating and 2 f/k_t on cooling.
   const double jump = 30.0 * 0.5 / 6.3e5;
   EXPECT_NEAR(slide(model, path.states.back()), jump, 1e-12 * jump);
   double farthest = 0.0;
   for (const State& state : path.states) farthest = std::max(farthest, slide(model, state));
   const double slid = 2.0 * farthest - jump - 3.0 * 30.0 / stiffness;
-  // While it bends and creeps near a turn, the located changes miss 1e-9 of the slide.
+  // Events located during stick near a reversal are wrong by 1e-9 of the slide.
   EXPECT_NEAR(path.states.back().joint_dissipation[0], 30.0 * slid, 1e-7 * 30.0 * slid);
-  // Trapezoidal rule of the temperature's work over 50 increments of a branch, of second order:
-  // 1e-3 of the expansion in them, times the strain of 1e-3, is far below 1e-6 of the heat.
+  // Trapezoidal rule of the thermal work over 50 increments per branch, second order: 1e-3 of the
+  // expansion, times the strain of 1e-3, is far below 1e-6 of the heat.
   EXPECT_LT(std::abs(relative_residue(path)), 1e-6);
 }
 
 TEST(Truss, ElasticSliderKeepsItsBendAtAStop) {
-  // It arrives at the stop bent by f, leaves where the force is f again, and slips back at −f.
+  // The spring is deflected by f when the block reaches the stop. The block leaves when the force
+  // is f again, and slips back at −f.
   Model model = bar();
   const double stiffness = 1e7;
   const double stop = 4e-4;
@@ -151,7 +152,7 @@ TEST(Truss, ElasticSliderKeepsItsBendAtAStop) {
   for (const State& state : path.states) {
     EXPECT_LE(slide(model, state), stop * (1 + 1e-12));
     if (state.time == path.events[3].time) {
-      // Located to 1e-9 of the branch, 100 K.
+      // Located to 1e-9 of the branch of 100 K.
       EXPECT_NEAR(slide(model, state), stop - 2.0 * 30.0 / stiffness, 1e-7 * 0.5 * 23.4e-6);
     }
   }
@@ -159,7 +160,7 @@ TEST(Truss, ElasticSliderKeepsItsBendAtAStop) {
   EXPECT_LT(std::abs(relative_residue(path)), 1e-6);
 }
 
-/// Rib whose contact gives way, k_t/k_n of aluminium.
+/// Rib with an elastic contact, k_t/k_n of aluminium.
 Model elastic_rib() {
   Model model = rib();
   revolute(model).mindlin_stiffness = 1.5 * 2.6e10 * 1.4 / 1.7;
@@ -186,7 +187,7 @@ double surface_slide(const Model& model, const State& from, const State& to) {
 }
 
 TEST(Truss, ElasticRevoluteIsTheHistorySpringOfTheDem) {
-  // The law of the DEM, driven along the path that the solver found, carries the same friction.
+  // The DEM's law, driven along the path of the solver, must give the same friction.
   Model model = elastic_rib();
   Options options;
   options.increments_per_branch = 2000;
@@ -210,18 +211,18 @@ TEST(Truss, ElasticRevoluteIsTheHistorySpringOfTheDem) {
     const double friction = -history.tangential_force.x();
     error = std::max(error, std::abs(friction - number(model, state, "friction_force_N")));
     largest = std::max(largest, std::abs(friction));
-    // A step of the DEM's law takes k_t at its end, the solver the mean of 1/k_t.
+    // A step of the DEM's law uses k_t at its end, the solver the mean of 1/k_t.
     allowed += 0.5 * std::abs(1.0 - before / stiffness(state)) *
                std::abs(friction - number(model, path.states[i - 1], "friction_force_N"));
     if (state.joint_status[0] == JointStatus::stick) ++sticks;
   }
   EXPECT_GT(sticks, 100);
-  EXPECT_LT(allowed, 1e-2 * largest);  // else the comparison says nothing
+  EXPECT_LT(allowed, 1e-2 * largest);  // otherwise the comparison is meaningless
   EXPECT_LT(error, allowed + 1e-9 * largest);
 }
 
 TEST(Truss, ElasticRevoluteClosesItsBalance) {
-  // Twenty times the increments leave less than a hundredth.
+  // Twenty times the increments leave less than a hundredth of the residue.
   Options options;
   options.increments_per_branch = 50;
   const double coarse = relative_residue(solve(elastic_rib(), options));
@@ -240,14 +241,15 @@ TEST(Truss, StiffContactsApproachRigidOnes) {
   for (const double factor : {1.0, 10.0, 100.0}) {
     revolute(model).mindlin_stiffness = factor * elastic;
     const double apart = (solve(model).states.back().displacement - rigid).norm();
-    EXPECT_LT(apart, 0.3 * last) << factor;  // first order in 1/k_t: a tenth each, and higher ones
+    // first order in 1/k_t: a tenth each time, plus higher orders
+    EXPECT_LT(apart, 0.3 * last) << factor;
     last = apart;
   }
 }
 
 TEST(Truss, SlipThatTurnsRoundWithinAStepIsLocated) {
-  // A block between two bars, one of which follows a sine: their difference turns round in the
-  // middle of a branch, where no corner of a program shortens the step.
+  // A block between two bars, one of which follows a sine. Their difference reverses in the middle
+  // of a branch, where no corner of a program shortens the step.
   Model model;
   model.programs = {triangle(100.0), triangle(100.0)};
   model.programs[1].shape = thermal::Shape::half_sine;
@@ -259,7 +261,7 @@ TEST(Truss, SlipThatTurnsRoundWithinAStepIsLocated) {
   slider.friction_force = 1.0;
   model.joints = {slider};
   const auto turns = [](const Path& path) {
-    // It turns at the start of the interval: what it slid beyond is below rounding.
+    // The reversal is at the start of the interval; the overshoot is below rounding.
     std::vector<double> found;
     for (const Event& event : path.events) {
       if (event.before != JointStatus::stick) found.push_back(event.time - event.interval);
@@ -274,7 +276,7 @@ TEST(Truss, SlipThatTurnsRoundWithinAStepIsLocated) {
   ASSERT_EQ(fine_turns.size(), 3u);  // one in each branch, and one at the corner between them
   for (const int increments : {1, 2, 5, 8, 30}) {
     for (const bool locate : {true, false}) {
-      // At both ends of a whole branch the block is where it was: only what is located is told.
+      // Without location, a whole branch shows no event: its ends have equal positions.
       if (!locate && increments == 1) continue;
       options.locate_events = locate;
       options.increments_per_branch = increments;
@@ -285,7 +287,7 @@ TEST(Truss, SlipThatTurnsRoundWithinAStepIsLocated) {
       const std::vector<double> found = turns(path);
       ASSERT_EQ(found.size(), fine_turns.size()) << increments;
       for (std::size_t i = 0; i < found.size(); ++i) {
-        // A slide of 1e-3 m times the square of what it is late by, below 1e3 roundings of 1e-18 m.
+        // Slide of 1e-3 m times the square of the delay, below 1e3 roundings of 1e-18 m.
         EXPECT_NEAR(found[i], fine_turns[i], 1e-6) << increments;
       }
     }
@@ -293,8 +295,8 @@ TEST(Truss, SlipThatTurnsRoundWithinAStepIsLocated) {
 }
 
 TEST(Truss, ContactThatComesAndGoesWithinAStepIsLocated) {
-  // A journal between two bars, held across them by a third: at both ends of a branch it is in the
-  // middle of its bearing, which it touches in between.
+  // A journal between two bars, laterally constrained by a third one. At both ends of a branch it
+  // is at the centre of its bearing, which it touches in between.
   Model model;
   model.programs = {triangle(100.0), triangle(100.0)};
   model.programs[1].shape = thermal::Shape::half_sine;
@@ -313,7 +315,7 @@ TEST(Truss, ContactThatComesAndGoesWithinAStepIsLocated) {
   Options options;
   options.increments_per_branch = 400;
   const Path fine = solve(model, options);
-  ASSERT_EQ(fine.events.size(), 4u);  // touches and leaves, in each branch
+  ASSERT_EQ(fine.events.size(), 4u);  // touches and separates, in each branch
   for (const int increments : {1, 2, 5}) {
     options.increments_per_branch = increments;
     const Path path = solve(model, options);
@@ -327,8 +329,8 @@ TEST(Truss, ContactThatComesAndGoesWithinAStepIsLocated) {
 }
 
 TEST(Truss, SlipEndsAtTheCornerHoweverLongTheIncrement) {
-  // Between two increments of a whole branch the slide turns round: the short step after the corner
-  // holds the block first, so that both slides and the stick between them are told.
+  // The slide reverses between two increments of a whole branch. The short step after the corner
+  // sticks first, so both slips and the stick between them are reported.
   Options options;
   options.locate_events = false;
   for (const int increments : {1, 3}) {
@@ -345,7 +347,7 @@ TEST(Truss, SlipEndsAtTheCornerHoweverLongTheIncrement) {
     ASSERT_NE(held + 1, path.events.end());
     EXPECT_EQ((held + 1)->before, JointStatus::stick);
     EXPECT_EQ((held + 1)->after, JointStatus::slip_minus);
-    // The start, and in both branches the short step and the increments: nothing is searched for.
+    // The start, and in each branch the short step and the increments: no event is searched.
     EXPECT_EQ(path.solves, 1 + 2 * (1 + increments));
   }
 }
@@ -362,7 +364,7 @@ TEST(Truss, RibFollowsItsPathAndClosesItsBalance) {
 }
 
 TEST(Truss, JournalThatGrowsWorksAgainstTheForceThatPressesIt) {
-  // A load presses a journal into a fixed bore; it gives way by what the clearance grows.
+  // A load presses a journal into a fixed bore; the journal yields by the growth of the clearance.
   Model model = rib();
   const double load = 50.0;
   model.nodes = {node("bore", 0, 0, 0), node("journal", 0, 0, 2), node("wall", -1, 0, 0)};
@@ -384,14 +386,14 @@ TEST(Truss, JournalThatGrowsWorksAgainstTheForceThatPressesIt) {
   for (const State& state : path.states) {
     const double stored = state.elastic_energy + state.load_potential -
                           path.states.front().elastic_energy - path.states.front().load_potential;
-    // The spring takes 1e3 N/m times the clearance of the load.
+    // The spring carries 1e3 N/m times the clearance.
     const double pressed = load - 1e3 * joint.radial_clearance;
     const double work = -pressed * growth * state.temperature_change;
     EXPECT_NEAR(state.thermal_work, work, 1e-2 * std::abs(work) + 1e-18);
     EXPECT_NEAR(state.thermal_work, stored, 1e-12 * load * joint.radial_clearance);
     largest = std::max(largest, std::abs(work));
   }
-  EXPECT_GT(largest, 1e-4 * load * joint.radial_clearance);  // else the balance says nothing
+  EXPECT_GT(largest, 1e-4 * load * joint.radial_clearance);  // otherwise the balance is meaningless
 }
 
 TEST(Truss, RibOfExpandingJournalsClosesItsBalance) {
@@ -404,7 +406,7 @@ TEST(Truss, RibOfExpandingJournalsClosesItsBalance) {
   const Path path = solve(model, options);
   const double fine = std::abs(relative_residue(path));
   EXPECT_LT(coarse, 1e-9);
-  // What a path may lose of the work, in each of its branches.
+  // Energy that a path may lose, in each of its branches.
   double work = 0.0;
   for (const State& state : path.states) work = std::max(work, std::abs(state.thermal_work));
   EXPECT_LT(fine,
@@ -427,7 +429,7 @@ TEST(Truss, ItemsOutOfRangeAreNamed) {
   model = rib();
   revolute(model).bearing_thermal_expansion = -1e-3;
   EXPECT_NE(message(model).find("clearance at the program's worst temperature"), std::string::npos);
-  // A journal that just fills its bore: powers of two, without rounding.
+  // A journal that exactly fills its bore; powers of two avoid rounding.
   model = rib();
   model.programs = {triangle(64.0)};
   revolute(model).journal_radius = 0.5;
@@ -458,7 +460,7 @@ TEST(Truss, MechanismIsNamed) {
   ASSERT_FALSE(fields.modes.empty());
   EXPECT_FALSE(fields.more_modes);
   EXPECT_EQ(fields.time, 0.0);
-  // Of many free nodes six modes are found, and that there may be more is told.
+  // With many free nodes six modes are found, and the error states that there may be more.
   model = bar();
   for (int i = 0; i < 4; ++i) model.nodes.push_back(node("free" + std::to_string(i), i, 1, 2));
   const FailureFields many = failure(model);
@@ -473,7 +475,7 @@ TEST(Truss, EventsHaveTheStepInWhichTheyHappened) {
   const Path path = solve(bar(), options);
   ASSERT_FALSE(path.events.empty());
   for (const Event& event : path.events) {
-    // Half a second of heating or cooling, and the sum of a time and a step is rounded.
+    // Half a second of heating or cooling; the sum of a time and a step is rounded.
     EXPECT_GT(event.interval, 0.0);
     EXPECT_LE(event.interval, 1.5 * options.event_tolerance * 0.5);
     EXPECT_NEAR(event.temperature_change, 200.0 * std::min(event.time, 1.0 - event.time), 1e-12);
@@ -511,16 +513,16 @@ TEST(Truss, LocalProblemsAreThoseThatThePathSolves) {
       const complementarity::Problem& problem = local.problem;
       EXPECT_EQ(local.joints, std::vector<int>{0});
       ASSERT_EQ(problem.contacts(), 1);
-      // Forces balance to 1e-12 of themselves, motions close to 1e-13 of the displacements, which
-      // are a hundred times those of a step.
+      // Forces are in equilibrium to 1e-12; closures are solved to 1e-13 of the displacements,
+      // which are a hundred times those of a step.
       EXPECT_LT(complementarity::merit(problem, local.reactions).largest(), 1e-9);
       EXPECT_LT((complementarity::velocities(problem, local.reactions) - local.velocities).norm(),
                 1e-12 * problem.q.norm());
       EXPECT_GT(std::abs(local.reactions[1]), 0.0);
     }
   }
-  // The block slides at 0.1 s and 20 K: what moves it is the compliance of the bar as it is heated,
-  // its friction is 30 N.
+  // The block slides at 0.1 s and 20 K: W is the compliance of the bar at this temperature, and
+  // friction is 30 N.
   const LocalProblem local = solve(bar(), options).problems[0];
   const auto& w = std::get<Eigen::MatrixXd>(local.problem.delassus);
   EXPECT_NEAR(w(1, 1), 0.5 * (1.0 + 23.4e-6 * 20.0) / 6.3e5, 1e-12 / 6.3e5);
@@ -533,13 +535,13 @@ TEST(Truss, RoundingGoesWithTheLargestDisplacementOfThePath) {
   const detail::System system(model);
   Eigen::VectorXd z = Eigen::VectorXd::Zero(system.unknowns());
   z.tail(system.unknowns() - 1).setConstant(30.0);  // forces do not count
-  // At rest it is that of the largest thermal strain, 23.4e-6/K times 100 K, of the whole truss.
+  // At rest it is the largest thermal strain, 23.4e-6/K times 100 K, times the size of the truss.
   EXPECT_DOUBLE_EQ(system.reach(z), 23.4e-4 * system.size());
   EXPECT_DOUBLE_EQ(system.rounding(z).length, detail::closure_tolerance * system.reach(z));
   EXPECT_DOUBLE_EQ(system.rounding(z).force, system.stiffness_scale() * system.rounding(z).length);
   z[0] = -1e-2;
   EXPECT_EQ(system.reach(z), 1e-2);
-  // An iteration that runs away is not excused by its distance.
+  // A diverging iteration must not enlarge its own tolerance.
   z[0] = 1e9;
   EXPECT_EQ(system.reach(z), system.size());
 }
@@ -549,7 +551,7 @@ TEST(Truss, JointThatNothingLoadsIsSlack) {
   model.nodes[2].load.setZero();
   model.torsion_springs.clear();
   model.springs.clear();
-  // Stress-free lengths as drawn: no pin force.
+  // Stress-free lengths equal to the reference configuration: no pin force.
   for (Bar& link : model.links) {
     link.stress_free_length = (model.nodes[static_cast<std::size_t>(link.second)].position -
                                model.nodes[static_cast<std::size_t>(link.first)].position)
@@ -563,11 +565,11 @@ TEST(Truss, JointThatNothingLoadsIsSlack) {
   ASSERT_EQ(note.joints.size(), 1u);
   EXPECT_EQ(note.joints[0].kind, "revolute");
   EXPECT_EQ(note.joints[0].name, "joint");
-  // Nothing is carried but rounding of what the stiffest link would.
+  // Only rounding errors of the stiffest link's force.
   EXPECT_LT(element_output<Bar>(model, path.states.back()).cwiseAbs().maxCoeff(), 1e-6);
 }
 
-/// The bar with a second one beside it that follows another program.
+/// The bar with a second, independent one that follows another program.
 Model two_programs(double period, int cycles, double other_period, int other_cycles) {
   Model model = bar();
   model.nodes.push_back(node("C", 0, 1, 0));
@@ -587,7 +589,7 @@ TEST(Truss, ProgramsNeedNotLastEquallyLongToTheLastBit) {
     const Path path =
         solve(longer_first ? two_programs(0.1, 3, 0.3, 1) : two_programs(0.3, 1, 0.1, 3));
     EXPECT_EQ(path.cycle_ends.size(), longer_first ? 4u : 2u);
-    // Both have ended: the free bar is as long as drawn, to the rounding of its force.
+    // Both programs have ended: the free bar has its initial length, to the rounding of its force.
     EXPECT_NEAR(path.states.back().displacement(0, 3), 0.0, 1e-16);
     EXPECT_EQ(path.states.back().temperature_change, 0.0);
   }
@@ -596,7 +598,7 @@ TEST(Truss, ProgramsNeedNotLastEquallyLongToTheLastBit) {
 }
 
 TEST(Truss, CornersThatNearlyCoincideAreOne) {
-  // Eight cycles of 0.15 s turn 16 times; the ends of four of 0.3 s are among those, to rounding.
+  // Eight cycles of 0.15 s have 16 corners; the ends of four of 0.3 s nearly coincide with some.
   ASSERT_NE(3 * 0.3 + 0.15, 7 * 0.15);
   for (const bool longer_first : {false, true}) {
     const Model model =

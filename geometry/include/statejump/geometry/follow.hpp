@@ -9,60 +9,59 @@
 
 namespace statejump::geometry {
 
-/// A journal or a ball as a wall sees it, in the axes of the mesh.
+/// Journal or ball in the axes of the mesh.
 struct Probe {
   Eigen::Vector3d centre;  ///< [m]
-  Eigen::Vector3d axis;    ///< unit, of a journal; zero: a ball
+  Eigen::Vector3d axis;    ///< unit axis of a journal; zero: a ball
   double radius;           ///< [m], > 0
 };
 
-/// A place of a wall that a journal or ball touches or nearly touches.
+/// Point where the wall touches or nearly touches a journal or ball.
 struct FollowedContact {
   Eigen::Vector3d normal;  ///< unit, into the wall, perpendicular to a journal's axis
-  double distance;         ///< [m] of the wall from the centre; below the radius: contact
-  double curvature;  ///< [1/m] of the wall, hollow positive: of a journal's section, of a ball
-                     ///< the mean of both principal ones
-  int label;         ///< as given by set_label() in an earlier step, -1 for a new place
+  double distance;   ///< distance of the wall from the centre [m]; less than the radius: contact
+  double curvature;  ///< curvature of the wall [1/m], concave positive: in the section of a
+                     ///< journal; for a ball the mean of both principal curvatures
+  int label;         ///< as set by set_label() in an earlier step; -1: new contact
 };
 
-/// Where the contacts of a step come from; the dearest of what was needed.
+/// Most expensive method that a step needed, in increasing order of cost.
 enum class Followed {
-  patches,  ///< circles (of a ball: tori) that osculate the wall
-  wall,     ///< the smooth wall, near the contacts of the step before
-  search    ///< the whole wall
+  patches,  ///< circles (for a ball: tori) that osculate the wall
+  wall,     ///< smooth wall near the contacts of the previous step
+  search    ///< search of the whole wall
 };
 
-/// Contacts of a journal or ball that moves by little from call to call: what
-/// BoreMesh::contacts() or ball_contacts() find, for a fraction of their cost.
+/// Contacts of a journal or ball that moves little between calls: the result of
+/// BoreMesh::contacts() or ball_contacts() at a fraction of their cost.
 ///
-/// Around each contact the wall is a circle that osculates it (error of the distance: a sixth of
-/// the curvature's slope times the cube of the way, below 1e-15 m at the default patch angle). When
-/// its normal has turned by more than patch_angle, the smooth wall is asked again at the place
-/// where the contact has gone to.
+/// Around each contact the wall is replaced by an osculating circle. Its error of the distance is a
+/// sixth of the derivative of curvature times the cube of the arc length, below 1e-15 m at the
+/// default patch_angle. When the contact normal has rotated by more than patch_angle, the circle is
+/// fitted again to the smooth wall at the new position of the contact.
 ///
-/// The whole wall is searched when another contact might have begun. No distance from the wall
-/// changes faster than the centre moves (in a section of a wall that leans 45 degrees: by 1.5 of
-/// it). So within a travel f of the last search contacts stay where the gap was below f then.
-/// There, the wall is flatter than the journal: its hollow curvature times the distance is below 1,
-/// every stationary point of the distance is then a minimum, and two minima would need a maximum
-/// between them; so each such part holds the one contact that is followed. f is at most a twentieth
-/// of the play, and ends where the gap of the next part of the wall or of one that is not flatter
-/// would. Where a contact lies itself in wall that is not flatter than the journal, nothing is
-/// followed beyond its patch, and f is a thousandth of the play. Limits: those of the search,
-/// BoreMesh::contacts(). The wall's curvature is that at its vertices.
+/// The whole wall is searched again before another contact can begin. The distance from the wall
+/// changes at most as fast as the centre moves (in a section of a wall inclined by 45 degrees: 1.5
+/// times as fast). So within a travel f since the last search, contacts stay in regions where the
+/// gap was then below f. In these regions the wall is less curved than the journal: concave
+/// curvature times distance is below 1. Every stationary point of the distance is then a minimum.
+/// Two minima would need a maximum between them, so each region holds exactly the one followed
+/// contact. f is at most a twentieth of the play. It is reduced to the gap of the next region, and
+/// to the gap at the nearest wall that is not less curved than the journal. If a contact itself
+/// lies in such wall, it is followed only within its patch, and f is a thousandth of the play.
+/// Limits: those of BoreMesh::contacts(). The curvature of the wall is taken at its vertices.
 ///
 /// @param patch_angle [rad], >= 0; 0 searches in every call
-/// @param track what is known from the last calls, to be kept by the caller for each pair, empty at
-///        first; numbers in the axes of the mesh [m, 1/m], fit for saving as they are
-/// @param found the places in contact or within a twentieth of the play of it
-/// @throws as BoreMesh::contacts() and ball_contacts()
+/// @param track state of the pair, stored by the caller between calls, empty at first; numbers in
+///        the axes of the mesh [m, 1/m] that may be saved and restored
+/// @param found contacts, and gaps below a twentieth of the play
+/// @throws what BoreMesh::contacts() and ball_contacts() throw
 Followed follow_contacts(const BoreMesh& mesh, const Probe& probe, double patch_angle,
                          std::vector<double>& track, std::vector<FollowedContact>& found);
 
-/// Writes on a followed place a number that later calls return with it. While no place has a label
-/// >= 0, a contact that begins is searched for, so that it does not depend on what was known
-/// before.
-/// @param index in found
+/// Sets the label of a followed contact; later calls return it. While no contact has a label >= 0,
+/// a contact that begins triggers a search, so that results do not depend on the past.
+/// @param index index in `found`
 void set_label(std::vector<double>& track, std::size_t index, int label);
 
 }  // namespace statejump::geometry

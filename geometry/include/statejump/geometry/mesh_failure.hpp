@@ -7,20 +7,21 @@
 
 namespace statejump::geometry {
 
-/// What is wrong with a mesh.
+/// Defect of a mesh.
 enum class MeshFault : unsigned char {
   unreadable,  ///< the file cannot be opened or is not of its format
-  bad_faces,   ///< faces that are missing, degenerate, of three at an edge, one-sided, in parts
+  bad_faces,   ///< missing or degenerate faces, an edge of three faces, inconsistent orientation,
+               ///< several parts
   self_intersects,  ///< faces pass through each other
-  open,             ///< ends are missing or there are holes
+  open,             ///< no open ends, or holes
   inside_out,       ///< normals point away from the axis or centre
   no_bore,          ///< the faces surround no axis or face no centre
-  too_coarse,       ///< too few facets to say where the true surface is
+  too_coarse,       ///< too few facets to determine the true surface
   too_large,        ///< mean radius above the largest
   too_small         ///< mean radius below the smallest
 };
 
-/// "unreadable", "bad_faces", …: the enumerator's name.
+/// Name of the enumerator, e.g. "unreadable".
 inline const char* to_string(MeshFault fault) {
   switch (fault) {
     case MeshFault::unreadable:
@@ -45,8 +46,8 @@ inline const char* to_string(MeshFault fault) {
   return "unknown";
 }
 
-/// A mesh that is no bore or socket, as fields; what() is "file: cause; remedy", where the cause
-/// asks a question "file: cause? Then remedy".
+/// Error for a mesh that is no bore or socket, as fields. what() is "file: cause; remedy", or
+/// "file: cause? Then remedy" if the cause ends with a question.
 class MeshFailure : public std::runtime_error {
  public:
   MeshFailure(std::string file, MeshFault fault, std::string cause, std::string remedy = "")
@@ -56,9 +57,9 @@ class MeshFailure : public std::runtime_error {
         remedy_(std::move(remedy)),
         fault_(fault) {}
 
-  const std::string& file() const { return file_; }  ///< or what the mesh was called
+  const std::string& file() const { return file_; }  ///< file, or the name of the mesh
   const std::string& cause() const { return cause_; }
-  const std::string& remedy() const { return remedy_; }  ///< in the library's terms; may be empty
+  const std::string& remedy() const { return remedy_; }  ///< in terms of BoreOptions; may be empty
   MeshFault fault() const { return fault_; }
 
  private:

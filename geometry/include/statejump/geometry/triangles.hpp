@@ -8,29 +8,32 @@
 
 namespace statejump::geometry {
 
-/// Triangles as arrays: what a file holds and what a generator makes. Nothing is checked here.
+/// Triangles as arrays, as read from a file or made by a generator; not checked.
 struct Triangles {
   std::vector<Eigen::Vector3d> vertices;  ///< [m], or the file's unit before scaling
-  std::vector<std::array<int, 3>> faces;  ///< indices of vertices, anticlockwise seen from where
-                                          ///< the normal points to
-  int removed = 0;                        ///< faces of the file without an area, left out
+  /// Vertex indices, anticlockwise as seen from the side that the normal points to.
+  std::vector<std::array<int, 3>> faces;
+  int removed = 0;  ///< number of faces of the file without area, which were left out
 };
 
-/// Reads OFF, STL (text or binary), PLY or OBJ; the name's ending says which.
+/// Reads OFF, STL (text or binary), PLY or OBJ, selected by the extension of the name.
 ///
-/// The file may come from a stranger: pipes, devices and files of more than 2 GiB are refused, and
-/// so are counts that do not fit into the file. Equal vertices become one (STL has no shared ones),
-/// and of floats of 32 bits those nearer than their rounding. Polygons become triangles; faces of
-/// fewer than three vertices are left out. Vertices and faces keep their order.
-/// @throws MeshFailure no such file, an ending of another format, not readable as that format (with
-///         the line of a text), corners that do not exist, vertices that are not finite, no faces
+/// The file may be untrusted: pipes, devices and files of more than 2 GiB are rejected, and so are
+/// counts that exceed the size of the file. Equal vertices are merged (STL shares no vertices), and
+/// 32-bit float vertices also if they differ only by rounding. Polygons are split into triangles;
+/// faces of fewer than three vertices are left out. The order is kept.
+/// @throws MeshFailure if there is no such file, the extension is unknown, the content is not of
+///         that
+///         format (with the line of a text file), a corner does not exist, a vertex is not finite,
+///         or
+///         there are no faces
 Triangles read_triangles(const std::string& file);
 
 /// A wave on a round bore, r = R + amplitude cos(harmonic (theta - phase)).
 struct Lobe {
-  int harmonic;      ///< waves per turn, >= 1; 2 is an ellipse, 3 a three-lobed bore
-  double amplitude;  ///< [m], half of peak to valley
-  double phase = 0;  ///< [rad], where the radius is largest
+  int harmonic;      ///< number of waves per turn, >= 1; 2: ellipse, 3: three-lobed bore
+  double amplitude;  ///< [m], half of the peak-to-valley value
+  double phase = 0;  ///< [rad], angle of the largest radius
 };
 
 /// Shape of a bore along z; its inner wall is r(theta, z) = R + lobes + wear.
@@ -38,18 +41,18 @@ struct BoreShape {
   double radius;  ///< R [m], > 0
   double length;  ///< [m], > 0, from z = -length/2 to +length/2
   std::vector<Lobe> lobes = {};
-  double wear_depth = 0;      ///< [m], >= 0, deepest removal of a smooth worn trough
-  double wear_angle = 0;      ///< [rad], where the trough is deepest
-  double wear_width = 0.5;    ///< [rad], depth exp(-((theta - angle)/width)^2)
-  double crown = 0;           ///< [m], growth of the radius at both ends, (2z/length)^2
-  double wall_thickness = 0;  ///< [m]; > 0 makes a closed ring with a round outside, 0 a tube
+  double wear_depth = 0;    ///< depth of a smooth worn trough at its deepest point [m], >= 0
+  double wear_angle = 0;    ///< angle of the deepest point [rad]
+  double wear_width = 0.5;  ///< [rad]; wear is wear_depth exp(-((theta - wear_angle)/wear_width)^2)
+  double crown = 0;  ///< increase of the radius at both ends [m], proportional to (2z/length)^2
+  double wall_thickness = 0;  ///< [m]; > 0: closed ring with a round outer surface, 0: open tube
 };
 
-/// Radius of a shape's inner wall [m]. @param theta [rad], @param z [m]
+/// Radius of the inner wall [m]. @param theta [rad], @param z [m]
 double bore_radius(const BoreShape& shape, double theta, double z);
 
-/// Mesh of a bore whose vertices lie on the shape: around facets around, along quadrilaterals of
-/// two triangles along. Normals point to the axis (and out of the body, for a ring).
+/// Mesh of a bore whose vertices lie on the shape, with `around` facets around and `along` rows of
+/// quadrilaterals, each of two triangles. Normals point to the axis (out of a ring's material).
 /// @param around >= 3, @param along >= 1
 /// @throws std::invalid_argument when an argument is out of its range
 Triangles bore_triangles(const BoreShape& shape, int around, int along);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What elements/interface.hpp promises, checked for every registered type.
+// Checks the contract of elements/interface.hpp for every registered type.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -27,21 +27,21 @@ using Eigen::VectorXd;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-/// Derivative of a function at 0 by differences of fourth order over h: truncation h⁴/30 of the
-/// fifth derivative, rounding 1.5 ε/h of the value.
+/// Derivative of a function at 0 by fourth-order differences with step h: truncation error h⁴/30
+/// times the fifth derivative, rounding 1.5 ε/h times the value.
 template <class Function>
 auto derivative(Function&& at, double h) {
   return ((8.0 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12.0 * h)).eval();
 }
 
-/// Step of the differences [m]: lengths of the samples are about 1 m, so that truncation is some
-/// 1e-13 of the largest derivative and rounding some 1e-12 of the value.
+/// Step of the differences [m]. Lengths of the samples are about 1 m, so the truncation error is
+/// about 1e-13 of the largest derivative and the rounding about 1e-12 of the value.
 constexpr double step = 5e-4;
-/// Of a derivative, in the value over 1 m and in the derivative: the sum of truncation and rounding
+/// Tolerance relative to (value over 1 m) and to the derivative: sum of truncation and rounding,
 /// with a factor of ten for the fifth derivatives of directions.
 constexpr double of_differences = 1e-11;
 
-/// Elements of one type at states of their own.
+/// Elements of one type in test states.
 template <class Type>
 class ElementContract : public ::testing::Test {
  protected:
@@ -74,7 +74,7 @@ class ElementContract : public ::testing::Test {
     return at(q, changes(),
               [&](const ElementState& state) { return elements()[i].energy(frames[i], state); });
   }
-  /// Calls `write(state, writer)` and returns forces and derivatives that were written.
+  /// Calls `write(state, writer)` and returns the forces and derivatives that it wrote.
   template <class Write>
   Assembly written(const VectorXd& q, const std::vector<double>& temperatures,
                    Write&& write) const {
@@ -163,7 +163,7 @@ TYPED_TEST(ElementContract, TangentIsTheGradientOfTheForce) {
   this->check_tangent();
 }
 
-/// The sample of a type with constraints between its nodes; one gives a displacement of B, one of
+/// Sample of a type with constraints between its nodes: one eliminates a displacement of B, one of
 /// A.
 template <class Type>
 Model constrained_sample() {
@@ -200,21 +200,21 @@ TYPED_TEST(ElementContract, ThermalRateIsTheRateOfTheForceWhereNothingMoves) {
                         this->elements()[i].thermal_rate(this->frames[i], state, rates, writer);
                       })
             .residual;
-    // Forces bend by the thermal strain: over a second of 1e-3, by 1e-15 in the fifth derivative.
+    // Thermal strain makes forces nonlinear: 1e-3 over a second, 1e-15 in the fifth derivative.
     const VectorXd difference = derivative(
         [&](double h) {
           const std::vector<double> then{60.0 + h * rates[0], -35.0 + h * rates[1]};
           return this->evaluated(i, q, then).residual;
         },
         0.1);
-    // Rounding of the force, of a length of 1 m times the stiffness, over 0.1 s.
+    // Rounding of the force (1 m times the stiffness) over 0.1 s.
     const double rounding = 64.0 * epsilon * this->tangent(i, q).norm() / 0.1;
     EXPECT_LE((rate - difference).norm(), rounding + of_differences * rate.norm());
   }
 }
 
 TYPED_TEST(ElementContract, WorksOfForceAndTemperatureAreTheChangeOfTheEnergy) {
-  // The program heats evenly up to t = 0.5; nodes move evenly.
+  // The program heats at a constant rate up to t = 0.5; nodes move at constant velocity.
   const VectorXd from = this->displaced();
   const double duration = 0.2;
   const VectorXd rate = (this->displaced(0.1) - from) / duration;
@@ -235,7 +235,7 @@ TYPED_TEST(ElementContract, WorksOfForceAndTemperatureAreTheChangeOfTheEnergy) {
       const auto rules = detail::quadratures(way, this->model);
       const double heated = this->elements()[i].thermal_work(
           this->frames[i], detail::ThermalStep{way, this->drawn, this->dofs, rules});
-      // Simpson's rule in 64 parts: off by 64⁻⁴/2880 = 2e-11 of the fourth derivative.
+      // Simpson's rule with 64 parts: error 64⁻⁴/2880 = 2e-11 of the fourth derivative.
       double work = 0.0;
       constexpr int parts = 64;
       for (int k = 0; k <= 2 * parts; ++k) {
@@ -249,15 +249,15 @@ TYPED_TEST(ElementContract, WorksOfForceAndTemperatureAreTheChangeOfTheEnergy) {
     };
     const double whole = unbalanced(duration);
     const double half = unbalanced(0.5 * duration);
-    // Of fourth order over a step, so of the fifth in a step: a halved step is off by a 32nd; 16
-    // leaves room for the sixth. Or by rounding and by Simpson's rule.
+    // Fourth order overall, so fifth order per step: half the step has 1/32 of the error; 1/16
+    // allows for sixth-order terms. Otherwise the error is rounding and that of Simpson's rule.
     EXPECT_LE(half, whole / 16.0 + 1e-12 * stored) << this->elements()[i].name;
     EXPECT_LE(whole, 1e-3 * stored) << this->elements()[i].name;
   }
 }
 
 TYPED_TEST(ElementContract, ForcesTurnWithTheStructure) {
-  // Nodes are free here, so that their dofs are components along the axes.
+  // All nodes are free, so that their dofs are components along the axes.
   for (Node& node : this->model.nodes) {
     node.freedoms = 3;
     node.free_directions = Directions();
@@ -351,7 +351,7 @@ TYPED_TEST(ElementContract, WritesTheSameEntriesAtEveryState) {
   for (std::size_t i = 0; i < this->elements().size(); ++i) {
     const auto reference =
         places(this->evaluated(i, VectorXd::Zero(this->dofs.dofs()), {0.0, 0.0}));
-    // Ten times as far: cables become taut and slack.
+    // With ten times the displacement, cables change between taut and slack.
     const auto far = places(this->evaluated(i, 10.0 * this->displaced(), this->changes()));
     EXPECT_EQ(reference, far);
     const auto near = places(this->evaluated(i, -10.0 * this->displaced(), this->changes()));
@@ -367,7 +367,7 @@ TYPED_TEST(ElementContract, DescribesEveryOutput) {
       this->elements()[i].describe(this->frames[i], state, outputs.data());
     });
     for (std::size_t k = 0; k < width; ++k) EXPECT_TRUE(std::isfinite(outputs[k]));
-    EXPECT_TRUE(std::isnan(outputs[width]));  // it writes nothing beyond
+    EXPECT_TRUE(std::isnan(outputs[width]));  // writes nothing beyond its outputs
   }
 }
 
@@ -394,7 +394,7 @@ TEST(DofMap, NumbersRotationsBehindTheTranslationsOfTheirNode) {
        std::vector<std::pair<int, int>>{{2, 0}, {3, 1}, {7, 1}, {8, 2}, {9, 3}, {11, 3}}) {
     EXPECT_EQ(dofs.node_of(dof), node) << dof;
   }
-  // Without an element that has rotations no node has any.
+  // Without an element that has rotations, no node has any.
   EXPECT_EQ(DofMap(testing::sample(std::type_identity<Bar>())).dofs(), 6);
 }
 

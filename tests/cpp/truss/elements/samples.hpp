@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A model with elements of one type for the tests that every type passes. A new type adds its own.
+// For each element type a model for the tests that every type must pass. A new type adds its own.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,7 +11,7 @@
 
 namespace statejump::truss::testing {
 
-/// Four nodes in space: free, free in a tilted plane, on a tilted line, fixed.
+/// Four nodes in space: free, free in a tilted plane, free on a tilted line, fixed.
 inline Model four_nodes() {
   Model model;
   model.programs = {triangle(80.0, 2.0), triangle(-50.0, 2.0)};
@@ -53,7 +53,7 @@ inline Model sample(std::type_identity<TorsionSpring>) {
   return model;
 }
 
-/// What the elements of the samples need to move.
+/// Masses and moments of inertia for the elements of the samples.
 inline Inertia sample_inertia() {
   Inertia made;
   made.link_mass = Eigen::Vector3d(1.0, 2.0, 4.0);

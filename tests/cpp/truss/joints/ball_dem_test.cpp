@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The contact of the DEM, with its own kinematics, driven along the paths that the solver finds.
+// Drives the DEM's contact, with its own kinematics, along the paths of the quasi-static solver.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,13 +18,13 @@ using namespace testing;
 using Eigen::Vector3d;
 
 struct Driven {
-  double error = 0.0;     ///< Of friction, over the largest.
-  double smallest = 1.0;  ///< Friction over its bound, of any state but the first.
+  double error = 0.0;     ///< Error of friction relative to the largest friction force.
+  double smallest = 1.0;  ///< Smallest friction over its bound, without the first state.
   int slips = 0;
   int states = 0;
 };
 
-/// @param partial whether the DEM's contact slides at its rim first
+/// @param partial whether the DEM's contact has partial slip
 Driven driven(const Model& model, int increments, bool partial) {
   const BallJoint& joint = joint_of(model);
   Options options;
@@ -100,7 +100,7 @@ TEST(BallJoint, IsTheHistorySpringOfTheDemInSpace) {
   const Driven fine = driven(tripod(), 2000, false);
   EXPECT_GT(fine.slips, 100);
   EXPECT_LT(fine.slips, fine.states - 100);
-  // A step of the DEM's contact is of first order where the slide turns.
+  // A step of the DEM's contact is of first order if the slide direction changes.
   EXPECT_LT(coarse.error, 2e-3);
   EXPECT_NEAR(fine.error, 0.5 * coarse.error, 0.05 * coarse.error);
 }
@@ -113,7 +113,7 @@ TEST(BallJoint, IsTheContactWithPartialSlipOfTheDemInSpace) {
   EXPECT_GT(fine.slips, 100);
   EXPECT_LT(fine.slips, fine.states - 100);
   EXPECT_LT(fine.smallest, 0.5);
-  // Of first order, and the chords of both.
+  // First order, plus the chords of both.
   EXPECT_LT(coarse.error, 2e-3);
   EXPECT_LT(fine.error, 0.5 * coarse.error + 3e-4);
 }

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 TEST(BallJoint, GradientsAreThoseOfItsForces) {
   const Pressed pressed;
-  // Loaded and unloaded: what bends has a branch for each.
+  // Loading and unloading: the elastic slide has a branch for each.
   for (const double loaded : {4.0, 7.0}) {
     check_gradients(pressed.model, pressed.z, pressed.before(loaded),
                     {JointStatus::stick, JointStatus::slip_plus, JointStatus::open}, 1e-8, 1e-4);
@@ -49,8 +49,8 @@ TEST(BallJoint, TurnedInSpaceTheTrussIsTheSame) {
 }
 
 TEST(BallJoint, FrictionTurnsIntoANewSlideAsATractrix) {
-  // Gross slip along x, then a slide along y: with the angle θ between friction and slide
-  // dθ/ds = −(k/μN) sin θ, so that tan(θ/2) falls from 1 as exp(−k s/μN).
+  // Gross slip along x, then a slide along y. For the angle θ between friction and slide,
+  // dθ/ds = −(k/μN) sin θ, so tan(θ/2) decreases from 1 as exp(−k s/μN).
   const Model model = pushed_around_a_corner();
   double error[2] = {0.0, 0.0};
   for (const int fine : {0, 1}) {
@@ -68,7 +68,7 @@ TEST(BallJoint, FrictionTurnsIntoANewSlideAsATractrix) {
       EXPECT_NEAR(rubs.norm(), bound, 1e-9 * bound);
       const double depth = std::pow(pressed / joint_of(model).hertz_stiffness, 2.0 / 3.0);
       const double stiffness = joint_of(model).mindlin_stiffness * std::sqrt(depth);
-      // From where the rod begins: its length from that of the start of its heating.
+      // Slide since the second rod began to expand.
       const double slid = 5e-6 * (state.time - 0.25) / 0.25;
       const double expected = 2.0 * std::atan(std::exp(-stiffness * slid / bound));
       const double found = std::atan2(rubs.x(), rubs.y());
@@ -77,13 +77,13 @@ TEST(BallJoint, FrictionTurnsIntoANewSlideAsATractrix) {
     }
     EXPECT_GT(turning, 20);
   }
-  // The rods give way by a thousandth of what the contact does; increments do not matter.
+  // The rods deform by a thousandth of the contact's deflection; increments do not matter.
   EXPECT_LT(error[0], 1e-3);
   EXPECT_NEAR(error[1], error[0], 1e-6);
 }
 
 TEST(BallJoint, OpensAndClosesWhereTheRodThatPressesItIsAsLongAsTheWay) {
-  // Three rods hold the ball; cooling shortens the one that presses it down.
+  // Three rods constrain the ball; cooling shortens the one that presses it down.
   Model model = pushed_around_a_corner();
   model.programs = {quarters({0.0, -100.0, 0.0})};
   model.nodes[1].load.setZero();
@@ -94,7 +94,7 @@ TEST(BallJoint, OpensAndClosesWhereTheRodThatPressesItIsAsLongAsTheWay) {
                  {"Y", 3, 1, 1e9, 10.0, 0.0, 0, 1.0},
                  {"Z", 4, 1, 1e9, pressed, expansion, 0, 1.0}};
   const Path path = solve(model);
-  // At the apex of the cone friction slips before the contact opens: the bend outlives the bound.
+  // Near zero load friction slips before the contact opens: deflection remains, the bound vanishes.
   const JointStatus expected[] = {JointStatus::stick, JointStatus::slip_plus, JointStatus::open,
                                   JointStatus::stick};
   ASSERT_GE(path.events.size(), 3u);
@@ -102,7 +102,7 @@ TEST(BallJoint, OpensAndClosesWhereTheRodThatPressesItIsAsLongAsTheWay) {
     EXPECT_EQ(path.events[i].before, expected[i]);
     EXPECT_EQ(path.events[i].after, expected[i + 1]);
   }
-  // Rods across carry c/L of what 5e-8 m, c²/(2 L), stretch them by: below 1e-5 K.
+  // Lateral rods carry the fraction c/L of a force from elongation c²/(2 L) = 5e-8 m: < 1e-5 K.
   const double change = ((10.0 + joint_of(model).radial_clearance) / pressed - 1.0) / expansion;
   EXPECT_NEAR(path.events[1].temperature_change, change, 1e-5);
   EXPECT_NEAR(path.events[2].temperature_change, change, 1e-5);
@@ -123,10 +123,10 @@ TEST(BallJoint, EnergyIsKeptWhateverTheIncrements) {
       for (const State& state : path.states) work = std::max(work, std::abs(state.thermal_work));
       return std::abs(relative_residue(path)) * path.states.back().joint_dissipation.sum() / work;
     };
-    // By time, and by single events, each step may lose as much in one direction; the scale is the
-    // work where it grows the fastest, beyond which it comes by less than twice.
+    // Step halving and event location may each lose the tolerance, with the same sign. The scale is
+    // the largest work, less than twice the solver's scale.
     EXPECT_LT(lost(), 2.0 * options.energy_tolerance);
-    // Increments that are not cut lose more.
+    // Without step halving more energy is lost.
     options.energy_tolerance = 1.0;
     EXPECT_GT(lost(), 4.0 * Options().energy_tolerance);
   }
@@ -140,14 +140,14 @@ TEST(BallJoint, IncrementsDoNotMatterAndEnergyIsKept) {
   for (const int i : {2, 1, 0}) {
     Options options;
     options.increments_per_branch = i == 2 ? 3200 : 50 << (2 * i);
-    options.energy_tolerance = 1.0;  // no increment is cut
+    options.energy_tolerance = 1.0;  // disables step halving
     const Path path = solve(model, options);
     const Vector3d moved = path.states.back().displacement.col(4);
     if (i == 2) fine = moved;
     jump[i] = (moved - fine).norm() / fine.norm();
     residue[i] = std::abs(relative_residue(path));
   }
-  // Four times as many: of second order both, the works of higher.
+  // Four times the increments: both are of second order at least.
   EXPECT_LT(jump[0], 1e-6);
   EXPECT_LT(jump[1], 0.08 * jump[0]);
   EXPECT_LT(residue[0], 1e-6);

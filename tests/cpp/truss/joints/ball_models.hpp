@@ -16,7 +16,7 @@ namespace statejump::truss::testing {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// ΔT at every quarter of a second.
+/// Program with the given ΔT at every quarter of a second.
 inline thermal::Program quarters(std::vector<double> changes) {
   thermal::Program program;
   program.shape = thermal::Shape::table;
@@ -56,8 +56,8 @@ inline double normal(const Model& model, const State& state) {
   return output(model, state, 0, "ball_normal_force_N")[0];
 }
 
-/// A bar with the ball on the end of another, both ends of which a spring pulls: a rib in space,
-/// whose sockets and bars turn about every axis as it is heated.
+/// A bar with the ball on the end of another, whose ends are both pulled by springs: a rib in
+/// space. Heating rotates sockets and bars about all axes.
 inline Model tripod() {
   Model model;
   model.programs = {triangle(100.0), quarters({0.0, 60.0, -40.0, 30.0, 0.0})};
@@ -79,7 +79,7 @@ inline Model tripod() {
   return model;
 }
 
-/// The rib of the tests of revolutes, in a plane; with a ball it stands in a plane that is turned.
+/// The planar rib of the revolute tests; with a ball, the rib is in a rotated plane.
 inline Model rib(bool with_ball, const Matrix3d& turned) {
   Model model;
   model.programs = {triangle(150.0)};
@@ -118,8 +118,8 @@ inline Model rib(bool with_ball, const Matrix3d& turned) {
   return model;
 }
 
-/// A ball that a load presses into a wide socket, and that two stiff rods shift along x, then along
-/// y: so little that the normal hardly turns.
+/// A load presses a ball into a wide socket. Two stiff rods move it along x, then along y, by so
+/// little that the normal hardly rotates.
 inline Model pushed_around_a_corner() {
   Model model;
   model.programs = {quarters({0.0, 100.0, 100.0}), quarters({0.0, 0.0, 100.0})};
@@ -147,9 +147,9 @@ inline double relative_residue(const Path& path) {
          heat;
 }
 
-/// The truss turned in space moves as it does as it stands.
+/// Expects the rotated truss to behave as the original one.
 ///
-/// @param friction_share by which friction may differ
+/// @param friction_share allowed relative difference of friction
 inline void expect_the_same_turned(const Model& model, double friction_share) {
   const Path path = solve(model);
   Model other = model;
@@ -165,7 +165,7 @@ inline void expect_the_same_turned(const Model& model, double friction_share) {
   EXPECT_LT(
       (turned.transpose() * found.states.back().displacement - path.states.back().displacement)
           .norm(),
-      2e-10 * size);  // each of both paths by as much as closures leave
+      2e-10 * size);  // closure tolerance of both paths
   EXPECT_LT((turned.transpose() * friction(other, found.states.back()) -
              friction(model, path.states.back()))
                 .norm(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A ball that slides at the rim of its contact first; and how directions of friction turn.
+// Ball joint with partial slip, and rotation of friction directions.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,14 +31,14 @@ Model with_partial_slip(Model model) {
 TEST(BallPartialSlip, GradientsAreThoseOfItsForces) {
   BallJoint joint = ball_joint(3, 1, 2, 0);
   joint.partial_slip = 1;
-  // So soft that the slides of the steps, 1e-6 m to 1e-5 m, end in the midst of partial slip.
+  // So soft that the slides of the steps, 1e-6 m to 1e-5 m, are within partial slip.
   joint.mindlin_stiffness = 3e7;
   const Pressed pressed(joint);
   for (const double loaded : {4.0, 7.0}) {
     const Eigen::VectorXd before = pressed.before(loaded);
     check_gradients(pressed.model, pressed.z, before, {JointStatus::stick, JointStatus::open}, 1e-9,
                     1e-5);
-    // Along another direction first: what slips turns.
+    // First a step in another direction: the slip direction changes.
     Eigen::VectorXd between = before;
     between.segment<3>(9) += 8e-6 * pressed.across;
     check_gradients(pressed.model, pressed.z, before, {JointStatus::stick, JointStatus::open}, 1e-9,
@@ -47,8 +47,8 @@ TEST(BallPartialSlip, GradientsAreThoseOfItsForces) {
 }
 
 TEST(BallPartialSlip, InAPlaneHoweverTurnedItIsTheRevolute) {
-  // Both sum up the slide of a step another way: heat differs by 1.4e-9 with 50 increments, with
-  // their fourth power.
+  // The two joints integrate the slide of a step differently: the heat differs by 1.4e-9 with 50
+  // increments, in proportion to the fourth power of their length.
   Options options;
   options.increments_per_branch = 100;
   const Path planar = solve(with_partial_slip(rib(false, Matrix3d::Identity())), options);
@@ -87,8 +87,8 @@ TEST(BallPartialSlip, IncrementsMatterToFirstOrderAndEnergyIsKeptToTheChords) {
     } else {
       off[increments == 50 ? 0 : 1] = (moved - fine).norm() / fine.norm();
     }
-    // Chords of 1e-4 of the limit, a few of them in the way after which rings forget: more steps
-    // have more chords.
+    // Chords of 1e-4 of the limit, several of them within the slide that erases the memory. More
+    // steps have more chords.
     EXPECT_LT(std::abs(relative_residue(path)), 3e-4) << increments;
     double before = 0.0;
     for (const State& state : path.states) {
@@ -98,17 +98,17 @@ TEST(BallPartialSlip, IncrementsMatterToFirstOrderAndEnergyIsKeptToTheChords) {
                 joint.friction_coefficient * normal(model, state) * (1.0 + 1e-9));
     }
   }
-  // Rings go back to their bound along their own radius, whatever the way there: where the
-  // direction turns that is of first order.
+  // Annuli return radially to their bounds, independent of the path. If the direction changes, the
+  // error is of first order.
   EXPECT_LT(off[0], 5e-6);
   EXPECT_LT(off[1], 0.3 * off[0]);
 }
 
-/// A ball and its socket on the tips of two stiff triangles that struts turn about one corner,
-/// about the normal of the contact. First a rod of the ball is heated a little, which rubs; then
-/// the struts, which turn all of it. The triangles lie apart by what the ball sits below the
-/// socket's centre: a rod that was inclined would turn the part on its end another way. Drawn are
-/// both centres in one place.
+/// Ball and socket are at the tips of two stiff triangles. Struts rotate both about one corner,
+/// about the contact normal. First a rod of the ball's triangle is heated a little, which causes
+/// friction; then the struts rotate everything. The height of the socket's triangle equals the
+/// offset of the centres under load, because an inclined triangle would rotate its end differently.
+/// In the reference configuration both centres coincide.
 Model on_turntables() {
   Model model;
   model.programs = {quarters({0.0, 100.0, 100.0}), quarters({0.0, 0.0, 100.0})};
@@ -118,7 +118,7 @@ Model on_turntables() {
   model.joints = {joint};
   const double load = 100.0;
   const double above = joint.radial_clearance + std::pow(load / joint.hertz_stiffness, 2.0 / 3.0);
-  // 1.5e-7 m along x, of the 9e-7 m after which the contact slides as a whole.
+  // Slide of 1.5e-7 m along x; gross slip begins at 9e-7 m.
   for (const auto& [height, rubs] : {std::pair{0.0, 5e-9}, std::pair{above, 0.0}}) {
     const int first = static_cast<int>(model.nodes.size());
     for (const Node& one : {node("pivot", {0.0, 0.0, height}, 0), node("P", {0.1, -0.1, height}, 2),
@@ -139,7 +139,7 @@ Model on_turntables() {
     link(1, 2, 0.0, 0);
     link(1, 3, rubs, 0);
     link(2, 3, 0.0, 0);
-    link(4, 1, 1e-3, 1);  // a turn of some 0.3 rad
+    link(4, 1, 1e-3, 1);  // a rotation of about 0.3 rad
   }
   model.nodes[3].freedoms = 3;
   model.nodes[3].load = {0.0, 0.0, -load};
@@ -154,13 +154,13 @@ TEST(BallPartialSlip, FrictionTurnsWithPartsThatTurnAboutTheNormal) {
     double turned = 0.0;
     for (const State& state : path.states) {
       if (state.time < 0.25) continue;
-      // The triangle, from P on its circle.
+      // Rotation of the triangle, from the position of P on its circle.
       const Vector3d corner = model.nodes[1].position + state.displacement.col(1);
       const double angle = std::atan2(corner.y(), corner.x()) + 0.25 * 3.14159265358979323846;
       const Matrix3d back = Eigen::AngleAxisd(-angle, Vector3d::UnitZ()).toRotationMatrix();
       const Vector3d now = back * friction(model, state);
       if (rubbed.isZero(0.0)) rubbed = now;
-      // Struts, whose levers change, give way to its moment by a thousandth of what rubs.
+      // The struts yield to the friction moment by a thousandth of the slide.
       EXPECT_LT((now - rubbed).norm(), 4e-3 * rubbed.norm()) << angle << " rad";
       turned = std::max(turned, angle);
       EXPECT_EQ(state.joint_status[0], JointStatus::stick);
@@ -171,7 +171,7 @@ TEST(BallPartialSlip, FrictionTurnsWithPartsThatTurnAboutTheNormal) {
 }
 
 TEST(BallPartialSlip, DirectionsOfFrictionTurnByTheMeanSpinOfBothParts) {
-  // About the normal: the ball by one angle, the socket by another.
+  // Ball and socket rotate about the normal by different angles.
   const Vector3d n = Vector3d(1.0, -2.0, 0.5).normalized();
   const Vector3d across = n.unitOrthogonal();
   detail::BallMemory start{};

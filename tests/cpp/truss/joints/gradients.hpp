@@ -11,12 +11,12 @@
 
 namespace statejump::truss {
 
-/// Holds the Jacobian of a truss against central differences of its residual, at z after a step
-/// from `before`, on each of the branches and as pins; and the residual's derivative by time, where
-/// nothing moves, likewise.
-/// @param displacement_step, force_step of the unknowns [m], [N]; so small that the residual is
-/// nearly linear over them
-/// @param between a state on the way from `before`, where a step ends; empty: none
+/// Compares the Jacobian of a truss with central differences of its residual, at z after a step
+/// from `before`, for each of the given statuses and for pinned joints. Also compares the
+/// residual's derivative by time at fixed unknowns.
+/// @param displacement_step, force_step steps of the unknowns [m], [N], so small that the residual
+///        is nearly linear over them
+/// @param between intermediate state at which a first step ends; empty: none
 inline void check_gradients(const Model& model, const Eigen::VectorXd& z,
                             const Eigen::VectorXd& before, const std::vector<JointStatus>& branches,
                             double displacement_step, double force_step,
@@ -28,7 +28,7 @@ inline void check_gradients(const Model& model, const Eigen::VectorXd& z,
     const detail::Statuses statuses(model.joints.size(), status);
     detail::StepStart start = system.begin(before, 0.0, statuses, 1.0);
     if (between.size() > 0) start = system.commit(between, 0.15, statuses, start);
-    // What steps before left over of a slide, and what this one is foreseen to leave.
+    // Accumulated slip error of earlier steps, and its expected change in this step.
     const auto count = static_cast<Eigen::Index>(model.joints.size());
     start.owed = Eigen::Matrix3Xd::Constant(3, count, 1e-9);
     start.lost = Eigen::Matrix3Xd::Constant(3, count, 2e-9);
@@ -50,8 +50,8 @@ inline void check_gradients(const Model& model, const Eigen::VectorXd& z,
         moved[j] -= 2 * step;
         const Eigen::VectorXd difference = (plus - residual(moved)) / (2 * step);
         for (int i = 0; i < system.unknowns(); ++i) {
-          // Rounding over the step: of the stiffest part's force by a displacement of 1e-4 m, of
-          // lengths of 0.1 m, or of forces of 100 N.
+          // Rounding over the step: force of the stiffest element at a displacement of 1e-4 m,
+          // lengths of 0.1 m, or forces of 100 N.
           const RowUnit unit = at.units[static_cast<std::size_t>(i)];
           const double rounded =
               (unit == RowUnit::balance   ? 2e-16 * (system.stiffness_scale() * 1e-4 + 100.0)
@@ -75,7 +75,7 @@ inline void check_gradients(const Model& model, const Eigen::VectorXd& z,
     };
     const Eigen::VectorXd difference = (residual(0.3 + step) - residual(0.3 - step)) / (2 * step);
     for (int i = 0; i < system.unknowns(); ++i) {
-      // The program bends by (ω step)²/6 of its rate; rounding of forces of 100 N over the step.
+      // Relative truncation error (ω step)²/6 of the program; rounding of 100 N over the step.
       const double rounded = i < system.displacements() ? 2e-14 / step : 2e-17 / step;
       EXPECT_NEAR(heating[i], difference[i], 1e-7 * std::abs(heating[i]) + 4 * rounded)
           << to_string(status) << " row " << i;

@@ -7,7 +7,7 @@
 
 namespace statejump::truss::testing {
 
-/// The bar of Table 1, held at one end, that heating pushes against a joint on node 1: 1.26e6 N/m,
+/// Bar of Table 1, fixed at one end. Heating pushes it against a joint on node 1: 1.26e6 N/m,
 /// 11.7 um/K.
 inline Model heated_bar(Joint joint, double largest, int cycles) {
   Model model;

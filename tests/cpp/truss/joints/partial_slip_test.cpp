@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sliders that slide at the rim of their contact first, in a truss.
+// Sliders with partial slip in a truss.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 using testing::heated_bar;
 
 constexpr double friction = 100.0, stiffness = 2e7;
-/// Slide at which a contact slides as a whole.
+/// Slide at which gross slip begins [m].
 constexpr double gross = 1.5 * friction / stiffness;
 /// Closures are solved to 1e-13 of the largest displacement, forces to 1e-12 of the largest force.
 constexpr double rounding = 1e-11 * friction;
@@ -38,12 +38,12 @@ double force(const Model& model, const State& state) {
   return output(model, state, 0, "slider_force_N")[0];
 }
 
-/// Cattaneo and Mindlin: force of a first loading.
+/// Cattaneo and Mindlin: force of first loading [N].
 double first_loading(double slide) {
   return friction * (1.0 - std::pow(1.0 - std::min(slide / gross, 1.0), 1.5));
 }
 
-/// Heat of a steady cycle between forces +-T (Mindlin and Deresiewicz 1953), t = T/f, 8 G* a = k_t.
+/// Heat [J] of a cycle between forces +-T (Mindlin and Deresiewicz 1953), t = T/f, 8 G* a = k_t.
 double heat_of_cycle(double t) {
   return 7.2 * friction * friction / stiffness *
          (1.0 - std::pow(1.0 - t, 5.0 / 3.0) -
@@ -61,7 +61,7 @@ TEST(TrussPartialSlip, LoadingUnloadingReloadingAreTheClosedForms) {
       Options options;
       options.increments_per_branch = increments;
       const Path path = solve(model, options);
-      double slides[2] = {0.0, 0.0};  // of the last turns: cold, hot
+      double slides[2] = {0.0, 0.0};  // slides at the last reversals: cold, hot
       double forces[2] = {0.0, 0.0};
       int half = 0;
       const auto which = [](int branch) { return static_cast<std::size_t>(branch % 2); };
@@ -77,7 +77,7 @@ TEST(TrussPartialSlip, LoadingUnloadingReloadingAreTheClosedForms) {
         const bool cools = half % 2 == 1;
         const double way = cools ? 1.0 : -1.0;
         const double back = 0.5 * way * (slides[which(half)] - s);
-        // Masing's rule; inside the loop until it closes on the one before.
+        // Masing's rule; inside a loop until it joins the previous branch.
         const double expected =
             half == 0 ? first_loading(s) : forces[which(half)] - 2.0 * way * first_loading(back);
         EXPECT_NEAR(force(model, state), expected, rounding)
@@ -87,7 +87,7 @@ TEST(TrussPartialSlip, LoadingUnloadingReloadingAreTheClosedForms) {
       const bool slides_all = largest > 7.4;
       const auto slipped = [](const State& state) { return is_slip(state.joint_status[0]); };
       EXPECT_EQ(std::any_of(path.states.begin(), path.states.end(), slipped), slides_all);
-      // Below gross slip it has no event; else the contact begins to slide once in every branch.
+      // Partial slip has no events; gross slip begins once in every branch.
       EXPECT_EQ(path.events.empty(), !slides_all);
     }
   }
@@ -108,9 +108,9 @@ TEST(TrussPartialSlip, HeatOfACycleIsThatOfMindlinAndDeresiewicz) {
     const double t = 0.5 * (high - low) / friction;
     const double heat =
         path.cycle_ends[3].joint_dissipation[0] - path.cycle_ends[2].joint_dissipation[0];
-    // The formula is a difference of numbers of 1 that leaves t³/36.
+    // The formula is a difference of terms of order 1, equal to t³/36.
     EXPECT_NEAR(heat, heat_of_cycle(t), (1e-10 + 1e-14 / (t * t * t)) * heat) << largest;
-    // 2 T³/(9 k_t f) in the limit; what follows is of the next power of t.
+    // Limit for small t: 2 T³/(9 k_t f); the error is of the next power of t.
     EXPECT_NEAR(heat, 2.0 / 9.0 * std::pow(t, 3) * friction * friction / stiffness, t * heat);
     if (before > 0.0 && t < 0.1) {
       EXPECT_NEAR(before / heat, 8.0, 8.0 * t);
@@ -126,13 +126,13 @@ TEST(TrussPartialSlip, EnergyIsKeptToSecondOrderInTheIncrement) {
     options.increments_per_branch = increments;
     const State end = solve(model, options).states.back();
     const double left = std::abs(residue(end)) / end.joint_dissipation.sum();
-    // Where the contact begins to slide as a whole the rates bend within a step: 0.4/n² to 0.8/n².
+    // At the onset of gross slip the rates change within a step: 0.4/n² to 0.8/n².
     EXPECT_LT(left, 1.0 / increments / increments) << increments;
   }
 }
 
 TEST(TrussPartialSlip, ManyTimesTheFrictionIsTheSpring) {
-  // s = T/k (1 + t/6 + ...), t = T/f: what is more than the spring's halves as f doubles.
+  // s = T/k (1 + t/6 + ...), t = T/f: the excess over the spring's slide halves if f doubles.
   Slider spring = rubbing();
   spring.partial_slip = 0;
   double before = 0.0;
@@ -151,7 +151,7 @@ TEST(TrussPartialSlip, ManyTimesTheFrictionIsTheSpring) {
     const double bent = top(bends);
     const double more = top(slips) / bent - 1.0;
     const double t = stiffness * bent / slider.friction_force;
-    // The bar gives way as well, by its share of the compliance: 1.26e6 of 2.126e7 N/m.
+    // The bar deforms as well, by its fraction of the compliance: 1.26e6 of 2.126e7 N/m.
     EXPECT_NEAR(more, t / 6.0 * 2e7 / 2.126e7, t * t) << times;
     if (before > 0.0) {
       EXPECT_NEAR(before / more, 2.0, 2.0 * t);
@@ -168,9 +168,9 @@ TEST(TrussPartialSlip, StiffContactsAndSlidesToTheEndAreCoulombs) {
     const Model model = heated_bar(slider, largest, 1);
     return slide(model, solve(model).states.back());
   };
-  // It slides as a whole at the end: how it stuck does not matter.
+  // With gross slip at the end of the cycle, the earlier stick phase does not matter.
   EXPECT_NEAR(jump(rubbing(), 40.0), jump(coulomb, 40.0), 1e-10 * jump(coulomb, 40.0));
-  // It comes to rest on the way back: that is as far off as it creeps, which falls with 1/k_t.
+  // Here the joint sticks on the way back: the difference is its creep, proportional to 1/k_t.
   double before = 0.0;
   for (const double k : {2e8, 2e9, 2e10}) {
     Slider slider = rubbing();
@@ -200,7 +200,7 @@ TEST(TrussPartialSlip, AStopTakesWhatIsBeyondFriction) {
       continue;
     }
     stopped = true;
-    // It arrives slid as a whole, rests and leaves with that friction.
+    // It arrives in gross slip, rests there and leaves with the same friction.
     EXPECT_GE(force(model, state), friction - rounding);
   }
   EXPECT_TRUE(stopped);

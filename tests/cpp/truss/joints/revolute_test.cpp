@@ -9,7 +9,7 @@ namespace {
 
 using testing::node;
 
-/// Two bars with a clearance joint whose contact gives way and whose radii expand.
+/// Two bars with a clearance joint with elastic contact and expanding radii.
 Model rib() {
   Model model;
   thermal::Program program;
@@ -18,7 +18,7 @@ Model rib() {
   model.programs = {program};
   model.nodes = {node("A", 0, 0, 2), node("C", 0.12, 0, 2), node("B", 0.02875, 0.0409, 2),
                  node("J", 0.02875, 0.0409, 2)};
-  // Soft links: their rounding does not hide what the joint adds.
+  // Soft links, so that their rounding errors do not hide the terms of the joint.
   model.links = {{"AB", 0, 2, 1e2, 0.05, 2e-5, 0, 1.0}, {"CJ", 1, 3, 1e2, 0.1, 1e-5, 0, 0.5}};
   ClearanceRevolute joint = testing::rib_joint();
   joint.journal_thermal_expansion = 2e-5;
@@ -31,7 +31,7 @@ Model rib() {
 }
 
 TEST(Revolute, GradientsAreThoseOfItsForces) {
-  // Either link may be the first one.
+  // Tests both orders of the links.
   for (const auto& [partial_slip, first] : {std::pair{0, 0}, std::pair{1, 0}, std::pair{0, 1}}) {
     Model model = rib();
     ClearanceRevolute& joint = std::get<ClearanceRevolute>(model.joints[0]);
@@ -43,14 +43,14 @@ TEST(Revolute, GradientsAreThoseOfItsForces) {
     const detail::System system(model);
     Eigen::VectorXd z = Eigen::VectorXd::LinSpaced(system.unknowns(), 1e-5, 6e-5);
     z[6] += 9e-5;  // in contact
-    z[8] = 5.0;    // normal force, friction
+    z[8] = 5.0;    // normal force, friction [N]
     z[9] = 0.4;
     Eigen::VectorXd before = z;
     before[0] -= 3e-6;
     before[3] += 4e-6;
     before[7] += 2e-6;
     before[9] = 0.3;
-    // Loaded and unloaded: the elastic slide has a branch for each.
+    // Loading and unloading: the elastic slide has a branch for each.
     for (const double normal : {4.0, 7.0}) {
       before[8] = normal;
       check_gradients(

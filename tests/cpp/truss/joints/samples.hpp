@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A joint of each type for the tests that every type passes. A new type adds its own.
+// For each joint type a sample for the tests that every type must pass. A new type adds its own.
 #pragma once
 
 #include <type_traits>
@@ -9,14 +9,15 @@
 
 namespace statejump::truss::testing {
 
-/// A truss with one joint, in contact near its reference configuration.
+/// A truss with one joint, close to contact in its reference configuration.
 struct JointSample {
   Model model;
-  std::vector<JointStatus> statuses;  ///< That the type has, but for those at which it is open.
-  Eigen::Vector3d touching = Eigen::Vector3d::Zero();  ///< Displacement of the last node [m].
+  std::vector<JointStatus> statuses;  ///< Statuses of the type in which the contact is closed.
+  /// Displacement of the last node that closes the contact [m].
+  Eigen::Vector3d touching = Eigen::Vector3d::Zero();
 };
 
-/// Two links from A to B and from C to D, where B and D have one position.
+/// Two links, AB and CD, where B and D coincide.
 inline JointSample two_links(Joint joint) {
   JointSample made;
   made.model.programs = {triangle(80.0)};

@@ -16,7 +16,7 @@ TEST(Slider, GradientsAreThoseOfItsForces) {
   block.name = "block";
   block.position = {0.1, 0.0, 0.0};
   model.nodes = {carrier, block};
-  // A link to measure rounding by.
+  // A link that defines the stiffness scale for rounding errors.
   model.links = {{"link", 0, 1, 1e2, 0.1, 0.0, 0, 1.0}};
   Slider slider;
   slider.name = "S";
@@ -27,8 +27,7 @@ TEST(Slider, GradientsAreThoseOfItsForces) {
   slider.clearance_minus = 1e-4;
   slider.clearance_plus = 2e-4;
   const double rigid = std::numeric_limits<double>::infinity();
-  // With partial slip z is a gross slip of 30 N/(1e7 N/m) times 1.5 beyond `before`, or a part of
-  // it.
+  // With partial slip, z is 1.5 times or a fraction of the gross slip 30 N/(1e7 N/m) from `before`.
   const auto check = [&](const std::vector<JointStatus>& statuses) {
     model.joints = {slider};
     const detail::System system(model);
@@ -45,7 +44,7 @@ TEST(Slider, GradientsAreThoseOfItsForces) {
     check({JointStatus::stick, JointStatus::slip_plus, JointStatus::slip_minus,
            JointStatus::stop_plus, JointStatus::stop_minus});
   }
-  // z presses the soft stop on the plus side; its bend is in the play, and beyond it.
+  // z presses on the soft stop on the plus side; the deflection is within the play or beyond it.
   slider.partial_slip = 0;
   slider.tangential_stiffness = 1e7;
   slider.clearance_minus = slider.clearance_plus = 1e-6;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Balls in their sockets in motion: rigid and elastic, against equations of their own, against
-// journals and against the quasi-static path.
+// Rigid and elastic balls in sockets in motion, compared with independent equations, with
+// journals and with the quasi-static path.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -23,7 +23,7 @@ constexpr double gravity = 9.81;
 constexpr double clearance = 1e-3;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// A ball of 1 kg that falls this way within its socket, both rigid.
+/// A ball of 1 kg that falls in the direction `down` within its socket, both rigid.
 Model falling_ball(const Vector3d& down, double friction, double seconds) {
   Model model;
   model.programs = {lasting(seconds)};
@@ -60,14 +60,14 @@ TEST(MotionBall, BouncesAtItsAnalyticTimes) {
   int impact = 0;
   for (const Event& event : motion.events) {
     if (event.before != JointStatus::open || impact == 6) continue;
-    // A contact is found within a step; every bounce takes over what was missed.
+    // A contact is located to one step; every bounce inherits the earlier errors.
     EXPECT_NEAR(event.time, time, 3.0 * motion.time_step * (1 + impact)) << "impact " << impact;
     speed *= e;
     time += 2.0 * speed / gravity;
     ++impact;
   }
   EXPECT_EQ(impact, 6);
-  // It never leaves its line, and impacts took the energy of the fall.
+  // The ball stays on its line, and the impacts dissipate the energy of the fall.
   const Vector3d place = motion.states.back().displacement.col(1);
   EXPECT_LT((place - down * down.dot(place)).norm(), 1e-9 * clearance);
   EXPECT_NEAR(motion.moving.back().impact_dissipation, energy, 1e-3 * energy);
@@ -76,8 +76,8 @@ TEST(MotionBall, BouncesAtItsAnalyticTimes) {
 
 using Numbers = std::array<double, 6>;
 
-/// A point on a sphere, pressed to it by its weight and its way, with friction against its
-/// velocity: place and velocity, integrated to 1e-12.
+/// Point on a sphere, pressed on it by its weight and centrifugal force, with friction against its
+/// velocity: position and velocity, integrated to 1e-12.
 Numbers slid_on_a_sphere(const Vector3d& down, double friction, double seconds, Numbers y) {
   const auto rates = [&](const Numbers& at, Numbers& rate, double) {
     const Vector3d place(at[0], at[1], at[2]);
@@ -102,8 +102,8 @@ TEST(MotionBall, SlidesAroundItsSocketByItsOwnEquation) {
   const Vector3d down = Vector3d(1.0, -2.0, 0.7).normalized();
   const Vector3d aside = down.unitOrthogonal();
   const Vector3d along = down.cross(aside);
-  // Beside the deepest point and across the slope: neither way nor friction keeps its direction.
-  // The time is a third of what friction needs to end it.
+  // Starts beside the deepest point, perpendicular to the slope, so that the directions of motion
+  // and friction change. The duration is a third of the time in which friction would stop it.
   const double seconds = 0.02;
   const Vector3d place = clearance * (std::cos(0.6) * down + std::sin(0.6) * aside);
   const Vector3d speed = 0.08 * along;
@@ -130,7 +130,7 @@ TEST(MotionBall, SlidesAroundItsSocketByItsOwnEquation) {
   const double coarse = error(2000);
   const double fine = error(4000);
   EXPECT_LT(fine, 1e-3);
-  // Its direction of friction and its normal are those of a step: of first order or better.
+  // Friction direction and normal are constant within a step: first order or better.
   EXPECT_GT(coarse / fine, 1.8);
 }
 
@@ -138,8 +138,8 @@ TEST(MotionBall, MovesAsTheJournalDoesInAPlane) {
   MotionOptions options;
   options.steps = 4000;
   options.sample_every = 400;
-  // One law in two dimensions and in three: what is left is what friction may have across its
-  // direction, and the linear start of the depth, which both have alike.
+  // The same law in two and in three dimensions. The ball may have friction components
+  // perpendicular to its direction; the linear start of the depth is common to both.
   expect_ball_moves_as_journal(
       [&](const Model& model) { return simulate(model, rib_inertia(), options); }, 1e-6, 1e-4);
 }
@@ -170,7 +170,7 @@ TEST(MotionBall, SlowHeatingFollowsTheQuasiStaticPath) {
   const double fast = apart(0.2);
   const double slow = apart(1.0);
   EXPECT_LT(slow, 1e-5);
-  // Dashpots hold the ends back by their rate: first order, and nothing else is left.
+  // Dashpots delay the ends in proportion to the rate: first order, with no other error.
   EXPECT_NEAR(fast / slow, 5.0, 0.05);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A rib and a tripod with balls in motion, which tests of several schemes share.
+// A rib and a tripod with balls in motion, for the tests of several schemes.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 
 namespace statejump::truss::scenes {
 
-/// Of testing::rib(), with dashpots in its contact and its pins.
+/// Masses of testing::rib(), with dashpots in its contact and its pins.
 inline Inertia rib_inertia() {
   Inertia inertia = masses(Eigen::VectorXd::Constant(5, 0.05));
   inertia.joint_damping = Eigen::VectorXd::Constant(1, 2.0 * 0.1 * std::sqrt(0.025));
@@ -20,7 +20,7 @@ inline Inertia rib_inertia() {
   return inertia;
 }
 
-/// Of testing::tripod(), with dashpots in its links and its contact.
+/// Masses of testing::tripod(), with dashpots in its links and its contact.
 inline Inertia tripod_inertia() {
   Inertia inertia = masses(Eigen::VectorXd::Constant(8, 0.5));
   inertia.link_damping = Eigen::VectorXd::Constant(4, 60.0);
@@ -28,14 +28,14 @@ inline Inertia tripod_inertia() {
   return inertia;
 }
 
-/// Difference of two states over the displacement of the second.
+/// Relative difference of the displacements of two states.
 inline double apart(const State& state, const State& exact) {
   return (state.displacement - exact.displacement).norm() / exact.displacement.norm();
 }
 
-/// Expects the rib with a ball, in a plane that is turned in space, to move as that with a journal.
-/// @param run moves a rib, with ten samples; @param moved, heat what they may be apart by, over the
-/// largest displacement and over the heat of friction
+/// Expects the rib with a ball, in a rotated plane, to move as the rib with a journal.
+/// @param run simulates a rib, with ten samples; @param moved, heat allowed differences, relative
+///        to the largest displacement and to the friction heat
 template <class Run>
 void expect_ball_moves_as_journal(Run&& run, double moved, double heat) {
   using Eigen::Matrix3d;

@@ -6,30 +6,30 @@
 namespace statejump::truss::detail {
 namespace {
 
-/// Two contacts without coupling: W_nn = 4 and 0.25 in a unit of u over one of r.
+/// Two uncoupled contacts: W_nn = 4 and 0.25 in units of u over r.
 complementarity::Problem two_contacts(const Eigen::Vector4d& velocity) {
   return {2, Eigen::MatrixXd(Eigen::Vector4d(4.0, 4.0, 0.25, 0.25).asDiagonal()), velocity,
           Eigen::Vector2d(0.5, 0.5)};
 }
 
 TEST(ContactProblem, WorstContactIsTheOneThatLacksMostOfAVelocity) {
-  // Impulses, velocities without them, what each contact lacks.
+  // Arguments: impulses, velocities without impulses. Comments: violations as velocities.
   const auto worst = [](const Eigen::Vector4d& impulses, const Eigen::Vector4d& velocity) {
     return worst_contact(two_contacts(velocity), impulses);
   };
   const Eigen::Vector4d none = Eigen::Vector4d::Zero();
-  // Both come nearer without an impulse: by 1 and 2.
+  // Both approach without an impulse: by 1 and 2.
   EXPECT_EQ(worst(none, {-1.0, 0.0, -2.0, 0.0}), 1);
-  // Impulses that push what leaves by more than W r: 4 times 0.3 and 0.25 times 2.
+  // Separating contacts with pressing impulses, violation W r: 4 times 0.3 and 0.25 times 2.
   EXPECT_EQ(worst({0.3, 0.0, 2.0, 0.0}, {9.0, 0.0, 9.0, 0.0}), 0);
-  // Those that pull: 4 times 0.3 and 0.25 times 8.
+  // Tensile impulses: 4 times 0.3 and 0.25 times 8.
   EXPECT_EQ(worst({-0.3, 0.0, -8.0, 0.0}, {3.0, 0.0, 9.0, 0.0}), 1);
-  // Pressed in balance by 1 and 4; friction beyond its bound by 0.2 and 4, 0.8 and 1 as velocities.
+  // Normal equilibrium at 1 and 4; friction beyond its bound by 0.2 and 4: velocities 0.8 and 1.
   EXPECT_EQ(worst({1.0, 0.7, 4.0, 6.0}, {-4.0, -9.0, -1.0, -9.0}), 1);
-  // Friction within it that lets the contact slide by 1 and 0.9; both could hold it.
+  // Zero friction although the contacts slide at 1 and 0.9, and friction could stop both.
   EXPECT_EQ(worst({10.0, 0.0, 100.0, 0.0}, {-40.0, 1.0, -25.0, 0.9}), 0);
   EXPECT_EQ(worst({10.0, 0.0, 100.0, 0.0}, {-40.0, 0.8, -25.0, -0.9}), 1);
-  // The normal law and friction's are added up: 1 + 1 and 1.5.
+  // Violations of the normal law and of friction are added: 1 + 1 and 1.5.
   EXPECT_EQ(worst({10.0, 0.0, 0.0, 0.0}, {-39.0, 1.0, -1.5, 0.0}), 0);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Dashpots of contacts in motion, against their own equations.
+// Dashpots of contacts in motion, compared with independent equations.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -48,11 +48,11 @@ TEST(MotionDashpots, JournalReboundsAsItsEquationsSay) {
   };
   const Motion coarse = run(20000);
   const Motion fine = run(40000);
-  // Implicit Euler in the contact.
+  // First order: implicit Euler in the contact.
   EXPECT_NEAR(error(coarse) / error(fine), 2.0, 0.2);
   EXPECT_LT(error(fine), 2e-2 * 0.5e-3);
-  // What the fall loses is the dashpot's, but for what the scheme takes in the contact, which goes
-  // with the step.
+  // The dashpot dissipates the energy loss of the fall, except for the numerical dissipation of the
+  // scheme in the contact, which is proportional to the step.
   const double lost = mass * 9.81 * (exact[0] - 0.5e-3) - 0.5 * mass * exact[1] * exact[1];
   EXPECT_NEAR(fine.moving.back().damping_dissipation, lost, 0.05 * lost);
   EXPECT_NEAR(coarse.moving.back().impact_dissipation / fine.moving.back().impact_dissipation, 2.0,
@@ -61,9 +61,9 @@ TEST(MotionDashpots, JournalReboundsAsItsEquationsSay) {
 }
 
 TEST(MotionDashpots, RestitutionOfADashpotDoesNotDependOnSpeed) {
-  // ζ that follows the tangent stiffness: e = exp(−π β/√(1 − β²)), β = ζ √(6/5) (Tsuji et al. 1992;
-  // Antypov and Elliott 2011), if it pulled to the very end. It does not and so keeps a little
-  // more: 2.4 % by its own equation at this ζ.
+  // For constant ζ relative to the tangent stiffness: e = exp(−π β/√(1 − β²)), β = ζ √(6/5) (Tsuji
+  // et al. 1992; Antypov and Elliott 2011), if the dashpot pulled until the end. The contact does
+  // not pull, so e is larger: by 2.4 % at this ζ according to its own equation.
   const double beta = zeta * std::sqrt(1.2);
   const double known = std::exp(-std::numbers::pi * beta / std::sqrt(1.0 - beta * beta));
   double last = 0.0;
@@ -99,7 +99,7 @@ TEST(MotionDashpots, BlockThatSticksRingsDownAsAnOscillator) {
   Inertia inertia;
   inertia.node_mass = Eigen::VectorXd::Constant(1, mass);
   inertia.joint_damping = Eigen::VectorXd::Constant(1, 2.0 * zeta * std::sqrt(mass));
-  const double speed = 0.01;  // v √(m k) = 14 N, below the bound
+  const double speed = 0.01;  // v √(m k) = 14 N, below the friction bound
   const double omega = std::sqrt(stiffness / mass);
   const double rings = omega * std::sqrt(1.0 - zeta * zeta);
   const double exact = speed / rings * std::exp(-zeta * omega * 0.02) * std::sin(rings * 0.02);

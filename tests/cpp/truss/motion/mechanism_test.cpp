@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bodies that are no rods, and driven links.
+// Bodies other than rods, and driven links.
 #include <gtest/gtest.h>
 
 #include <boost/numeric/odeint.hpp>
@@ -37,9 +37,9 @@ TEST(MotionMechanism, BodyOnAPinSwingsByItsOwnEquation) {
   Model model;
   model.programs = {lasting(0.3)};
   model.nodes = {node("A", 0, 0, 0), node("B", length, 0, 2)};
-  // So stiff that what it stretches, 1e-9 of itself, is below the errors of the steps.
+  // So stiff that its elongation, 1e-9 relative, is below the errors of the steps.
   model.links = {{"AB", 0, 1, 1e10, length, 0.0, 0, 1.0}};
-  // Its weight by what its centre follows of the node: Gᵀ m g.
+  // Weight on the node, by the motion of the centre of mass with it: Gᵀ m g.
   model.nodes[1].load = mass * 9.81 / length * Eigen::Vector3d(-centre.y(), -centre.x(), 0.0);
   Inertia inertia;
   inertia.link_mass = Eigen::VectorXd::Constant(1, mass);
@@ -62,7 +62,7 @@ TEST(MotionMechanism, BodyOnAPinSwingsByItsOwnEquation) {
 }
 
 TEST(MotionMechanism, DrivenLinkFollowsItsProgramAndTakesItsMoment) {
-  // A rod on a pin that is brought to speed: (m L²/3) α'' and the weight's moment.
+  // A rod on a pin is accelerated: (m L²/3) α'' plus the moment of the weight.
   const double mass = 3.0;
   const double length = 0.4;
   Model model;
@@ -85,7 +85,7 @@ TEST(MotionMechanism, DrivenLinkFollowsItsProgramAndTakesItsMoment) {
   options.start = at_rest(model);
   options.drives = {drive};
   const Motion motion = simulate(model, inertia, options);
-  const double half = 0.5 * motion.time_step;  // a moment is the mean of its step
+  const double half = 0.5 * motion.time_step;  // a moment is the mean over its step
   for (std::size_t k = 1; k < motion.states.size(); ++k) {
     const double time = motion.states[k].time;
     const auto moved = motion.states[k].displacement.col(1);
@@ -97,7 +97,7 @@ TEST(MotionMechanism, DrivenLinkFollowsItsProgramAndTakesItsMoment) {
         mass * length * length / 3.0 * rate + 9.81 * mass * 0.5 * length * std::cos(turned);
     EXPECT_NEAR(motion.moving[k].drive_moment[0], moment, 1e-3 * 80.0) << time;
   }
-  // The drive's work is what the rod has, but for what its stretch keeps and loses.
+  // The work of the drive equals the rod's energy, except for energy and loss of its elongation.
   const double raised = 9.81 * mass * 0.5 * length * std::sin(drive.turned_at(0.1));
   const double has = 0.5 * mass * length * length / 3.0 * 1600.0 + raised;
   EXPECT_NEAR(motion.moving.back().drive_work, has, 1e-4 * has);
@@ -110,7 +110,7 @@ TEST(MotionMechanism, DrivesThatDoNotFitAreRefusedByName) {
   Drive drive;
   drive.name = "motor";
   drive.time = drive.speed = Eigen::VectorXd::Zero(1);
-  options.drives = {drive};  // of a link that is not there
+  options.drives = {drive};  // of a link that does not exist
   Inertia inertia;
   inertia.node_mass = Vector2d(0.0, 1.0);
   try {

@@ -25,7 +25,7 @@ using namespace scenes;
 constexpr double stiffness = 5e3;  // E A [N]
 constexpr double rod_mass = 0.3;   // [kg]
 
-/// Two rods that hang from a hinge, with weights.
+/// Two rods that hang from a hinge, with point loads.
 Model double_pendulum() {
   Model model;
   model.programs = {lasting(0.5)};
@@ -36,10 +36,10 @@ Model double_pendulum() {
   return model;
 }
 
-/// The same from its own equations, to 1e-12: places of B and C at the end.
+/// Reference from its own equations, accurate to 1e-12: final positions of B and C.
 Eigen::Vector4d double_pendulum_by_ode() {
   using Numbers = std::vector<double>;
-  // Rods of linear velocity: m/3 of both at B and of one at C, m/6 between them.
+  // Rods with linear velocity profile: m/3 of both rods at B, of one at C, m/6 coupling.
   Matrix2d mass;
   mass << 2.0 * rod_mass / 3.0, rod_mass / 6.0, rod_mass / 6.0, rod_mass / 3.0;
   const Matrix2d inverse = mass.inverse();
@@ -89,7 +89,7 @@ TEST(Motion, DoublePendulumConvergesAtSecondOrderToItsOwnEquations) {
 }
 
 TEST(Motion, FreeChainKeepsItsMomenta) {
-  // Nothing outside acts: momentum is kept to rounding, angular momentum and energy to the order.
+  // No external forces: momentum is conserved, angular momentum and energy to second order.
   Model model = double_pendulum();
   model.nodes[0].freedoms = 2;
   for (Node& one : model.nodes) one.load.setZero();
@@ -102,7 +102,7 @@ TEST(Motion, FreeChainKeepsItsMomenta) {
     return simulate(model, inertia, options);
   };
   const auto momenta = [&](const Motion& motion, std::size_t sample) {
-    // Of rods with linear velocity, as the mass matrix has them.
+    // Rods with linear velocity profile, as in the mass matrix.
     Eigen::Matrix3d mass = Vector3d(0.1, 0.2, 0.3).asDiagonal();
     for (int i : {0, 1}) {
       Matrix2d rod;
@@ -124,7 +124,7 @@ TEST(Motion, FreeChainKeepsItsMomenta) {
   const Motion coarse = run(4000);
   const Motion fine = run(8000);
   for (const Motion* one : {&coarse, &fine}) {
-    // 1e-10 of a step's forces may be left: 8000 times, by chance.
+    // Residual of 1e-10 of a step's forces in 8000 steps, with random sign.
     EXPECT_LT(lost(*one).head<2>().norm(), 1e-8);
   }
   EXPECT_NEAR(lost(coarse)[2] / lost(fine)[2], 4.0, 0.5);
@@ -148,14 +148,14 @@ TEST(Motion, JournalBouncesAtItsAnalyticTimes) {
   int impact = 0;
   for (const Event& event : motion.events) {
     if (event.before != JointStatus::open || impact == 6) continue;
-    // A contact is found within a step; every bounce takes over what was missed.
+    // A contact is located to one step; every bounce inherits the earlier errors.
     EXPECT_NEAR(event.time, time, 3.0 * h * (1 + impact)) << "impact " << impact;
     speed *= e;
     time += 2.0 * speed / 9.81;
     ++impact;
   }
   EXPECT_EQ(impact, 6);
-  // At the end it rests, and impacts took the energy of the fall.
+  // Finally it rests, and the impacts have dissipated the energy of the fall.
   EXPECT_NEAR(motion.moving.back().impact_dissipation, energy, 1e-3 * energy);
   EXPECT_LT(motion.moving.back().velocity.norm(), 9.81 * h * 2.0);
   EXPECT_LT(std::abs(residue(motion)), 1e-12 * energy * 1e3);
@@ -189,7 +189,7 @@ TEST(Motion, SlidingBlockStopsWhereFrictionHasTakenItsEnergy) {
 
 TEST(Motion, ContactProblemsAreSolvedOnlyWhereBranchesAreNotFound) {
   // A block that slides and then sticks, and a journal that bounces off an elastic contact with
-  // friction: every step is found on branches.
+  // friction: the active-set iteration finds the statuses in every step.
   Model block = bar(0.02);
   block.programs = {lasting(0.02)};
   block.links.clear();
@@ -207,10 +207,11 @@ TEST(Motion, ContactProblemsAreSolvedOnlyWhereBranchesAreNotFound) {
       const Motion motion = simulate(*model, {{}, Vector2d(0.0, 1.0), {}, {}, {}}, options);
       EXPECT_EQ(motion.iterations, 0);
       EXPECT_EQ(motion.largest_contact_merit, 0.0);
-      EXPECT_LT(motion.factorizations, motion.steps / 4);  // else every other step has its own
+      // otherwise every other step would need its own
+      EXPECT_LT(motion.factorizations, motion.steps / 4);
     }
   }
-  // Friction that bends where the bar reaches its stop is not; how well it is solved is told.
+  // The iteration fails when a bar with elastic friction reaches its stop; the merit is reported.
   Model heated = bar(0.1);
   std::get<Slider>(heated.joints[0]).tangential_stiffness = 1e6;
   options = {};
@@ -218,12 +219,12 @@ TEST(Motion, ContactProblemsAreSolvedOnlyWhereBranchesAreNotFound) {
   const Motion motion = simulate(heated, {Vector2d(0.1, 0.0).head(1), {}, {}, {}, {}}, options);
   EXPECT_GT(motion.iterations, 0);
   EXPECT_GT(motion.largest_contact_merit, 0.0);
-  EXPECT_LT(motion.largest_contact_merit, 1e-10);  // what a contact problem is solved to
+  EXPECT_LT(motion.largest_contact_merit, 1e-10);  // tolerance of a contact problem
 }
 
 TEST(Motion, BarsBesideEachOtherMoveAsEachAlone) {
-  // Two bars that share nothing but the contact problem, the second with other friction, play and
-  // springs.
+  // Two bars that are coupled only by the common contact problem; the second has different
+  // friction, play and springs.
   const auto heated = [](int which) {
     Model model = bar(0.1);
     Slider& slider = std::get<Slider>(model.joints[0]);
@@ -257,7 +258,7 @@ TEST(Motion, BarsBesideEachOtherMoveAsEachAlone) {
     const Motion alone = moved(heated(which), {masses.segment<1>(which), {}, {}, {}, {}});
     ASSERT_EQ(alone.states.size(), together.states.size());
     for (std::size_t i = 0; i < alone.states.size(); ++i) {
-      // Contact problems are solved to 1e-10 of their sizes; a millionth of the millimetres here.
+      // Contact problems are solved to 1e-10 of their size: a millionth of the millimetres here.
       EXPECT_NEAR(together.states[i].displacement(0, 1 + 2 * which),
                   alone.states[i].displacement(0, 1), 1e-9)
           << which << " " << i;
@@ -271,7 +272,7 @@ TEST(Motion, ProgressEndsAMotion) {
   options.steps = 100;
   options.start = at_rest(model);
   for (const double share : {0.3, 1.0}) {
-    // At the very end there is nothing left to be ended.
+    // At the very end there is nothing to cancel.
     options.progress = [share](double done) { return done < share; };
     const Motion motion = simulate(model, {{}, Vector2d(0.0, 1.0), {}, {}, {}}, options);
     EXPECT_EQ(motion.complete, share == 1.0);
@@ -280,8 +281,8 @@ TEST(Motion, ProgressEndsAMotion) {
 }
 
 TEST(Motion, SlowHeatingFollowsTheQuasiStaticPath) {
-  // What starts, slips and corners of the program kick rings by v sqrt(m/k), which goes with the
-  // rate of heating: first order.
+  // Start, slips and corners of the program excite oscillations of amplitude v sqrt(m/k),
+  // proportional to the heating rate: first order.
   const auto error = [](double seconds) {
     const Model model = bar(seconds);
     const double k = 70e9 * 9e-6 / 0.5;
@@ -305,8 +306,8 @@ TEST(Motion, SlowHeatingFollowsTheQuasiStaticPath) {
 }
 
 TEST(Motion, RibMeetsTheLinkageThroughImpacts) {
-  // The rib of the umbrella antenna without friction: the linkage's RK4 with 20 times the steps is
-  // its measure. Implicit Euler in the contact is of first order.
+  // Rib of the umbrella antenna without friction. Reference: the linkage's RK4 with 20 times the
+  // steps. Implicit Euler in the contact is of first order.
   linkage::Linkage antenna;
   antenna.frame_length = 0.12;
   antenna.link_ab = {0.050, 0.5, 70e9, 9e-6, 23.75e-6, 0.3};
@@ -351,8 +352,8 @@ TEST(Motion, RibMeetsTheLinkageThroughImpacts) {
   EXPECT_NEAR(coarse / fine, 2.0, 0.4);
 }
 
-/// Painlevé's rod: uniform, of 1 m and 1 kg, at 60° with its tip on a rough floor, along which it
-/// moves. The floor is the bottom of a bearing with a play of 100 m.
+/// Painlevé's rod: uniform, 1 m, 1 kg, inclined by 60°, with its tip moving along a rough floor.
+/// The floor is the bottom of a bearing with a play of 100 m.
 Model rod_on_floor(double friction) {
   Model model;
   model.programs = {lasting(1e-3)};
@@ -373,9 +374,9 @@ Model rod_on_floor(double friction) {
 }
 
 TEST(Motion, SlidesThatCannotGoOnAreNamed) {
-  // For a unit of normal force the tip's acceleration is 1 + 3 cos a (cos a -+ mu sin a) in 1/kg:
-  // at 60 degrees it is below 0 from mu = 1.347 on, if the tip goes towards the rod's foot. The rod
-  // is so stiff that it is rigid in steps of 10 us.
+  // Per unit of normal force the tip accelerates by 1 + 3 cos a (cos a -+ mu sin a), in 1/kg. At 60
+  // degrees this is negative for mu > 1.347 if the tip moves towards the rod's foot. The rod is so
+  // stiff that it is rigid in steps of 10 us.
   const double speed = 1.0;
   const auto first_step = [&](double friction, double towards, long steps) {
     const Model model = rod_on_floor(friction);
@@ -393,9 +394,9 @@ TEST(Motion, SlidesThatCannotGoOnAreNamed) {
     const Motion jams = first_step(1.4, -1.0, steps);
     ASSERT_TRUE(jams.jammed) << steps;
     EXPECT_EQ(jams.jammed->joints, std::vector<int>{0});
-    EXPECT_NEAR(jams.jammed->time, h, 1e-3 * h);  // at once
+    EXPECT_NEAR(jams.jammed->time, h, 1e-3 * h);  // immediately
     EXPECT_NEAR(lost(jams, -1.0), speed, 1e-3 * speed);
-    // Close by, and the other way, it slides on: forces are finite, however large.
+    // Below that mu, and in the other direction, it slides on: forces are large but finite.
     const Motion slides = first_step(1.3, -1.0, steps);
     EXPECT_FALSE(slides.jammed) << steps;
     EXPECT_LT(lost(slides, -1.0), 1e3 * h);
@@ -404,7 +405,7 @@ TEST(Motion, SlidesThatCannotGoOnAreNamed) {
 }
 
 TEST(Motion, StepsWhoseReactionsAreOpenAreNamed) {
-  // Two sliders in a row on one rigid node: which of them carries the load nothing determines.
+  // Two sliders in series on one rigid node: nothing determines which of them carries the load.
   Model model = bar(0.01);
   model.programs = {lasting(0.01)};
   Slider twin = std::get<Slider>(model.joints[0]);
@@ -419,7 +420,7 @@ TEST(Motion, StepsWhoseReactionsAreOpenAreNamed) {
   };
   EXPECT_FALSE(run().undetermined);
   model.joints.push_back(twin);
-  // No step is short enough for branches of theirs: that is not sought for ever.
+  // No step is short enough to find their statuses: step halving must end.
   for (const double tolerance : {0.0, 1e-9}) {
     const Motion motion = run(tolerance);
     ASSERT_TRUE(motion.undetermined);
@@ -431,8 +432,8 @@ TEST(Motion, StepsWhoseReactionsAreOpenAreNamed) {
 }
 
 TEST(Motion, ReactionsOfWhatComesToRestTogetherAreNamed) {
-  // The same two slide, and come to rest in one step: with one of them held the other has no slide,
-  // which is right for it on every branch.
+  // The same two sliders slide and stop in one step. If one of them sticks, the other one has no
+  // slide, which satisfies each of its statuses.
   Model model = bar(0.01);
   model.programs = {lasting(0.01)};
   Slider twin = std::get<Slider>(model.joints[0]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trusses in motion with the contacts of a DEM, in explicit steps: orders, and the same motion as
-// by sets.
+// Penalty contacts of a DEM in trusses, integrated explicitly: orders of convergence, and
+// comparison with nonsmooth time stepping.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ MotionOptions from_rest(const Model& model, long steps) {
 }
 
 TEST(MotionRegularised, BlockThatSticksSwingsAtFourthOrder) {
-  // Four swings on its spring, from its speed; friction never reaches its bound.
+  // Four oscillations on its spring, from an initial velocity; friction stays below its bound.
   const double omega = std::sqrt(1e6 / mass);
   const double seconds = 8.3 / omega;
   const Model model = block(1e3, seconds);
@@ -45,14 +45,14 @@ TEST(MotionRegularised, BlockThatSticksSwingsAtFourthOrder) {
   };
   const double coarse = error(100);
   const double fine = error(200);
-  // A turn by h ω = 0.042 is off by (h ω)^5/120, 200 times.
+  // The phase error of a step of h ω = 0.042 is (h ω)^5/120, in 200 steps.
   EXPECT_NEAR(fine, 200.0 * std::pow(8.3 / 200.0, 5) / 120.0, 0.1 * fine);
   EXPECT_NEAR(coarse / fine, 16.0, 0.2);
 }
 
 TEST(MotionRegularised, CornersOfTheProgramKeepFourthOrder) {
-  // A bar with a dashpot, heated and cooled again, on a block that sticks: at the corner the
-  // dashpot takes another rate at once, at the end of one step and at the start of the next.
+  // A bar with a dashpot on a sticking block, heated and cooled. At the corner the dashpot's rate
+  // jumps, which must happen between the end of one step and the start of the next.
   Model model = testing::sliding_bar(0.02);
   model.programs = {lasting(0.02, 100.0)};
   auto& slider = std::get<Slider>(model.joints[0]);
@@ -80,7 +80,7 @@ TEST(MotionRegularised, BlockThatSlidesGivesItsEnergyToFriction) {
       simulate_regularised(model, masses(Eigen::VectorXd::Constant(1, mass)), spring, options);
   const State& end = motion.states.back();
   const double energy = 0.5 * mass * 0.01;
-  // It slides until its energy is heat, but for the swing that is left on the spring: 30²/2e6 J.
+  // It slides until its energy is heat, except for the final oscillation on the spring: 30²/2e6 J.
   EXPECT_NEAR(end.joint_dissipation[0], energy, 1.001 * 30.0 * 30.0 / 2e6);
   EXPECT_NEAR(residue(motion), 0.0, 1e-4 * energy);
   EXPECT_NEAR(end.displacement(0, 0), energy / 30.0, 2.0 * 30.0 / 1e6);
@@ -106,8 +106,8 @@ TEST(MotionRegularised, JournalReboundsAsItsEquationsSay) {
   };
   const double coarse = error(10000);
   const double fine = error(40000);
-  // A dashpot goes with the fourth root of the depth, so that a contact begins with nearly a jump:
-  // between first order, of a jump somewhere in a step, and second.
+  // The dashpot is proportional to the fourth root of the depth, so the force nearly jumps at first
+  // contact. The order is between one, for a jump within a step, and two.
   EXPECT_LT(fine, 1e-5 * 0.5e-3);
   EXPECT_GT(coarse / fine, 4.0);
 }
@@ -116,7 +116,7 @@ TEST(MotionRegularised, BallMovesAsTheJournalDoesInAPlane) {
   MotionOptions options;
   options.steps = 40000;
   options.sample_every = 4000;
-  // One law in two dimensions and in three: rounding.
+  // The same law in two and in three dimensions: rounding only.
   expect_ball_moves_as_journal(
       [&](const Model& model) {
         return simulate_regularised(model, rib_inertia(), spring, options);
@@ -125,7 +125,7 @@ TEST(MotionRegularised, BallMovesAsTheJournalDoesInAPlane) {
 }
 
 TEST(MotionRegularised, MeetsTheMotionBySets) {
-  // Two schemes for one law. What is left between them is that of implicit steps, first order.
+  // Two schemes for one law. Implicit steps have a first-order error.
   const Model model = testing::tripod();
   const Inertia inertia = tripod_inertia();
   MotionOptions options;

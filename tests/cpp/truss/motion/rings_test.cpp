@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contacts that slip in part in steps by sets: against explicit steps with the kernel's own law,
-// against the quasi-static path, and a ball against a journal.
+// Contacts with partial slip in nonsmooth time stepping, compared with explicit steps of the
+// kernel's law and with the quasi-static path; and a ball compared with a journal.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using Eigen::Vector2d;
 
 constexpr const char* law = "mindlin_deresiewicz";
 
-/// Every joint slips in part.
+/// Sets partial slip for every joint.
 Model in_part(Model model) {
   for (Joint& joint : model.joints) {
     std::visit(
@@ -41,7 +41,7 @@ Motion thrown(const Model& model, long steps, double tolerance = 0.0) {
 }
 
 TEST(MotionRings, BlockSlidesAndSwingsAsInExplicitSteps) {
-  // It slides as a whole at first, then swings within the bound, and loses heat in every swing.
+  // Gross slip first, then oscillations within the bound, which dissipate in every period.
   const Model model = in_part(block(100.0, 0.03));
   MotionOptions options;
   options.steps = options.sample_every = 40000;
@@ -56,12 +56,12 @@ TEST(MotionRings, BlockSlidesAndSwingsAsInExplicitSteps) {
   };
   const Motion coarse = thrown(model, 20000);
   const Motion fine = thrown(model, 80000);
-  // Of first order: contacts are implicit Euler's.
+  // First order: contacts use implicit Euler.
   EXPECT_LT(apart(fine), 2e-3 * slid);
   EXPECT_NEAR(apart(coarse) / apart(fine), 4.0, 0.8);
   EXPECT_NEAR(fine.states.back().joint_dissipation[0], heat, 2e-3 * heat);
   EXPECT_LT(std::abs(residue(fine)), 1e-9 * heat);
-  // A tolerance is of a step.
+  // The tolerance applies to each step.
   const double tolerance = 1e-11;
   const Motion controlled = thrown(model, 1000, tolerance);
   EXPECT_LT(apart(controlled), tolerance * static_cast<double>(controlled.steps));
@@ -85,13 +85,13 @@ TEST(MotionRings, SlowlyHeatedBarIsItsPath) {
                 1e-3 * still.joint_dissipation[0]);
     return std::abs(end.displacement(0, 1) - still.displacement(0, 1));
   };
-  // The dashpot holds it back by the rate of heating.
+  // The dashpot delays it in proportion to the heating rate.
   const double quick = apart(1.0);
   EXPECT_LT(quick, 1e-5 * still.displacement(0, 1));
   EXPECT_NEAR(apart(10.0), 0.1 * quick, 1e-3 * quick);
 }
 
-/// A rib under a quick temperature cycle, in explicit steps or by sets.
+/// A rib under a fast temperature cycle, by explicit steps or by nonsmooth time stepping.
 Motion quick(const Model& model, long steps, bool by_sets) {
   MotionOptions options;
   options.steps = steps;
@@ -100,7 +100,7 @@ Motion quick(const Model& model, long steps, bool by_sets) {
                  : simulate_regularised(model, rib_inertia(), law, options);
 }
 
-/// Expects steps by sets to come to this state as their number grows. @param end of so many steps
+/// Expects nonsmooth time stepping to converge to this state. @param end result of so many steps
 template <class End>
 void expect_to_go_to(const State& exact, End&& end, double coarse) {
   const double off = apart(end(4000), exact);
@@ -134,8 +134,8 @@ TEST(MotionRings, TripodGoesToExplicitStepsAsItsStepsFall) {
 }
 
 TEST(MotionRings, ContactProblemHasTheSameLaw) {
-  // Two rigid stops in one place share their force as they like: steps against them have no
-  // branches that are found, and their contacts one problem.
+  // Two rigid stops at the same position share their force in an undetermined way. The active-set
+  // iteration then finds no statuses, and both contacts are solved as one problem.
   Model model = in_part(block(20.0, 0.02));
   auto& slider = std::get<Slider>(model.joints[0]);
   slider.clearance_plus = 2e-5;

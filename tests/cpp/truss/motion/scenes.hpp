@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parts of trusses in motion that several tests share.
+// Models of trusses in motion for several tests.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ inline MotionStart at_rest(const Model& model) {
   return {Eigen::Matrix3Xd::Zero(3, nodes), Eigen::Matrix3Xd::Zero(3, nodes)};
 }
 
-/// Energy that came in less what is stored and what became heat, since the start [J].
+/// Energy supplied minus energy stored and dissipated, since the start [J].
 inline double residue(const Motion& motion) {
   const auto sum = [](const State& state, const MovingState& moving) {
     return state.thermal_work - state.load_potential - state.elastic_energy -
@@ -41,7 +41,7 @@ inline double residue(const Motion& motion) {
          sum(motion.states.front(), motion.moving.front());
 }
 
-/// A block on the ground that sticks by a spring of 1e6 N/m. @param bound of its friction [N]
+/// A block on the ground with a tangential spring of 1e6 N/m. @param bound friction limit [N]
 inline Model block(double bound, double seconds) {
   Model model;
   model.programs = {lasting(seconds)};
@@ -71,9 +71,9 @@ inline Model falling_journal() {
   return model;
 }
 
-/// Place of falling_journal() below the middle of its bearing, and its speed, by F = max(0, K δ^1.5
-/// + c δ') with c = 2 ζ √(m k), k = 1.5 K √δ; integrated to 1e-12. @param gravity [m/s²] @param
-/// hertz K [N/m^1.5] @param mass [kg] @param y both at first
+/// Position of falling_journal() below the centre of its bearing, and its speed, integrated to
+/// 1e-12 with F = max(0, K δ^1.5 + c δ'), c = 2 ζ √(m k), k = 1.5 K √δ. @param gravity [m/s²]
+/// @param hertz K [N/m^1.5] @param mass [kg] @param y initial position and speed
 inline std::vector<double> fallen(double seconds, double gravity, double zeta, double hertz,
                                   double mass, std::vector<double> y) {
   const auto rates = [&](const std::vector<double>& at, std::vector<double>& rate, double) {
@@ -84,7 +84,7 @@ inline std::vector<double> fallen(double seconds, double gravity, double zeta, d
     rate[1] = gravity - (depth > 0.0 ? std::max(force, 0.0) : 0.0) / mass;
   };
   namespace odeint = boost::numeric::odeint;
-  // In short pieces: a free fall is exact at any step, which would leap over the contact.
+  // In short intervals: any step is exact for free fall, so a long step could skip the contact.
   const int pieces = 2000;
   for (int i = 0; i < pieces; ++i) {
     odeint::integrate_adaptive(

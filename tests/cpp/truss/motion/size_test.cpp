@@ -26,7 +26,7 @@ double friction(int blocks) {
   return axial_stiffness * expansion * heating / (4.0 * blocks);
 }
 
-/// Blocks with friction on the ground, one behind the other, joined by bars that are heated.
+/// A row of blocks with friction on the ground, connected by heated bars.
 Model chain(int blocks) {
   Model model;
   model.programs = {lasting(1.0, heating)};
@@ -53,8 +53,8 @@ Inertia inertia(int blocks, double damping_ratio) {
   return made;
 }
 
-/// Displacements of the blocks after a cycle, undamped, by the equations of the scheme with a dense
-/// W and impulses by projected Gauss-Seidel.
+/// Displacements of the blocks after an undamped cycle, from the equations of the scheme with a
+/// dense W and impulses by projected Gauss-Seidel.
 VectorXd reference(int blocks, int steps) {
   const thermal::Program program = lasting(1.0, heating);
   MatrixXd mass = MatrixXd::Zero(blocks, blocks);
@@ -72,7 +72,7 @@ VectorXd reference(int blocks, int steps) {
   };
   const auto force = [&](const VectorXd& q, double time) {
     VectorXd found = -stiffness(time) * (laplace * q);
-    // Bars push their ends apart: only the last block has none behind it.
+    // Thermal forces of adjacent bars cancel, except on the last block, which has only one bar.
     found[blocks - 1] += stiffness(time) * length * expansion * program.temperature_change(time);
     return found;
   };
@@ -113,7 +113,7 @@ TEST(MotionSize, SlipSpreadsInAStepAsTheContactProblemHasIt) {
   EXPECT_GT(motion.events.size(), static_cast<std::size_t>(4 * options.steps));
   const VectorXd exact = reference(blocks, static_cast<int>(options.steps));
   const VectorXd found = motion.states.back().displacement.row(0).tail(blocks).transpose();
-  // Every step balances to 1e-10; a block on a wrong branch is off by a share of its slide.
+  // Every step is in equilibrium to 1e-10; a wrong status causes an error of the order of a slide.
   EXPECT_LT((found - exact).cwiseAbs().maxCoeff(), 1e-7 * exact.cwiseAbs().maxCoeff());
 }
 
@@ -123,17 +123,17 @@ TEST(MotionSize, SystemsOfAStepDoNotGrowWithTheJointsThatSlip) {
     options.steps = options.sample_every = 200;
     const Motion motion = simulate(chain(blocks), inertia(blocks, 1.0), options);
     SCOPED_TRACE(blocks);
-    // Every block goes out, and most of them back, up to a dozen in a step.
+    // Every block slips on heating and most of them on cooling, up to a dozen in one step.
     EXPECT_GT(motion.events.size(), static_cast<std::size_t>(2 * blocks));
-    // One where branches change, and one where more is felt further away.
+    // One factorization for a change of statuses, and one if the change affects remote joints.
     EXPECT_LT(motion.factorizations, 3 * options.steps);
     EXPECT_EQ(motion.iterations, 0);
   }
 }
 
 TEST(MotionSize, FrictionJustWithinItsBoundHoldsWithoutAContactProblem) {
-  // One of ten thousand joints is there in some step: it must not ask for slip, which sends it
-  // back.
+  // With ten thousand joints, one is this close to its bound in some step. It must not switch to
+  // slip, from which the iteration would switch it back.
   Model model;
   model.programs = {lasting(0.1)};
   model.nodes = {node("B", 0, 0, 1)};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Joints whose friction sticks as springs, heated slowly in motion: beside the quasi-static path,
-// which has rows of its own for them.
+// Joints whose friction sticks as springs, in slowly heated motion, compared with the quasi-static
+// path, which has its own equations for them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ Model lever(double seconds) {
   return model;
 }
 
-/// A bar against a bolted joint.
+/// A bar against a bolted joint (Iwan).
 Model bolted(double seconds) {
   IwanJoint joint;
   joint.name = "bolts";
@@ -48,11 +48,12 @@ Model bolted(double seconds) {
 }
 
 struct Apart {
-  double displacement;  ///< of node 1 at the end, over its jump [-]
-  double heat;          ///< over that of the path [-]
+  double displacement;  ///< of node 1 at the end, relative to its jump [-]
+  double heat;          ///< relative to the heat of the path [-]
 };
 
-/// Motion at the end of a cycle beside the path, links of 0.1 kg with half their critical damping.
+/// Difference between motion and path at the end of a cycle; links of 0.1 kg with half their
+/// critical damping.
 Apart apart(const Model& model) {
   const auto links = static_cast<Eigen::Index>(model.links.size());
   Inertia inertia{Eigen::VectorXd::Constant(links, 0.1), {}, Eigen::VectorXd(links), {}, {}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Steps of fourth order between changes of branches.
+// Steps of high order (Radau methods) between changes of status.
 #include "motion/smooth_stepper.hpp"
 
 #include <gtest/gtest.h>
@@ -21,14 +21,14 @@ TEST(SmoothSteps, RadauIntegratesPolynomialsAndIsPutTogetherFromItsModes) {
   for (const int stages : {3, 5, 7}) {
     SCOPED_TRACE(stages);
     const detail::Radau radau(stages);
-    // Long double rounds its coefficients to double: sums of numbers up to 1.
+    // Coefficients are computed in long double and rounded to double: sums of terms up to 1.
     for (int k = 0; k < 2 * stages - 1; ++k) {
       const VectorXd power = radau.c.array().pow(k);
       EXPECT_NEAR(radau.a.row(stages - 1).dot(power), 1.0 / (k + 1), 1e-15) << k;
       if (k >= stages) continue;
       const VectorXd integral = radau.c.array().pow(k + 1) / (k + 1);
       EXPECT_LT((radau.a * power - integral).cwiseAbs().maxCoeff(), 1e-15) << k;
-      // The embedded method, with the start among its nodes, is as exact.
+      // The embedded method, which includes the start among its nodes, has the same order.
       const VectorXd increments = radau.a * power;
       const double start = k == 0 ? 1.0 / radau.eigenvalue : 0.0;
       EXPECT_NEAR(start + radau.embedded.dot(increments), 0.0, 1e-13) << k;
@@ -37,7 +37,7 @@ TEST(SmoothSteps, RadauIntegratesPolynomialsAndIsPutTogetherFromItsModes) {
     for (const detail::Radau::Pair& pair : radau.pairs) {
       sum += 2.0 * (pair.eigenvalue * pair.from_mode * pair.to_mode).real();
     }
-    // Modes of seven stages are up to 1e3 times rounding apart from orthogonal ones.
+    // For seven stages the eigenvectors amplify rounding errors by up to 1e3.
     EXPECT_LT((sum - radau.inverse).cwiseAbs().maxCoeff(), 1e-12);
     EXPECT_LT((radau.a * radau.inverse - Eigen::MatrixXd::Identity(stages, stages)).norm(), 1e-12);
   }
@@ -65,7 +65,7 @@ TEST(SmoothSteps, ComplexFactorSolvesWhatItFactors) {
     const Eigen::VectorXcd exact = Eigen::VectorXcd::LinSpaced(n, 1.0, {2.0, 1.0});
     Eigen::VectorXcd found = matrix * exact;
     factor.solve(found);
-    // The condition number is some 10.
+    // The condition number is about 10.
     EXPECT_LT((found - exact).norm(), 1e-13);
     matrix *= 2.0;
   }
@@ -74,7 +74,7 @@ TEST(SmoothSteps, ComplexFactorSolvesWhatItFactors) {
 }
 
 TEST(SmoothSteps, TrajectoryOfASlideIsExactForPolynomials) {
-  // Degree 11 through six places with their rates, on a step of 0.7 s.
+  // Polynomial of degree 11 through six points with their rates, over 0.7 s.
   const auto slide = [](double t) { return std::pow(t, 11) - 2.0 * std::pow(t, 3) + t; };
   const auto speed = [](double t) { return 11.0 * std::pow(t, 10) - 6.0 * t * t + 1.0; };
   detail::SlipTrajectory slip;
@@ -89,7 +89,7 @@ constexpr double axial_stiffness = 5e3;  // E A [N]
 constexpr double spring = 2e3;           // of the slider [N/m]
 constexpr double gravity = 9.81;
 
-/// A mass of 1 kg on a rod of 1 m that swings from side to side, and rubs along x.
+/// A mass of 1 kg on a rod of 1 m that swings from side to side, with friction along x.
 Model rubbing_pendulum(double bound, double seconds) {
   Model model;
   model.programs = {lasting(seconds)};
@@ -106,7 +106,7 @@ Model rubbing_pendulum(double bound, double seconds) {
   return model;
 }
 
-/// Its place by its own equations, integrated to 1e-13. @param damping c of the slider [N s/m]
+/// Its position from its own equations, integrated to 1e-13. @param damping c of the slider [N s/m]
 Vector2d swung(double bound, double damping, double seconds) {
   std::vector<double> y{0.0, 0.0, 0.0, 0.0, 0.0};  // displacements, velocities, force of the spring
   const auto rates = [&](const std::vector<double>& at, std::vector<double>& rate, double) {
@@ -122,7 +122,7 @@ Vector2d swung(double bound, double damping, double seconds) {
     rate[4] = std::abs(at[4]) >= bound && at[4] * at[2] > 0.0 ? 0.0 : spring * at[2];
   };
   namespace odeint = boost::numeric::odeint;
-  // Short pieces, so that the spring is not far beyond its bound when it is put back to it.
+  // Short intervals, so that the spring exceeds its bound only slightly before it is reset to it.
   const int pieces = 40000;
   for (int i = 0; i < pieces; ++i) {
     odeint::integrate_adaptive(
@@ -138,14 +138,14 @@ struct Reached {
   int changes = 0;
 };
 
-/// The same in equal steps of three stages, order 5, but for those that a change of branches ends.
+/// Equal three-stage steps (order 5), except for steps that a status change shortens.
 Reached stepped(double bound, double damping, double seconds, int steps) {
   const Model model = rubbing_pendulum(bound, seconds);
   Inertia inertia;
   inertia.node_mass = Vector2d(0.0, 1.0);
   inertia.joint_damping = VectorXd::Constant(1, damping / std::sqrt(spring));
   MotionOptions options;
-  options.displacement_tolerance = 1e-10;  // iterations stop at a thousandth
+  options.displacement_tolerance = 1e-10;  // iterations stop at a thousandth of it
   const detail::System system(model);
   const detail::Bodies bodies(system, inertia);
   const auto stepper = detail::SmoothStepper::of(system, bodies, inertia, options, 3);
@@ -178,7 +178,7 @@ TEST(SmoothSteps, KeepTheirOrderOverChangesOfBranches) {
     int least_changes;
   };
   double smooth_error = 0.0;
-  // Sticks; slides and sticks; the same with a dashpot, whose spring goes on while it slides.
+  // Sticks; slides and sticks; the same with a dashpot. Its spring continues to deform during slip.
   for (const Rubs& rubs : {Rubs{1e6, 0.0, 0}, Rubs{3.0, 0.0, 5}, Rubs{3.0, 4.0, 5}}) {
     SCOPED_TRACE(::testing::Message() << rubs.bound << " N, " << rubs.damping << " N s/m");
     const Vector2d exact = swung(rubs.bound, rubs.damping, seconds);
@@ -186,10 +186,10 @@ TEST(SmoothSteps, KeepTheirOrderOverChangesOfBranches) {
     const Reached fine = stepped(rubs.bound, rubs.damping, seconds, 800);
     const double by = (coarse.place - exact).norm() / (fine.place - exact).norm();
     EXPECT_GE(fine.changes, rubs.least_changes);
-    // Order five: 4^5 times smaller with a quarter of the step, here 2^9.8 to 2^10.
+    // Order five: a quarter of the step divides the error by 4^5 = 2^10; measured 2^9.8 to 2^10.
     EXPECT_GT(std::log2(by), 9.0) << (coarse.place - exact).norm();
-    // Six changes leave errors of the size of those without: where they are not sought but taken at
-    // the ends of steps the error is a thousand times that.
+    // Located status changes leave errors of the same size as without changes. If the changes were
+    // only taken at the ends of steps, the error would be a thousand times larger.
     const double error = (fine.place - exact).norm();
     if (rubs.least_changes == 0) smooth_error = error;
     EXPECT_LT(error, 20.0 * smooth_error + 1e-15);
@@ -197,7 +197,7 @@ TEST(SmoothSteps, KeepTheirOrderOverChangesOfBranches) {
 }
 
 TEST(SmoothSteps, EnergiesCloseWithTheTolerance) {
-  // The bar of Table 1 on its block, which sticks by a spring and slides out and back.
+  // Bar of Table 1 with its block, which has a tangential spring and slides on heating and cooling.
   Model model = testing::sliding_bar(0.1);
   std::get<Slider>(model.joints[0]).tangential_stiffness = 1e7;
   const Inertia inertia{VectorXd::Constant(1, 0.1), {}, VectorXd::Constant(1, 50.0), {}, {},
@@ -218,7 +218,7 @@ TEST(SmoothSteps, EnergiesCloseWithTheTolerance) {
   const double heat = fine.states.back().joint_dissipation.sum();
   EXPECT_GT(heat, 1e-3);
   EXPECT_GT(fine.moving.back().damping_dissipation, 0.0);
-  // What is off in a place of a hundredth of a micrometre moves a force of 30 N.
+  // An error of position equal to the tolerance, times a force of 30 N, per step.
   EXPECT_LT(std::abs(residue(coarse)), 30.0 * 1e-7 * static_cast<double>(coarse.steps));
   EXPECT_LT(std::abs(residue(fine)), 30.0 * 1e-9 * static_cast<double>(fine.steps));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trusses in motion whose steps are as long as a tolerance allows.
+// Trusses in motion with automatic step control.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -52,8 +52,8 @@ TEST(StepControl, ErrorsFallWithTheToleranceAtSecondOrder) {
   long many = 0;
   const double coarse = error(1e-6, few);
   const double close = error(1e-9, many);
-  // h³ is off by the tolerance: 1000 times less takes 10 times the steps, and h² of the error of
-  // the whole falls 100 times; lengths are powers of two.
+  // The error of a step is proportional to h³: a tolerance 1000 times smaller needs 10 times the
+  // steps. The global error, proportional to h², decreases by 100. Step lengths are powers of two.
   EXPECT_NEAR(std::log2(static_cast<double>(many) / static_cast<double>(few)), std::log2(10.0),
               0.7);
   EXPECT_NEAR(std::log2(coarse / close), std::log2(100.0), 1.4);
@@ -61,12 +61,12 @@ TEST(StepControl, ErrorsFallWithTheToleranceAtSecondOrder) {
 }
 
 TEST(StepControl, SlowerHeatingTakesNoMoreStepsAndComesCloserToThePath) {
-  // The bar of Table 1 on its block: rings, which die away, where heating begins and turns and the
-  // block lets go; nothing moves but slowly in between.
+  // Bar of Table 1 with its block. Oscillations, which decay, start when heating begins and
+  // reverses and when the block starts to slip; in between, motion is slow.
   const double k = 70e9 * 9e-6 / 0.5;
   const double mass = 0.1;
   const auto heated = [&](double seconds) {
-    const double damping = std::sqrt(k * mass / 3.0);  // half the critical one
+    const double damping = std::sqrt(k * mass / 3.0);  // half the critical damping
     return run(
         testing::sliding_bar(seconds),
         {Eigen::VectorXd::Constant(1, mass), {}, Eigen::VectorXd::Constant(1, damping), {}, {}},
@@ -80,7 +80,7 @@ TEST(StepControl, SlowerHeatingTakesNoMoreStepsAndComesCloserToThePath) {
   };
   EXPECT_LT(slow.steps, fast.steps);
   EXPECT_LT(fast.steps, 2000);
-  EXPECT_LT(off(slow), 1e-2 * off(fast));  // the first power of the rate, to the tolerance
+  EXPECT_LT(off(slow), 1e-2 * off(fast));  // first order in the heating rate, down to the tolerance
   for (const Motion* one : {&fast, &slow}) {
     EXPECT_LT(std::abs(residue(*one)) / one->states.back().joint_dissipation.sum(), 1e-3);
   }
@@ -96,7 +96,7 @@ TEST(StepControl, JournalBouncesAtItsAnalyticTimes) {
   int impact = 0;
   for (const Event& event : motion.events) {
     if (event.before != JointStatus::open || impact == 6) continue;
-    // A step over an impact is off by the speed times the step: as long as the tolerance allows.
+    // Locating an impact within a step is wrong by up to the step, as long as the tolerance allows.
     EXPECT_NEAR(event.time, time, 1e-4 * time) << "impact " << impact;
     speed *= e;
     time += 2.0 * speed / 9.81;

@@ -15,7 +15,7 @@ namespace statejump::thermal {
 /// Form of one temperature cycle; see Program.
 enum class Shape { triangle, half_sine, sine, table };
 
-/// Name of a shape as case files spell it: "triangle", "half_sine", "sine" or "table".
+/// Name of a shape in case files: "triangle", "half_sine", "sine" or "table".
 inline const char* to_string(Shape shape) {
   switch (shape) {
     case Shape::triangle:
@@ -30,7 +30,7 @@ inline const char* to_string(Shape shape) {
   return "unknown";
 }
 
-/// Shape of that name. Throws kernel::OutOfRange for any other text.
+/// Shape of the given name. Throws kernel::OutOfRange for any other text.
 inline Shape shape_of(const std::string& name) {
   for (const Shape shape : {Shape::triangle, Shape::half_sine, Shape::sine, Shape::table}) {
     if (name == to_string(shape)) return shape;
@@ -42,33 +42,32 @@ inline Shape shape_of(const std::string& name) {
 ///
 /// ΔT(t) = T(t) − T0, over one cycle of length P, with the local time τ in [0, P]:
 ///
-///   triangle   0 → ΔTmax at P/2 → 0, straight in between
+///   triangle   0 → ΔTmax at P/2 → 0, linear in between
 ///   half_sine  ΔTmax sin(π τ/P)
 ///   sine       ΔTmax sin(2π τ/P), so the second half is −ΔTmax
-///   table      straight lines between given points (τ_i, ΔT_i)
+///   table      linear between given points (τ_i, ΔT_i)
 ///
-/// The cycle is repeated `cycles` times; afterwards ΔT holds the value of the last end point, and
-/// before t = 0 that of the first. ΔTmax < 0 cools first.
+/// The cycle is repeated `cycles` times. Before t = 0, ΔT is the value at the start of the first
+/// cycle; after the last cycle it stays at its end value. ΔTmax < 0 cools first.
 ///
 /// Every length is computed from this total ΔT, never from a sum of increments, and a state jump is
-/// the difference between two states at the same ΔT. So the program returns to its end value
-/// exactly: each half of a cycle is measured from its own end, and the end of cycle k is the
-/// rounded product (k + 1)·P. sin(π·1) = 1.2e-16 would read as a temperature that is not there.
+/// the difference between two states at the same ΔT. So the program must return to its end value
+/// exactly. Each half of a cycle is therefore evaluated from its own end, and cycle k ends at the
+/// rounded product (k + 1)·P. With sin(π·1), ΔT would be 1.2e-16 ΔTmax instead of 0.
 ///
-/// A plain value: set the fields and call validate() once; the other functions do not check.
+/// A plain value type: set the fields and call validate() once; the other functions do not check.
 struct Program {
-  /// Form of one cycle.
   Shape shape = Shape::half_sine;
-  /// Largest temperature change ΔTmax [K], any finite value; a table does not use it.
+  /// Largest temperature change ΔTmax [K], any finite value; ignored for a table.
   double temperature_change_max = 0.0;
-  /// Length P of one cycle [s], > 0. Of a table it equals the last time.
+  /// Length P of one cycle [s], > 0. For a table it must equal the last time.
   double period = 1.0;
   /// Number of cycles, >= 1.
   int cycles = 1;
   /// Times of a table [s]: from 0, strictly increasing, to `period`. Empty for other shapes.
   std::vector<double> table_times;
-  /// Temperature changes of a table [K], one per time. The first is 0, because T0 is the
-  /// temperature of the stress-free start; the last is 0 as well if the cycle repeats.
+  /// Temperature changes of a table [K], one per time. The first must be 0, because T0 is the
+  /// temperature of the stress-free start. If the cycle repeats, the last must be 0, too.
   std::vector<double> table_temperature_changes;
 
   /// Throws std::invalid_argument that names the first field out of range, its value and the range.
@@ -80,7 +79,7 @@ struct Program {
   /// ΔT at time t [K]; exactly the end value at the end of every cycle.
   double temperature_change(double t) const;
 
-  /// dΔT/dt at time t [K/s]; at a corner the rate just after it, outside the program 0.
+  /// dΔT/dt at time t [K/s]; at a corner the rate just after it; 0 outside the program.
   double temperature_rate(double t) const;
 };
 
@@ -90,23 +89,23 @@ inline double length(double l0, double alpha, double temperature_change) {
   return l0 * (1.0 + alpha * temperature_change);
 }
 
-/// Part of a program over which ΔT rises, falls or holds, with a closed-form inverse.
+/// Monotone part of a program: ΔT rises, falls or is constant, with a closed-form inverse.
 ///
-/// ΔT is a straight line between the two ends if `angular_frequency` is 0, else
+/// ΔT is linear between the two ends if `angular_frequency` is 0, otherwise
 /// ±amplitude sin(ω (t − zero_time)) with the sign of (end − start).
 struct Branch {
   double start_time = 0.0;         ///< [s]
   double end_time = 0.0;           ///< [s]
   double start = 0.0;              ///< ΔT at start_time [K]
   double end = 0.0;                ///< ΔT at end_time [K]
-  double zero_time = 0.0;          ///< Time of the sine's zero that the branch touches [s].
-  double angular_frequency = 0.0;  ///< ω [rad/s], 0 for a straight line.
+  double zero_time = 0.0;          ///< Time of the sine's zero at an end of the branch [s].
+  double angular_frequency = 0.0;  ///< ω [rad/s]; 0 for a linear branch.
   double amplitude = 0.0;          ///< |ΔTmax| of the sine [K].
 };
 
-/// Time [s] at which the branch passes `temperature_change` [K]. A value beyond the branch gives
-/// the nearer end, a branch that holds its start. Near the crest of a sine the time is as
-/// ill-defined as the sine is flat: an error ε in ΔT moves it by sqrt(2 ε/amplitude)/ω.
+/// Time [s] at which the branch passes `temperature_change` [K]. The result is the nearer end if
+/// the value lies beyond the branch, and the start if the branch is constant. Near the crest of a
+/// sine the time is ill-conditioned: an error ε in ΔT changes it by sqrt(2 ε/amplitude)/ω.
 inline double time_at(const Branch& branch, double temperature_change) {
   const double span = branch.end - branch.start;
   const double passed = (temperature_change - branch.start) / (span == 0.0 ? 1.0 : span);
@@ -129,19 +128,19 @@ namespace detail {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// "name[index]", for messages.
+/// Text "name[index]", for messages.
 inline std::string entry(const char* name, std::size_t index) {
   return std::string(name).append("[").append(std::to_string(index)).append("]");
 }
 
-/// Place of a time within its cycle, measured from both ends of the cycle.
+/// Position of a time within its cycle, measured from both ends of the cycle.
 struct CyclePlace {
-  double elapsed;    ///< Since the cycle began [s].
-  double remaining;  ///< Until it ends [s].
+  double elapsed;    ///< Time since the cycle began [s].
+  double remaining;  ///< Time until the cycle ends [s].
 };
 
-/// Place of 0 <= t < duration. The division may round over a boundary; the loops put that right, so
-/// that the boundaries are the products k·period, where both differences are exact zeros.
+/// Position of 0 <= t < duration. The division may round across a boundary; the loops correct this.
+/// The boundaries are then the products k·period, where the differences are exactly zero.
 inline CyclePlace cycle_place(const Program& program, double t) {
   double k = std::floor(t / program.period);
   while (k > 0.0 && t < k * program.period) k -= 1.0;
@@ -149,8 +148,8 @@ inline CyclePlace cycle_place(const Program& program, double t) {
   return {t - k * program.period, (k + 1.0) * program.period - t};
 }
 
-/// Index i of the table piece with times[i] <= tau < times[i + 1]; the last piece beyond the end.
-/// A table has at least two times.
+/// Index i of the table interval with times[i] <= tau < times[i + 1]; the last interval for later
+/// times. A table has at least two times.
 inline std::size_t table_piece(const Program& program, double tau) {
   const auto& times = program.table_times;
   const std::size_t last = times.size() - 2;
@@ -201,7 +200,7 @@ inline void Program::validate() const {
 }
 
 inline double Program::temperature_change(double t) const {
-  // A program has values of a table where its shape is one, and nowhere else.
+  // The table is empty unless the shape is a table.
   const auto& table = table_temperature_changes;
   if (t <= 0.0) return table.empty() ? 0.0 : table.front();
   if (t >= duration()) return table.empty() ? 0.0 : table.back();
@@ -241,7 +240,7 @@ inline double Program::temperature_rate(double t) const {
       return side * temperature_change_max * omega * std::cos(omega * nearest);
     }
     case Shape::sine: {
-      // The rate is even about the middle of the cycle, so it needs no sign for the side.
+      // The rate is symmetric about the middle of the cycle, so it has the same sign on both sides.
       const double omega = 2.0 * detail::pi / period;
       return temperature_change_max * omega * std::cos(omega * nearest);
     }
@@ -254,7 +253,7 @@ inline double Program::temperature_rate(double t) const {
 }
 
 /// Calls `visit(const Branch&)` for every branch of cycle `cycle` (0, 1, …) in order,
-/// without allocating. A table gives one branch per piece, other shapes two or three.
+/// without allocating. A table has one branch per interval, other shapes two or three.
 template <class Visit>
 void for_each_branch(const Program& program, int cycle, Visit&& visit) {
   const double from = cycle * program.period;
@@ -294,7 +293,7 @@ void for_each_branch(const Program& program, int cycle, Visit&& visit) {
   }
 }
 
-/// All branches of the program, cycle after cycle; each begins where the one before it ends.
+/// All branches of the program in order; each begins where the previous one ends.
 inline std::vector<Branch> monotone_branches(const Program& program) {
   std::vector<Branch> branches;
   for (int cycle = 0; cycle < program.cycles; ++cycle) {

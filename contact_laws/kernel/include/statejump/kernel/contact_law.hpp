@@ -12,14 +12,13 @@
 
 namespace statejump::kernel {
 
-///
-/// Parameters of the two bodies of a contact, constant over a run. validate() checks them once.
+/// Material, friction and damping of one contact, constant over a run. validate() checks them once.
 struct ContactParameters {
   ElasticPair elastic;                    ///< E*, G* [Pa], both > 0; see elastic_pair()
   double friction_coefficient = 0.0;      ///< mu [-], >= 0; 0: frictionless (default)
   double normal_damping_ratio = 0.0;      ///< zeta_n [-], >= 0; 0: undamped (default)
   double tangential_damping_ratio = 0.0;  ///< zeta_t [-], >= 0; 0: undamped (default)
-  double effective_mass = 0.0;            ///< m [kg], >= 0, m1 m2/(m1 + m2); only damping uses it
+  double effective_mass = 0.0;            ///< m = m1 m2/(m1 + m2) [kg], >= 0; only damping uses it
 };
 
 /// Kinematics of the two bodies of a contact in this step. The inner loop does not check them.
@@ -28,14 +27,14 @@ struct ContactKinematics {
                    ///< pushes along it
   double penetration_depth;   ///< delta [m], > 0 overlap, <= 0 gap
   double effective_radius;    ///< R [m], > 0, finite
-  Vector3 relative_velocity;  ///< v1 - v2 of the material at the one contact point [m/s]
+  Vector3 relative_velocity;  ///< v1 - v2 [m/s], material velocities at the common contact point
   double time_step;           ///< dt [s], >= 0
 };
 
 /// Forces and energies of a contact after one step. Forces act on body 1; body 2 gets the opposite.
 struct ContactResponse {
-  double normal_force;               ///< F_N with damping [N], >= 0: clipped, no adhesion
-  double elastic_normal_force;       ///< Hertz part of it [N], >= 0
+  double normal_force;               ///< F_N with its viscous part [N], >= 0: clipped, no adhesion
+  double elastic_normal_force;       ///< Hertz part of F_N [N], >= 0
   double normal_stiffness;           ///< dF/d(delta) of the Hertz part [N/m], >= 0
   double tangential_stiffness;       ///< k_t = 8 G* a [N/m], >= 0
   Vector3 tangential_force;          ///< friction on body 1, viscous part included [N]
@@ -46,7 +45,7 @@ struct ContactResponse {
   double damping_dissipation;        ///< of this step [J], >= 0
 };
 
-/// Checks a parameter set when it is set.
+/// Checks the parameters of a contact; call it whenever they are set.
 /// @throws std::invalid_argument that names the field, its value and its range.
 inline void validate(const ContactParameters& parameters) {
   const auto positive = [&](double value, const char* name, const char* range) {
@@ -79,7 +78,7 @@ inline double damped_normal_force(double force, double damping, double approach_
 /// Adds the viscous force -c v_t of a sticking spring and projects the sum onto the disc of radius
 /// mu F_N. The projection is monotone, so the remaining viscous force still opposes v_t.
 /// @param damping c [N s/m], @param limit mu F_N [N], @param velocity v_t [m/s]
-/// @param force in: of the spring [N], within the limit; out: with the viscous part
+/// @param force in: force of the spring [N], at most `limit`; out: with the viscous part
 /// @return power dissipated by the viscous part [W], >= 0
 inline double add_tangential_damping(double damping, double limit, const Vector3& velocity,
                                      Vector3& force) {
@@ -94,7 +93,7 @@ inline double add_tangential_damping(double damping, double limit, const Vector3
 /// Input and output of a dissipation law in one contact_step().
 struct ImpactDamping {
   double ratio = 0.0;           ///< chi/K [s/m], see laws::damped_force()
-  double clearance_rate = 0.0;  ///< dc/dt by expansion [m/s]
+  double clearance_rate = 0.0;  ///< dc/dt by thermal expansion [m/s]
   double force = 0.0;           ///< out: force of the dissipation law [N]
 };
 
@@ -108,12 +107,13 @@ struct ImpactDamping {
 ///
 /// @tparam Laws the laws, resolved at compile time:
 ///  normal()                      elastic state with force, stiffness, elastic_energy
-///  velocity()                    v of 1 relative to 2 that enters friction [m/s]
+///  velocity()                    velocity of body 1 relative to body 2 [m/s], used by friction
 ///  tangential_stiffness(normal)  k_t [N/m]
 ///  friction(k_t, mu F_N, F_N, v_t, history) -> MindlinEnergy
-///  friction_force(history)       of that step, on body 1, without the viscous part [N]
+///  friction_force(history)       force on body 1 after that step, without the viscous part [N]
 ///  dissipates                    whether impact() returns an ImpactDamping&
-///  always_spring                 friction is always a spring of k_t; if false, see the history
+///  always_spring                 friction is always a spring of stiffness k_t; if false,
+///  history.tangential_stiffness > 0 marks a spring
 /// @param normal n, unit; @param depth delta [m]; @param time_step dt [s]
 /// @param history of this contact, rotated into the current tangent plane by the caller; updated
 template <class Laws>
@@ -219,10 +219,10 @@ struct HertzMindlinLaws {
 /// zero.
 ///
 /// Energy: friction by the identity of mindlin_step(), damping by (viscous force) . v dt with the
-/// given velocity. Leapfrog does work with the mean velocity of two half steps, so its damping work
-/// differs at first order in dt.
+/// given velocity. A leapfrog integrator does work with the mean velocity of two half steps, so its
+/// damping work differs from this value at first order in dt.
 ///
-/// Cost: one square root undamped in stick, one more in slip, one more per damping used.
+/// Cost: one square root without damping in stick, one more in slip, one more per active damper.
 /// @param parameters see validate(); not checked here
 /// @param kinematics of this step
 /// @param history of this contact, rotated into the current tangent plane by the caller; updated. A

@@ -19,8 +19,7 @@ namespace statejump::kernel {
 struct RelativeCurvature {
   double larger;   ///< [1/m]; the short semi-axis of the contact has this direction
   double smaller;  ///< [1/m]; the long semi-axis of the contact has this direction
-  double
-      angle;  ///< [rad] of the larger one, from direction 1 of body 1 towards direction 1 of body 2
+  double angle;    ///< of `larger` [rad], from direction 1 of body 1 to direction 1 of body 2
 };
 
 /// Adds the curvatures of two bodies (Johnson 1985, eq. 4.4).
@@ -66,10 +65,10 @@ struct EllipticShape {
 ///     a^2 = 2 delta D/(smaller K)
 ///     F = 2/3 pi a b p0 = 2/3 pi E* a delta/K
 ///
-/// K and D are Carlson's R_F(0, k'^2, 1) and R_D(0, k'^2, 1)/3 of Boost.Math. Their differences do
-/// not cancel, neither at the circle nor near the line. TOMS 748 finds ln(b/a) in about ten
-/// evaluations of 0.2 us, so solve once per pair of curvatures.
-/// @throws std::invalid_argument when not larger/1e10 <= smaller <= larger, larger > 0 and finite
+/// K and D are Carlson's R_F(0, k'^2, 1) and R_D(0, k'^2, 1)/3 of Boost.Math. The differences K - D
+/// suffer no cancellation, neither at the circle nor near the line. TOMS 748 finds ln(b/a) in about
+/// ten evaluations of 0.2 us, so call this once per pair of curvatures, not in every step.
+/// @throws std::invalid_argument unless 0 < larger < inf and larger/1e10 <= smaller <= larger
 /// Limits: those of hertz(), and a well below the longer radius 1/smaller.
 inline EllipticShape elliptic_shape(const RelativeCurvature& curvature) {
   const double larger = curvature.larger, smaller = curvature.smaller;
@@ -120,7 +119,7 @@ struct EllipticHertzState {
   double elastic_energy;  ///< integral of F over delta [J], >= 0
 };
 
-/// Hertz contact of two surfaces of any curvatures: F = E* stiffness delta^1.5. One square root.
+/// Hertz contact of two surfaces with any curvatures: F = E* stiffness delta^1.5. One square root.
 /// @param effective_young_modulus E* [Pa], > 0
 /// @param shape from elliptic_shape()
 /// @param penetration_depth delta [m]; <= 0 is a gap and gives zeros. Arguments are not checked.

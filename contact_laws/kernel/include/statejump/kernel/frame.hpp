@@ -33,7 +33,7 @@ inline Vector3 transport(const Vector3& tangential, const Vector3& n_old, const 
   if (magnitude_squared <= 0.0) return Vector3::Zero();
   const Vector3 half = n_old + n_new;
   const double half_squared = half.squaredNorm();
-  const double smallest = 1e-16;  // |h| below 1e-8: the direction of h is rounding
+  const double smallest = 1e-16;  // |h| < 1e-8: rounding determines the direction of h
   Vector3 turned = tangential;
   if (half_squared > smallest) turned -= half * (2.0 * tangential.dot(n_new) / half_squared);
   turned -= turned.dot(n_new) * n_new;

@@ -15,7 +15,7 @@ namespace statejump::kernel {
 /// @param journal_radius R1 [m], > 0 and finite
 /// @param bearing_radius R2 [m], > R1. +infinity is a flat wall and gives R1. A negative value is a
 ///        wall of radius -R2 that bulges towards the journal.
-/// @throws std::invalid_argument when not 0 < R1 < R2 or R2 < 0
+/// @throws std::invalid_argument unless R1 > 0, and R2 > R1 or R2 < 0
 /// Limit: Hertz needs a contact radius a = sqrt(R delta) much smaller than R1. As R2 tends to R1
 /// the contact becomes conformal and this radius grows without bound.
 inline double internal_effective_radius(double journal_radius, double bearing_radius) {

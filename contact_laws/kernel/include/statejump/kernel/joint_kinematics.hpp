@@ -18,8 +18,7 @@ struct BodyMotion {
 };
 
 /// Geometry of one contact point between body 1 (journal, ball, slider) and body 2 (bearing,
-/// socket, slot, other ball). It is also filled for a gap; then the arms meet in the middle of the
-/// gap.
+/// socket, slot, other ball). A gap has a contact point too: the middle of the gap.
 struct JointContact {
   double penetration_depth;   ///< delta [m]; negative: gap
   Vector3 normal;             ///< unit, from body 1 into body 2
@@ -33,7 +32,7 @@ using RevoluteContact = JointContact;  ///< of revolute_contact()
 using BallContact = JointContact;      ///< of ball_contact()
 using PlaneContact = JointContact;     ///< of plane_contact()
 
-/// Kinematics that the contact law needs from the geometry of a joint. @param time_step dt [s]
+/// Input of the contact law from the geometry of a joint. @param time_step dt [s]
 inline ContactKinematics contact_kinematics(const JointContact& contact, double time_step) {
   return {contact.normal, contact.penetration_depth, contact.effective_radius,
           contact.relative_velocity, time_step};
@@ -61,7 +60,7 @@ inline double revolute_penetration(const Vector3& journal_centre, double journal
 }
 
 /// Whether journal and bearing touch: revolute_penetration() > 0, decided on squares without a
-/// square root. The two may differ by rounding, at |delta| of about 1e-16 of the clearance. A
+/// square root. The two can disagree within rounding, |delta| of about 1e-16 of the clearance. A
 /// bearing not larger than the journal counts as touching, so that revolute_contact() reports it.
 /// NaN positions count as touching too, so that the depth becomes NaN.
 inline bool revolute_touches(const Vector3& journal_centre, double journal_radius,
@@ -76,8 +75,8 @@ inline bool revolute_touches(const Vector3& journal_centre, double journal_radiu
 namespace detail {
 
 /// One contact of round bodies: a journal or ball inside a bearing or socket.
-/// @param centres centre 1 minus centre 2, @param offset d, the part of centres that closes the
-///        clearance
+/// @param centres centre 1 minus centre 2 [m]
+/// @param offset d [m], the component of `centres` that closes the clearance
 /// @param concentric_normal returns the normal when d is zero
 template <class Normal>
 JointContact round_contact(const BodyMotion& inner, double inner_radius, const BodyMotion& outer,
@@ -88,7 +87,7 @@ JointContact round_contact(const BodyMotion& inner, double inner_radius, const B
   if (offset_squared <= std::numeric_limits<double>::min()) {
     contact.eccentricity = 0.0;
     contact.normal = concentric_normal();
-  } else {  // NaN, too: the bodies are not concentric
+  } else {  // also for NaN, which then propagates to the depth
     contact.eccentricity = std::sqrt(offset_squared);
     contact.normal = offset * (1.0 / contact.eccentricity);
   }
@@ -120,7 +119,7 @@ JointContact round_contact(const BodyMotion& inner, double inner_radius, const B
 /// infinitely long. Tilt of the journal relative to the axis is ignored.
 /// @param journal_radius R1 [m], @param bearing_radius R2 [m], 0 < R1 < R2
 /// @param axis unit, the bearing's axis, either direction
-/// @return for concentric bodies a gap of -c with some unit normal perpendicular to the axis
+/// @return for concentric bodies a gap of -c with any unit normal perpendicular to the axis
 /// @throws std::invalid_argument when not 0 < R1 < R2
 inline RevoluteContact revolute_contact(const BodyMotion& journal, double journal_radius,
                                         const BodyMotion& bearing, double bearing_radius,

@@ -12,14 +12,14 @@ namespace statejump::kernel {
 /// Memory of a contact between steps. The caller stores it, rotates force and axis with the contact
 /// (transport() in frame.hpp) and default-constructs it for a new contact.
 struct ContactHistory {
-  Vector3 tangential_force = Vector3::Zero();  ///< of the spring, on body 1 [N]; no viscous part
-  double tangential_stiffness = 0.0;  ///< k_t at which that force was stored [N/m]; 0: new contact
+  Vector3 tangential_force = Vector3::Zero();  ///< spring force on body 1 [N]; no viscous part
+  double tangential_stiffness = 0.0;  ///< k_t [N/m] when that force was stored; 0: new contact
   bool slipping = false;              ///< the last step ended at the Coulomb limit
-  Vector3 tangential_axis = Vector3::Zero();  ///< unit, first axis of the memory; zero: no memory
-  PartialSlipMemory memory{};                 ///< of a law with partial slip
+  Vector3 tangential_axis = Vector3::Zero();  ///< unit, first tangent of `memory`; zero: no memory
+  PartialSlipMemory memory{};                 ///< only for a law with partial slip
 };
 
-/// Energy [J] stored by a contact's friction: of the spring, or of the memory if there is one.
+/// Elastic energy [J] of a contact's friction: of the memory if there is one, else of the spring.
 inline double elastic_energy(const ContactHistory& history) {
   if (history.memory.size() > 0) return elastic_energy(history.memory);
   const double stiffness = history.tangential_stiffness;
@@ -59,7 +59,7 @@ struct MindlinEnergy {
 /// this step:
 ///
 ///  1. The stiffness follows the normal load. Loading (k >= k0): the new annulus of contact carries
-/// no
+///     no
 ///    traction yet, the force stays, F' = F0. Unloading (k < k0): the slide s stays, F' = F0 k/k0.
 ///    Either way the spring loses the energy 1/2 F0^2/k0 - 1/2 F'^2/k >= 0 as micro-slip at the
 ///    rim. Keeping F0 during unloading would create energy (Thornton, Cummins and Cleary, 2013).

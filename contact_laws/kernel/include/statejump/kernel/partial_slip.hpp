@@ -17,7 +17,7 @@ namespace detail {
 /// Computes one step, from the trial state to the new memory.
 class PartialSlipStep {
  public:
-  /// @param memory before the step; run() updates it
+  /// @param memory state before the step; run() updates it
   PartialSlipStep(double stiffness, double limit, const Tangent& slide, PartialSlipMemory& memory)
       : edge_(stiffness),
         square_(stiffness * stiffness),
@@ -28,7 +28,7 @@ class PartialSlipStep {
         tracks_energy_(memory.tracks_energy()),
         smallest_(1e-15 * slope_ * square_) {}
 
-  /// Loss of annuli whose pressure decreases uniformly to zero over a step [J].
+  /// Loss of annuli whose pressure decreases uniformly to zero during a step [J].
   static double released(const Tangent& slide, PartialSlipMemory& memory) {
     const PartialSlipStep step(memory.edge() * 1e-9, 0.0, slide, memory);
     double sum = 0.0;
@@ -42,7 +42,7 @@ class PartialSlipStep {
     stuck_ = count_stuck();
     if (stuck_ < old_.prefix().count) old_.flush_prefix();
     make_trial();
-    slipping_ = stuck_ == 0;  // all annuli but the rim, which carries no force
+    slipping_ = stuck_ == 0;  // no annulus sticks, except the rim, which carries no force
     for (int i = 0; slipping_ && i + 1 < knots_; ++i) slipping_ = at(i).outside;
     add(at(0).x, at(0).outside ? projected(at(0)) : at(0).trial, false);
     for (int i = 1; i < knots_; ++i) {
@@ -62,16 +62,16 @@ class PartialSlipStep {
   struct Knot {
     double x;
     Tangent old;
-    double fraction;  ///< fraction of the slide in which this annulus takes part
+    double fraction;  ///< fraction of the slide during which this annulus is in contact
     Tangent trial;    ///< old + fraction slide
     double bound;     ///< current bound on |U|
     bool outside;
   };
 
-  /// Number of points from the centre that stick, with a margin to the points that change. They
-  /// only move with the slide. Slip starts at the rim, so nearly all points of a sticking contact
-  /// belong here. The other points, with `neighbours` of these, are projected and merged. The
-  /// points of the prefix are not visited while the prefix is valid.
+  /// Number of points, counted from the centre, that certainly stick and hence only move with the
+  /// slide. Slip starts at the rim, so these are nearly all points of a sticking contact. The count
+  /// stops `neighbours` points before the first point that changes: the rest is projected and
+  /// merged. While the prefix is valid, its points are not visited.
   int count_stuck() {
     constexpr int neighbours = 2;
     const int most = old_.size() - neighbours + 1;
@@ -109,8 +109,8 @@ class PartialSlipStep {
     return size > 0.0 ? (k.bound / size) * k.trial : Tangent{};
   }
 
-  /// The knots between which all functions are linear in x^2. Annuli that leave the contact lose
-  /// their energy.
+  /// Makes the knots between which all functions are linear in x^2. Annuli that leave the contact
+  /// lose their energy.
   void make_trial() {
     if (old_.size() == 0) push(knot(0.0, {}, 1.0));
     int i = stuck_;
@@ -135,7 +135,8 @@ class PartialSlipStep {
     return a.u + ((x - a.x) * (x + a.x) / ((b.x - a.x) * (b.x + a.x))) * (b.u - a.u);
   }
 
-  /// Loss of annuli that leave the contact during the step, while x^2 decreases uniformly.
+  /// Loss of annuli that leave the contact during the step, while the square of its edge decreases
+  /// linearly in time.
   void add_leaving_loss(const PartialSlipMemory::Point& a, const PartialSlipMemory::Point& b) {
     if (!tracks_energy_) return;
     const double fall = (old_edge_ - edge_) * (old_edge_ + edge_);
@@ -150,7 +151,7 @@ class PartialSlipStep {
     const auto [start_b, slide_b] = annulus(b.x, b.u);
     const Tangent end_a = start_a + slide_a;
     const Tangent end_b = start_b + slide_b;
-    if (end_a.dot(end_b) < 0.0) {  // they leave to opposite sides: treat each separately
+    if (end_a.dot(end_b) < 0.0) {  // the two ends leave in opposite directions: split where U is 0
       const double size_a = end_a.norm();
       const double s = size_a / (size_a + end_b.norm());
       const double x = std::sqrt(a.x * a.x + s * (b.x - a.x) * (b.x + a.x));
@@ -169,7 +170,7 @@ class PartialSlipStep {
     return size > 0.0 ? (1.0 / size) * v : Tangent{1.0, 0.0};
   }
 
-  /// Between two knots: parts inside the bound stay, the others are projected onto it.
+  /// Adds the piece between two knots: annuli outside the bound are projected onto it.
   void add_piece(const Knot& a, const Knot& b) {
     if (a.outside && b.outside && is_chord_of_bound(a, b)) {
       slip(a, b);
@@ -195,9 +196,9 @@ class PartialSlipStep {
     }
   }
 
-  /// Fraction of the distance in x^2, from a knot outside the bound to another, at which the bound
-  /// is met; 2 if it is not met. |U| - bound is convex there, so Newton's steps do not overshoot.
-  /// In one direction the first step is exact.
+  /// Fraction of the distance in x^2, from a knot outside the bound to another, where |U| reaches
+  /// the bound; 2 if it does not. |U| - bound is convex there, so Newton's method does not
+  /// overshoot. If U has one direction, the first Newton step is exact.
   double crossing(const Knot& out, const Knot& other) const {
     const Tangent span = other.trial - out.trial;
     const double fall = other.bound - out.bound;
@@ -237,7 +238,7 @@ class PartialSlipStep {
     const bool turns = std::abs(cross) > straight * std::abs(along) || along < 0.0;
     if (turns && depth < most_divisions && knots_left()) {
       const Knot middle = knot_at(a, b, 0.5);
-      // an annulus between them that is as close to its bound as they are
+      // an annulus in the middle with the mean |U| of both ends, as close to its bound as they are
       Knot annulus = middle;
       annulus.old = (0.5 * (a.old.norm() + b.old.norm())) * direction(middle.old);
       annulus.trial = annulus.old + annulus.fraction * slide_;
@@ -264,8 +265,8 @@ class PartialSlipStep {
     add(b.x, projected(b), true);
   }
 
-  /// Largest change of force by one chord in this step [N]. Over the slide that erases the memory,
-  /// in any number of steps, the changes sum to `chord` of the limit.
+  /// Largest change of force caused by one chord in this step [N]. During the slide that erases the
+  /// memory, the changes sum to `chord` times the limit, for any number of steps.
   double chord_tolerance() const {
     return chord * edge_ * std::min(slope_ * square_, slide_.norm());
   }
@@ -276,17 +277,19 @@ class PartialSlipStep {
     return cross * cross > straight * straight * (a.squared() * b.squared());
   }
 
-  /// Whether annuli between two knots slipped in directions between theirs. The chord itself lies
-  /// inside the bound, so its annuli would wrongly seem to stick.
+  /// Whether the piece is a chord of the bound: the annuli between two knots slipped, in directions
+  /// between those of the knots. The chord itself lies inside the bound, so without this test its
+  /// annuli would seem to stick.
   bool is_chord_of_bound(const Knot& a, const Knot& b) const {
-    constexpr double near = 0.8;  // chords are divided long before; after a kink they are not
+    constexpr double near = 0.8;  // cosine; slipping chords are divided at much smaller angles, a
+                                  // kink is not such a chord
     return differ_in_direction(a.old, b.old) &&
            a.old.dot(b.old) > near * std::sqrt(a.old.squared() * b.old.squared()) &&
            on_old_bound(a) && on_old_bound(b);
   }
 
-  /// Mean of U at both ends of the step, times the slip. It is the loss of annuli that slip during
-  /// the whole step, as on chords; energies then balance.
+  /// Mean of U at both ends of the step, times the slip: the loss of annuli that slip during the
+  /// whole step, as they do on a chord of the bound. With it the energies balance.
   static double loss_of_chord(const Knot& a, const Knot& b) {
     const auto mean = [](const Knot& k) { return 0.5 * (k.old + projected(k)); };
     const auto slipped = [](const Knot& k) { return k.trial - projected(k); };
@@ -296,8 +299,8 @@ class PartialSlipStep {
                              w.weight_ab * (mean(a).dot(slipped(b)) + mean(b).dot(slipped(a))));
   }
 
-  /// Whether a chord may be divided. Each remaining piece may add three points, and each half of a
-  /// chord under division one.
+  /// Whether the arrays have room to divide a chord. Each remaining piece may add three points, and
+  /// each half of a chord under division one.
   bool knots_left() const {
     return stuck_ + size_ + 3 * pieces_left_ + 2 * most_divisions < largest;
   }
@@ -310,8 +313,8 @@ class PartialSlipStep {
         size_ > 1 && differ_in_direction(point_[static_cast<std::size_t>(size_ - 2)].u, last().u);
   }
 
-  /// Adds a point inside the bound. Usually it does not look at earlier points; at least one must
-  /// exist.
+  /// Adds a point inside the bound after at least one other point. Usually it needs no comparison
+  /// with earlier points.
   void add_stuck(double x, const Tangent& u) {
     if (turns_ || !(x > last().x) || differ_in_direction(last().u, u)) {
       add(x, u, false);
@@ -327,7 +330,7 @@ class PartialSlipStep {
       return;
     }
     if (on_bound && follows_ && size_ > 1) {
-      // two pieces of the bound in one direction are one
+      // two adjacent pieces that follow the bound in one direction are one piece
       const Tangent& p = last().u;
       const Tangent& q = point_[static_cast<std::size_t>(size_ - 2)].u;
       const double cross = p.a * q.b - p.b * q.a;
@@ -340,7 +343,7 @@ class PartialSlipStep {
       }
     }
     if (size_ > 1) {
-      // a point where the direction changes by less than a chord may
+      // drop the last point if this changes the force by less than a chord is allowed to
       const PartialSlipMemory::Point& before = point_[static_cast<std::size_t>(size_ - 2)];
       if ((turns_ || differ_in_direction(last().u, u)) &&
           point_removal(before, last(), {x, u}).force() <= 0.25 * chord_tolerance()) {
@@ -355,7 +358,8 @@ class PartialSlipStep {
 
   PartialSlipMemory::Point& last() { return point_[static_cast<std::size_t>(size_ - 1)]; }
 
-  /// Removes points without effect. If too many remain, merges those that change the force least.
+  /// Writes the new profile. Removes points without effect; if too many remain, merges those that
+  /// change the force least.
   void store_memory() {
     double merged = old_.merged();
     // When the contact grows, its old edge lies on a line if the path is straight, and near one in
@@ -376,19 +380,19 @@ class PartialSlipStep {
     old_.append(point_.data(), size_);
   }
 
-  /// Extends the prefix, the first points, whose common motion is stored once. It gains the points
-  /// that would still stick after `steps` steps like this one. It needs a gain of `least` points,
-  /// because the change costs a pass over all points.
+  /// Extends the prefix: the first points, whose common motion is stored once. The prefix gains the
+  /// points that would still stick after `steps` steps like this one. The change costs a pass over
+  /// all points, so it needs a gain of at least `least` points.
   void update_prefix() {
     constexpr int least = 4;
-    constexpr int loose = 2;  // next to the others: they come and go with these
+    constexpr int loose = 2;  // neighbours of the changing points, which often change with them
     constexpr double steps = 32.0;
     const int prefix = old_.prefix().count;
     const int most = stuck_ - loose;
     if (most < prefix + least) return;
     const double wanted =
         steps * (std::abs(slide_.a) + std::abs(slide_.b) + std::abs(bound(0.0) - old_bound(0.0)));
-    double room = bound(0.0);  // of the points looked at
+    double room = bound(0.0);  // smallest distance to the bound of the visited points [m]
     const auto end_from = [&](int i, int last) {
       while (i < last) {
         const auto [x, u] = old_[i];
@@ -406,7 +410,7 @@ class PartialSlipStep {
     if (end >= least) old_.set_prefix(end, bound(0.0) - room, bound(old_[end - 1].x) - room);
   }
 
-  /// Replaces points that change the force least by chords. @return sum of the changes of force [N]
+  /// Merges points that change the force least into chords. @return sum of the force changes [N]
   double merge() {
     old_.flush_prefix();
     std::copy_backward(point_.begin(), point_.begin() + size_, point_.begin() + stuck_ + size_);
@@ -438,27 +442,27 @@ class PartialSlipStep {
 
   double limit() const { return slope_ * square_ * edge_ / 1.5; }  ///< mu F_N [N]
 
-  static constexpr double least_merged = 1e-9;  // of the force limit
-  static constexpr double straight = 1e-8;      // rad: a chord is 1e-17 short
+  static constexpr double least_merged = 1e-9;  // fraction of the force limit
+  static constexpr double straight = 1e-8;      // [rad]; such a chord is 1e-17 shorter than its arc
   static constexpr double chord = 1e-4;
   static constexpr int most_divisions = 8;  // largest number of divisions of a chord
   static constexpr int largest = 4 * PartialSlipMemory::capacity;
 
   double edge_;    // 8 G* a now
   double square_;  // its square
-  double slope_;   // bound on |U| = slope_ (edge_^2 - x^2)
+  double slope_;   // |U| <= slope_ (edge_^2 - x^2)
   Tangent slide_;
-  PartialSlipMemory& old_;  // until store()
+  PartialSlipMemory& old_;  // memory before the step, overwritten by store()
   double old_edge_;
   bool tracks_energy_;  // whether energies are requested
-  double smallest_;     // rounding of the largest bound
+  double smallest_;     // rounding error of the largest bound [m]
   double loss_ = 0.0;
   bool slipping_ = false;
   bool follows_ = false;  // the last piece follows the bound
   bool turns_ = false;    // U changes direction along the last piece
-  int stuck_ = 0;         // points that only move with the slide; the others follow here
+  int stuck_ = 0;         // points that only move with the slide; point_ holds the others
   int knots_ = 0;
-  int pieces_left_ = 0;  // including the current one
+  int pieces_left_ = 0;  // number of pieces to add, including the current one
   int size_ = 0;
   std::array<Knot, static_cast<std::size_t>(PartialSlipMemory::capacity) + 2> knot_;
   std::array<PartialSlipMemory::Point, static_cast<std::size_t>(largest)> point_;
@@ -466,7 +470,9 @@ class PartialSlipStep {
 
 }  // namespace detail
 
-/// One step of Hertz's contact with partial slip, along a straight path. Slip starts at the rim
+/// One step of Hertz's contact with partial slip, along a straight path. Slip starts at the rim,
+/// before the contact slides as a whole (Cattaneo 1938; Mindlin 1949; Mindlin and Deresiewicz
+/// 1953).
 /// before the contact slides as a whole (Cattaneo 1938; Mindlin 1949; Mindlin and Deresiewicz
 /// 1953).
 ///
@@ -484,40 +490,39 @@ class PartialSlipStep {
 ///    friction    |U(x)| <= mu (w(k) - w(x)) = 3/2 mu F_N/k^3 (k^2 - x^2)
 ///    stick       dU = slide of the bodies
 ///
-/// So the contact is a row of parallel springs dx, each with its own Coulomb limit. This is the row
-/// of the method of dimensionality reduction (Popov and Hess, 2015). The memory is U(x). Its slope
+/// So the contact is a row of parallel springs dx, each with its own Coulomb limit, the row of the
+/// method of dimensionality reduction (Popov and Hess, 2015). The memory is U(x). Its slope
 /// s is the memory diagram of Aleshin, Bou Matar and Van Den Abeele (Int. J. Solids Struct. 68,
 /// 2015). Under Cattaneo's load U = slide inside the stick radius c and U follows the bound
 /// outside, whence
 ///
 ///    slide = 3 mu F_N/(16 G* a) [1 - (1 - T/(mu F_N))^(2/3)].
 ///
-/// Along a straight path of slide and approach the bound moves uniformly. Each annulus ends at U +
-/// slide or, if that exceeds the bound, on the bound. So the step is exact for any length and any
-/// state, loss of annuli included. U stays linear in x^2 between points. A reversal adds a point, a
-/// closed loop removes it. A path that bends while the load grows adds one point per step. Beyond
-/// PartialSlipMemory::capacity, points that change the force least are replaced by chords; merged()
-/// sums these changes. Curved paths are approximated by chords, with an error of second order in
-/// the step.
+/// During a step with straight slide and approach, the bound moves uniformly. Each annulus ends at
+/// U + slide or, if that exceeds the bound, on the bound. So the step is exact for any length and
+/// any state, loss of annuli included. U stays linear in x^2 between points. A reversal adds a
+/// point, a closed loop removes it. A curved path under growing load adds one point per step.
+/// Beyond PartialSlipMemory::capacity, points that change the force least are replaced by chords;
+/// merged() sums these changes. Curved paths are approximated by straight steps, with an error of
+/// second order in the step.
 ///
-/// Energy. The loss of a slipping annulus is its bound times its slip, integrated over the step.
-/// The integral is over t and, with three Gauss points, over x: exact under constant load. No term
-/// is negative. The work of T along the path minus the change of E is the loss. An integrator that
-/// uses the mean of T at both ends differs from that work at second order, as it does for the
-/// normal force.
+/// Energy. The loss of a slipping annulus is its bound times its slip, integrated over time and,
+/// with three Gauss points, over x: exact under constant load. No term is negative. The work of T
+/// along the path equals the change of E plus the loss. An integrator that uses the mean of T at
+/// both ends of the step differs from that work at second order, as it does for the normal force.
 ///
-/// In the plane U and slide are vectors; a slipping annulus returns to its bound radially. Then the
-/// row of springs approximates the half-space, because its annuli interact perpendicular to the
-/// slide. Chords approximate U(x) of a piece that slips in a changing direction. Over the slide
-/// that erases the memory, each chord changes the force by at most 1e-4 of the limit. The loss of
-/// such a piece is the mean of U times its slip, which is nearly always positive; a negative value
-/// counts as zero.
+/// In the plane, U and slide are vectors; a slipping annulus returns to its bound radially. The row
+/// of springs then only approximates the half-space, whose annuli interact perpendicular to the
+/// slide. If the slip direction of a piece changes, chords approximate U(x). During the slide that
+/// erases the memory, each chord changes the force by at most 1e-4 of the limit. The loss of such a
+/// piece is the mean of U times its slip. A rare negative value counts as zero.
 ///
-/// @param stiffness k = 8 G* a [N/m] at the end of the step, of the contact radius; <= 0: the
+/// @param stiffness k = 8 G* a [N/m], a the contact radius at the end of the step; <= 0: the
 ///        contact is lost
-/// @param limit mu F_N [N]; <= 0: no friction. If F_N includes damping, all pressures are scaled.
+/// @param limit mu F_N [N]; <= 0: no friction. If F_N includes viscous damping, all pressures are
+///        scaled by the same factor.
 /// @param slide of body 1 relative to body 2 in this step [m]
-/// @param memory of this contact; updated. If it does not track energy, both energies are 0.
+/// @param memory of this contact; updated. If tracks_energy() is false, both energies are 0.
 /// Limits: identical materials (or both incompressible), else normal and tangential tractions are
 /// coupled; half-space, a << R; quasi-static; mu constant over the area. The small slip
 /// perpendicular to the slide, caused by Poisson's ratio, is neglected, as in all these sources.

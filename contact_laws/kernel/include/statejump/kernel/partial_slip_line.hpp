@@ -12,15 +12,16 @@ namespace statejump::kernel {
 /// Force of one partial_slip_step() in one direction, with derivatives. Implicit solvers evaluate
 /// it for many end points before they accept a step.
 struct PartialSlipLine {
-  double force = 0.0;         ///< of the contact, positive along the slide that causes it [N]
-  double by_slide = 0.0;      ///< [N/m], from 0 (all annuli slip) to the stiffness (none slips)
-  double by_stiffness = 0.0;  ///< by 8 G* a at a fixed limit [m]
-  double by_limit = 0.0;      ///< by mu F_N at a fixed stiffness [-]
-  double centre = 0.0;        ///< U of the innermost annulus if it stuck [m]
+  double force = 0.0;         ///< force on body 2 along the slide [N]
+  double by_slide = 0.0;      ///< derivative by the slide [N/m], from 0 (all annuli slip) to the
+                              ///< stiffness (none slips)
+  double by_stiffness = 0.0;  ///< derivative by 8 G* a at a fixed limit [m]
+  double by_limit = 0.0;      ///< derivative by mu F_N at a fixed stiffness [-]
+  double centre = 0.0;        ///< U of the innermost annulus, the last one to slip, if it stuck [m]
   double bound =
       0.0;  ///< bound of U there, the last annulus to slip, in the direction of `centre` [m]
-  /// Numbers of pieces that stick and that slip in either direction. The law is smooth while these
-  /// numbers do not change.
+  /// Numbers of sticking pieces and of pieces slipping in either direction. The law is smooth as
+  /// long as these numbers do not change.
   int stuck = 0, plus = 0, minus = 0;
 };
 
@@ -30,10 +31,10 @@ namespace detail {
 template <class Displacement>
 struct SlipKnot {
   double x;
-  Displacement trial;  ///< U if the ring sticks [m]
+  Displacement trial;  ///< U if the annulus sticks [m]
   double bound;        ///< on |U| [m]
-  double fraction;     ///< fraction of the slide in which the annulus takes part
-  double by_growth;    ///< derivative of that fraction by the edge of the contact [m/N]
+  double fraction;     ///< fraction of the slide during which the annulus is in contact
+  double by_growth;    ///< derivative of that fraction by the stiffness of the contact's edge [m/N]
 
   SlipKnot towards(const SlipKnot& b, double s) const {
     const auto mix = [s](double from, double to) { return from + s * (to - from); };
@@ -43,9 +44,9 @@ struct SlipKnot {
 };
 using LineKnot = SlipKnot<double>;
 
-/// Passes the pieces at the end of a step to a sum, from the centre to the edge.
-/// @param of returns the displacement of a memory point in the considered directions
-/// @returns the knot at the centre
+/// Passes the pieces at the end of a step to `sum`, from the centre to the edge.
+/// @param of returns the displacement of a memory point, as a Displacement
+/// @return the knot at the centre
 template <class Displacement, class Of, class Sum>
 SlipKnot<Displacement> add_pieces(double edge, double slope, const Displacement& slide,
                                   const PartialSlipMemory& memory, Of&& of, Sum& sum) {
@@ -89,7 +90,7 @@ class LineSum {
       add(a, b, 0.0);
       return;
     }
-    // cuts where the trial displacement meets either bound
+    // cut the piece where the trial displacement reaches either bound
     std::array<double, 4> cut{0.0, 1.0, 1.0, 1.0};
     std::size_t cuts = 1;
     for (const double sign : {1.0, -1.0}) {
@@ -119,7 +120,7 @@ class LineSum {
  private:
   bool sticks(const LineKnot& k) const { return std::abs(k.trial) <= k.bound + smallest_; }
 
-  /// @param sense slip direction of the piece; 0: it sticks
+  /// @param sense slip direction of the piece, +1 or -1; 0: it sticks
   void add(const LineKnot& a, const LineKnot& b, double sense) {
     const ProductWeights w(a.x, b.x);
     const auto integral = [&](double at_a, double at_b) {
@@ -147,19 +148,19 @@ class LineSum {
 }  // namespace detail
 
 /// Force and derivatives at the end of a step along one direction. The force equals that of
-/// partial_slip_step() to rounding, apart from merged points. At a bound just met, the derivatives
-/// are those of a sticking annulus. If the contact neither grows nor shrinks, they are those of a
-/// shrinking contact.
+/// partial_slip_step() to rounding, apart from merged points. An annulus that just reaches its
+/// bound counts as sticking in the derivatives. A contact that neither grows nor shrinks has the
+/// derivatives of a shrinking one.
 ///
 /// Derivation. T = integral of U dx over the annuli. U = start + slide where an annulus sticks, and
 /// U is the bound 3/2 limit/k^3 (k^2 - x^2) where it slips. U is continuous and 0 at the edge, so
-/// the derivative of T contains only dU, no boundary terms. Annuli by which the contact grows from
-/// an edge e take part in (k^2 - x^2)/(k^2 - e^2) of the slide.
+/// the derivative of T contains only dU, no boundary terms. If the contact grows from an edge e, a
+/// new annulus x takes part in the fraction (k^2 - x^2)/(k^2 - e^2) of the slide.
 ///
 /// @param stiffness 8 G* a at the end of the step [N/m]; <= 0: no contact, all results are 0
 /// @param limit mu F_N there [N]; <= 0: all results are 0
 /// @param slide of body 1 relative to body 2 in the step, along the first tangent [m]
-/// @param memory at its start; slides across are ignored
+/// @param memory at the start of the step; displacements perpendicular to the slide are ignored
 inline PartialSlipLine partial_slip_line(double stiffness, double limit, double slide,
                                          const PartialSlipMemory& memory) {
   PartialSlipLine line;

@@ -9,17 +9,17 @@
 
 namespace statejump::kernel::detail {
 
-/// A slip annulus in a step, along its slip direction.
+/// Quantities of one annulus during a step, as components along its slip direction.
 struct SlipAnnulus {
   double start;          ///< U before the step [m]
-  double slide;          ///< of the two bodies while the annulus touches [m]
-  double before, after;  ///< bounds on U when the annulus begins to touch and at the end [m]
+  double slide;          ///< of the two bodies while the annulus is in contact [m]
+  double before, after;  ///< bounds on U at first contact and at the end of the step [m]
 
   double change() const { return after - before; }
-  double stick() const { return std::max(0.0, before - start); }  ///< until U meets the bound
-  double speed() const { return slide - change(); }               ///< towards the bound
+  double stick() const { return std::max(0.0, before - start); }  ///< slide until slip
+  double speed() const { return slide - change(); }  ///< rate at which U approaches the bound
   double slip() const { return std::max(0.0, start + slide - after); }
-  /// Loss per unit of x: the mean bound during slip, times the slip.
+  /// Loss per unit of x: slip times the mean of the bound during the slip.
   double loss() const {
     const double sticks = stick();
     const double met = sticks > 0.0 ? before + change() * std::min(1.0, sticks / speed()) : before;
@@ -31,9 +31,9 @@ struct SlipAnnulus {
 inline constexpr std::array<double, 3> gauss_point{0.1127016653792583, 0.5, 0.8872983346207417};
 inline constexpr std::array<double, 3> gauss_weight{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
 
-/// Loss of a piece that slips in one direction. The members of SlipAnnulus are linear in x^2
-/// between the ends. The loss is then a polynomial, unless sticking annuli first meet a moving
-/// bound.
+/// Loss of a piece that slips in one direction [J]. The members of SlipAnnulus are linear in x^2
+/// between the ends. The loss is then a polynomial and the Gauss rule exact, except if annuli stick
+/// until they reach a moving bound.
 inline double loss(double xa, const SlipAnnulus& a, double xb, const SlipAnnulus& b) {
   const bool moves = a.change() != 0.0 || b.change() != 0.0;
   if (!moves || (a.stick() == 0.0 && b.stick() == 0.0)) {

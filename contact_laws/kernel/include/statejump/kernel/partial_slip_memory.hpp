@@ -26,24 +26,24 @@ struct Tangent {
 /// linear in x^2; see partial_slip_step().
 ///
 /// In a sticking contact nearly all annuli move equally. The first points may therefore form a
-/// ShiftedPrefix: they keep their written values, and their common shift, force and energy are
-/// stored beside them. A step then costs no pass over these points.
+/// ShiftedPrefix: the stored values of its points are not updated; their common shift, force and
+/// energy are stored separately. A step then needs no pass over these points.
 class PartialSlipMemory {
  public:
   struct Point {
-    double x;   ///< 8 G* r [N/m], r the radius of the ring
-    Tangent u;  ///< elastic displacement of that ring [m]
+    double x;   ///< 8 G* r [N/m], r the radius of the annulus
+    Tangent u;  ///< elastic displacement of that annulus [m]
   };
-  /// Sums over the first points while they only move by a common shift.
+  /// Data of the first points as long as they only move by a common shift.
   struct ShiftedPrefix {
-    int count = 0;           ///< number of points; 0: none, and no other member is read
-    Tangent shift{};         ///< common displacement since they were written [m]
-    Tangent force{};         ///< integral of U over x between them, as written [N]
-    double squares = 0.0;    ///< integral of U^2 over x, as written [J]
-    double at_centre = 0.0;  ///< bound of the written |U|, linear in x^2, at x = 0 [m]
-    double at_last = 0.0;    ///< the same bound at the last point of the prefix [m]
+    int count = 0;           ///< number of points; 0: none, the other members are not used
+    Tangent shift{};         ///< displacement common to all points since they were stored [m]
+    Tangent force{};         ///< integral of U over x between them, with the stored U [N]
+    double squares = 0.0;    ///< integral of U^2 over x, with the stored U [J]
+    double at_centre = 0.0;  ///< upper bound of the stored |U|, linear in x^2: value at x = 0 [m]
+    double at_last = 0.0;    ///< value of that upper bound at the last point of the prefix [m]
   };
-  /// Largest number of points. A path of straight parts with nested reversals needs two per
+  /// Largest number of points. A path of straight parts with nested reversals needs two points per
   /// reversal. A smooth curve under growing load is approximated by chords, see merged().
   static constexpr int capacity = 48;
 
@@ -59,18 +59,18 @@ class PartialSlipMemory {
     const Tangent u{point[1], point[2]};
     return {point[0], i < prefix_.count ? u + prefix_.shift : u};
   }
-  /// Stiffness 8 G* a [N/m] of the contact that left this memory; 0: none.
+  /// Stiffness 8 G* a [N/m] of the contact at its last step; 0: no contact.
   double edge() const { return points_.empty() ? 0.0 : points_.back()[0]; }
-  /// Slope of the bound on |U| over x^2 [m^3/N^2].
+  /// Slope of the bound on |U| with respect to x^2 [m^3/N^2].
   double slope() const { return slope_; }
-  /// Sum of the absolute changes of force by merged points since the contact began [N]: a bound on
-  /// the error of the force.
+  /// Sum of the absolute force changes by merged points since the contact began [N]: an upper bound
+  /// on the error of the force.
   double merged() const { return merged_; }
   const ShiftedPrefix& prefix() const { return prefix_; }
-  /// Whether steps compute energies, which takes a third of their time.
+  /// Whether steps compute energies; they take a third of the time of a step.
   bool tracks_energy() const { return tracks_energy_; }
   void set_tracks_energy(bool tracks_energy) { tracks_energy_ = tracks_energy; }
-  /// x [N/m] and both components of U [m], with the written values of the prefix.
+  /// x [N/m] and both components of U [m]; points of the prefix are without its shift.
   const std::vector<Vector3>& points() const { return points_; }
   /// Moves the points out; the memory is then empty.
   std::vector<Vector3> take_points() {
@@ -79,7 +79,7 @@ class PartialSlipMemory {
   }
 
   void clear() { begin(0.0, 0.0); }
-  /// Starts again without points.
+  /// Removes all points and starts again.
   void begin(double slope, double merged) {
     points_.clear();
     slope_ = slope;
@@ -104,8 +104,8 @@ class PartialSlipMemory {
     merged_ = merged;
   }
 
-  /// Whether the prefix stays below a bound when it moves by a slide. The bound is linear in x^2,
-  /// with the given values at x = 0 and at the last point of the prefix [m].
+  /// Whether all points of the prefix stay inside a bound after a slide. The bound is linear in
+  /// x^2, with the given values at x = 0 and at the last point of the prefix [m].
   bool prefix_fits(const Tangent& slide, double at_centre, double at_last) const {
     const double room = std::min(at_centre - prefix_.at_centre, at_last - prefix_.at_last);
     return prefix_.count > 0 && room >= 0.0 && (prefix_.shift + slide).squared() <= room * room;
@@ -115,8 +115,8 @@ class PartialSlipMemory {
     move(0, prefix_.count, prefix_.shift);
     prefix_.count = 0;
   }
-  /// Makes the first points the prefix, which must be empty.
-  /// @param at_centre, at_last bound of |U|, linear in x^2 [m]
+  /// Makes the first `count` points the prefix. The prefix must be empty.
+  /// @param at_centre, at_last upper bound of |U|, linear in x^2 [m]
   void set_prefix(int count, double at_centre, double at_last);
 
  private:
@@ -136,7 +136,7 @@ class PartialSlipMemory {
 
 /// Result of one step of the contact with partial slip.
 struct PartialSlipResponse {
-  Tangent force;       ///< of the contact, positive along the slide that causes it [N]
+  Tangent force;       ///< on body 2, along the slide that causes it [N]
   double elastic;      ///< energy of the tangential traction [J], >= 0
   double dissipation;  ///< friction loss of this step [J], >= 0
   bool slipping;       ///< no annulus sticks
@@ -144,9 +144,9 @@ struct PartialSlipResponse {
 
 namespace detail {
 
-/// Weights of the integral over dx of f g, where f and g are linear in x^2, from xa to xb.
+/// Weights of the integral of f g over x from xa to xb, where f and g are linear in x^2.
 struct ProductWeights {
-  double weight_aa, weight_ab, weight_bb;  ///< of f_a g_a; of f_a g_b and f_b g_a; of f_b g_b
+  double weight_aa, weight_ab, weight_bb;  ///< for f_a g_a; for f_a g_b and f_b g_a; for f_b g_b
   ProductWeights(double xa, double xb) {
     const double d = xb - xa;
     const double q = d / (xb + xa);
@@ -157,27 +157,27 @@ struct ProductWeights {
   }
 };
 
-/// Effect of the removal of a point.
+/// Effect of removing a point b between its neighbours a and c.
 struct PointRemoval {
-  double squared_offset;  ///< of the point from the chord of its neighbours [m^2]
+  double squared_offset;  ///< squared distance of the point from the chord a c [m^2]
   double x_a, x_b, x_c;   ///< of the point b and its neighbours [N/m]
 
-  /// Change of force [N]: the triangle's height times the mean of its base over x, with the weights
+  /// Change of force [N]: the offset times the mean base of the triangle over x, with the weights
   /// of the two pieces at b.
   double force() const {
     const double base = (x_b - x_a) * (2.0 * x_b + x_a) / (3.0 * (x_b + x_a)) +
                         (x_c - x_b) * (2.0 * x_c + x_b) / (3.0 * (x_c + x_b));
     return std::sqrt(squared_offset) * std::abs(base);
   }
-  /// Whether force() exceeds a limit >= 0. Avoids its evaluation mostly, because the base is at
-  /// least half the distance of the neighbours.
+  /// Whether force() exceeds a limit >= 0. Rarely evaluates force(), because the base is at least
+  /// half the distance of the neighbours.
   bool exceeds(double limit) const {
     const double half = 0.5 * (1.0 - 1e-12) * (x_c - x_a);
     return squared_offset * (half * half) > limit * limit || force() > limit;
   }
 };
 
-/// Effect of the removal of the point b between a and c.
+/// Effect of removing the point b between a and c.
 inline PointRemoval point_removal(const PartialSlipMemory::Point& a,
                                   const PartialSlipMemory::Point& b,
                                   const PartialSlipMemory::Point& c) {
@@ -191,10 +191,10 @@ struct SlipSums {
   Tangent force{};
   double squares = 0.0;
 
-  /// With theta from 0 to 1, linear in x^2, a piece is U_a + theta (U_b - U_a). The integrals of
-  /// theta and theta^2 over dx follow from ProductWeights: d (1/2 - q/6) and d (1/3 - q/6 +
+  /// On a piece U = U_a + theta (U_b - U_a), with theta from 0 to 1, linear in x^2. The integrals
+  /// of theta and theta^2 over dx follow from ProductWeights: d (1/2 - q/6) and d (1/3 - q/6 +
   /// q^2/30).
-  /// @tparam both whether the squares are computed, too
+  /// @tparam both whether to compute the squares, too
   template <bool both>
   void add(const PartialSlipMemory::Point& a, const PartialSlipMemory::Point& b) {
     const double d = b.x - a.x;
@@ -236,7 +236,7 @@ inline double elastic(const SlipSums& sums) {
   return std::max(0.0, 0.5 * sums.squares);
 }
 
-/// Force and energy of a memory, with the loss of the step.
+/// Force, energy and the given loss of a memory after a step.
 inline PartialSlipResponse response_of(const PartialSlipMemory& memory, double loss,
                                        bool slipping) {
   if (!memory.tracks_energy()) return {sums_of<false>(memory).force, 0.0, 0.0, slipping};

@@ -13,14 +13,16 @@ namespace statejump::kernel {
 /// Force of one partial_slip_step() in the plane, with derivatives. Implicit solvers evaluate it
 /// for many end points before they accept a step.
 struct PartialSlipPlane {
-  Tangent force{};           ///< of the contact, positive along the slide that causes it [N]
-  Tangent by_slide_a{};      ///< by the slide along the first tangent [N/m]; symmetric
-  Tangent by_slide_b{};      ///< by the slide along the second tangent
-  Tangent by_stiffness{};    ///< by 8 G* a at a fixed limit [m]
-  Tangent by_limit{};        ///< by mu F_N at a fixed stiffness [-]
-  Tangent centre{};          ///< U of the innermost annulus if it stuck [m]
-  double bound = 0.0;        ///< bound of |U| there, the last annulus to slip [m]
-  int stuck = 0, slips = 0;  ///< numbers of pieces: the law is smooth while these do not change
+  Tangent force{};         ///< force on body 2 along the slide [N]
+  Tangent by_slide_a{};    ///< derivative by the slide along the first tangent [N/m]; the matrix is
+                           ///< symmetric
+  Tangent by_slide_b{};    ///< derivative by the slide along the second tangent [N/m]
+  Tangent by_stiffness{};  ///< derivative by 8 G* a at a fixed limit [m]
+  Tangent by_limit{};      ///< derivative by mu F_N at a fixed stiffness [-]
+  Tangent centre{};        ///< U of the innermost annulus, the last one to slip, if it stuck [m]
+  double bound = 0.0;      ///< bound of |U| at the centre [m]
+  int stuck = 0, slips = 0;  ///< numbers of sticking and slipping pieces: the law is smooth as long
+                             ///< as they do not change
 };
 
 namespace detail {
@@ -39,7 +41,7 @@ class PlaneSum {
       stick(a, b);
       return;
     }
-    // Where |U| meets its bound between a and b: q0 + 2 q1 s + q2 s^2 = 0.
+    // |U| equals its bound between a and b where q0 + 2 q1 s + q2 s^2 = 0.
     const Tangent span = b.trial - a.trial;
     const double fall = b.bound - a.bound;
     const double q0 = a.trial.squared() - a.bound * a.bound;
@@ -93,8 +95,8 @@ class PlaneSum {
     by_edge_ = by_edge_ + (at_a * a.by_growth + at_b * b.by_growth) * slide_;
   }
 
-  /// An annulus ends at bound U/|U|, which is linear only along U. Gauss points in each of `parts`
-  /// make the sum continuous; it is exact if the direction is constant.
+  /// Adds a piece that slips. Each annulus ends at bound U/|U|. Gauss points in each of `parts`
+  /// subintervals integrate it: the sum is continuous, and exact if the direction is constant.
   void slip(const PlaneKnot& a, const PlaneKnot& b) {
     constexpr int parts = 4;
     ++slips_;
@@ -114,7 +116,7 @@ class PlaneSum {
     force_ = force_ + (weight * k.bound) * axis;
     by_slope_ = by_slope_ + (weight * k.bound / slope_) * axis;
     by_edge_ = by_edge_ + (weight * slope_ * 2.0 * edge_) * axis;
-    // Perpendicular to itself, U only rotates.
+    // A change of U perpendicular to U only rotates the force.
     const double turns = weight * k.bound / size;
     const Tangent across{-axis.b, axis.a};
     by_slide_[0] += turns * k.fraction * across.a * across.a;
@@ -133,10 +135,10 @@ class PlaneSum {
 
 }  // namespace detail
 
-/// Force and derivatives at the end of a step in the plane. The force differs from
-/// partial_slip_step() by the approximation there. Pieces that slip while their direction changes
-/// are chords there (1e-4 of the limit), so that force has jumps of this size; here they are
-/// integrals. Along one direction the result is that of partial_slip_line().
+/// Force and derivatives at the end of a step in the plane. If the slip direction of a piece
+/// changes, partial_slip_step() approximates it by chords (1e-4 of the limit) and its force has
+/// jumps of that size; here the piece is integrated. Along one direction the result is that of
+/// partial_slip_line().
 /// @param stiffness, limit, memory as in partial_slip_line()
 /// @param slide of body 1 relative to body 2 in the step [m]
 inline PartialSlipPlane partial_slip_plane(double stiffness, double limit, const Tangent& slide,

@@ -17,13 +17,13 @@ class OutOfRange : public std::invalid_argument {
       : OutOfRange(std::move(item), std::move(name), true, value, digits(value), std::move(range)) {
   }
 
-  /// For an argument with one of several names as its value.
+  /// For an argument whose value is one of several names.
   OutOfRange(std::string name, const std::string& value, std::string range)
       : OutOfRange("", std::move(name), false, 0.0, value, std::move(range)) {}
 
   const std::string& item() const { return item_; }
   const std::string& name() const { return name_; }
-  bool is_number() const { return is_number_; }        ///< else a text
+  bool is_number() const { return is_number_; }        ///< false: the value is a text
   double number() const { return number_; }            ///< 0 for a text
   const std::string& value() const { return value_; }  ///< the text, or the number with 9 digits
   const std::string& range() const { return range_; }

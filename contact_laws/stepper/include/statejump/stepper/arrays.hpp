@@ -14,16 +14,17 @@
 
 namespace statejump::stepper {
 
-/// Thermal strain shared by all bodies that have it now and that the same engines set.
+/// Thermal strain shared by bodies that have the same strain now and that the same engines set.
 struct Strain {
   double strain = 0;  ///< [-]
-  double rate = 0;    ///< of the last step [1/s]
+  double rate = 0;    ///< rate over the last step [1/s]
 };
 
-/// Sets strains to expansion times temperature change; corresponds to a ThermalExpansionEngine.
+/// Sets thermal strains to expansion coefficient times temperature change, like a
+/// ThermalExpansionEngine.
 struct Heater {
   struct Target {
-    std::size_t strain;  ///< index in Scene::strains
+    std::size_t strain;  ///< index of the strain in Scene::strains
     double expansion;    ///< [1/K]
   };
   std::size_t program;  ///< index in Scene::programs
@@ -32,20 +33,20 @@ struct Heater {
 
 enum class Joint : unsigned char { revolute, ball, plane, outer_balls, bore };
 
-/// Two bodies that touch or may touch.
+/// Pair of bodies that touch or may touch.
 struct Contact {
   int body_1, body_2;
-  double length_1, length_2;              ///< radii, or pad and distance of the face [m]
-  std::size_t strain_1, strain_2;         ///< indices in Scene::strains
-  Vector3 face_normal = Vector3::Zero();  ///< in the axes of body 2; for a plane
+  double length_1, length_2;       ///< two radii; for a plane, pad radius and face distance [m]
+  std::size_t strain_1, strain_2;  ///< indices in Scene::strains
+  Vector3 face_normal = Vector3::Zero();  ///< for a plane: normal in the axes of body 2
   Joint joint;
-  std::size_t bore = 0;  ///< for a meshed bore: index in Scene::bores, which has its data
+  std::size_t bore = 0;  ///< for a meshed bore: index of its data in Scene::bores
   bool real = false;     ///< has geometry and physics
-  bool renewed = false;  ///< physics created since the arrays were filled
-  long made = -1;        ///< step in which it became real
-  bool rotates = true;   ///< one of the two bodies rotates, or may
-  bool tilted = false;   ///< if no body rotates: the axes are tilted by more than is allowed
-  Vector3 axis = Vector3::Zero();  ///< if no body rotates: axis of body 2
+  bool renewed = false;  ///< its physics was created after the arrays were filled
+  long made = -1;        ///< number of the step in which it became real; -1: not yet
+  bool rotates = true;   ///< one of the two bodies rotates or can rotate
+  bool tilted = false;   ///< only if neither body rotates: axes tilted by more than allowed
+  Vector3 axis = Vector3::Zero();  ///< only if neither body rotates: axis of body 2
   ContactGeometry geometry;
   ContactPhysics physics;
   double stable_stiffness = 0;  ///< stable_stiffness() of the physics [N/m]
@@ -71,14 +72,14 @@ struct Guide {
   Vector3 normal;
 };
 
-/// Links of one engine. If any of them rotates its tip, the engine sums the forces of all bodies
-/// before it adds its own.
+/// Links of one engine. If a link rotates its tip, the engine sums the forces of all bodies
+/// before it adds its own forces.
 struct Links {
   std::vector<LinkEntry> links;
   bool needs_moments = false;
 };
 
-/// Stages that add forces after the contacts, in the order of the engines.
+/// Stages that add forces after the contacts, one per engine, in the order of the engines.
 using Stage =
     std::variant<Links, std::vector<TorsionEntry>, std::vector<Prismatic>, std::vector<Guide>>;
 
@@ -91,7 +92,7 @@ struct Energies {
   double numerical_damping = 0, gravity_work = 0;
 };
 
-/// Energies stored at one step [J].
+/// Elastic energies stored in the scene at one step [J].
 struct StoredEnergies {
   double joint = 0, link = 0, torsion = 0, prismatic = 0;
 };
@@ -124,7 +125,7 @@ const std::vector<Entry>& entries(const std::vector<Entry>& stage) {
 
 inline Vector3 axis_of(const Quaternion& q) {
   // Local z axis in the world: orientation * (0, 0, 1) without the products with zero. Adding +0
-  // removes a negative zero, so any rotation about z gives the axis the same bits.
+  // removes a negative zero, so the axis has the same bits after any rotation about z.
   return {2 * (q.x() * q.z() + q.w() * q.y()) + 0.0, 2 * (q.y() * q.z() - q.w() * q.x()) + 0.0,
           1 - 2 * (q.x() * q.x() + q.y() * q.y())};
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contacts and bodies of a scene in batches of four, where possible. Between steps, the arrays of
-// the scene hold the motion of every body that other code reads. Contact states, and the motion of
-// bodies with a single contact, stay in the batches until unload().
+// Steps the contacts and bodies of a scene in SIMD batches of four, where possible. Between steps,
+// the arrays of the scene hold the motion of every body that other code reads. Contact states, and
+// the motion of bodies with a single contact, stay in the batches until unload().
 #pragma once
 
 #include <algorithm>
@@ -37,14 +37,14 @@ class Batches {
   explicit Batches(const BatchedArrays& arrays) : arrays_(arrays) {}
 
   /// @param hertz_mindlin whether all contacts have the Hertz–Mindlin law
-  /// @param nothing_between whether the integrator is the first to sum the forces
+  /// @param nothing_between whether the integrator is the first engine to sum the forces
   void fill(bool hertz_mindlin, bool nothing_between);
 
-  /// Whether fill() found anything to batch.
+  /// Whether fill() found contacts or bodies for a batch.
   bool useful() const { return useful_; }
 
   /// Steps all contacts in their order.
-  /// @param one steps a contact by its index; false if the step is impossible
+  /// @param one function that steps a single contact, by index; it returns false if it cannot
   template <class One>
   bool step_contacts(const One& one) {
     if (arrays_.uses_avx2) {
@@ -53,20 +53,20 @@ class Batches {
     return arrays_.tracks_energy ? step_all<true>(one) : step_all<false>(one);
   }
 
-  /// Moves the bodies of batches. @return false if one has left its bound
+  /// Moves the bodies in batches. @return false if a body has left its collider bound
   bool move() { return arrays_.uses_avx2 ? move_with_avx2() : move_all(); }
 
-  /// Indices of the bodies that are not moved here, in their order.
+  /// Indices of the bodies outside the batches, in their order.
   const std::vector<std::size_t>& others() const { return others_; }
 
   /// Writes the contact states and the body motions back to the arrays.
   void unload();
 
  private:
-  // Consecutive contacts: a batch, or contacts stepped singly.
+  // Consecutive contacts that form one batch or are stepped one by one.
   struct ContactRun {
     bool is_batch;
-    std::size_t first, count;  // for a batch its index in contacts_
+    std::size_t first, count;  // if is_batch, `first` is the index in contacts_
   };
 
   static bool allows(const Contact& contact) {
@@ -74,10 +74,10 @@ class Batches {
            contact.joint != Joint::bore && contact.physics.slipMemory.empty() &&
            !(contact.joint == Joint::revolute && contact.tilted);
   }
-  // The contacts of a batch and, if they are in no other interaction, their first bodies.
+  // Contacts of a batch. A mover exists if their first bodies have no other interaction.
   struct Batch {
     ContactLanes contacts;
-    std::size_t mover;  // index in movers_, or none
+    std::size_t mover;  // index in movers_, or `none`
   };
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
@@ -143,7 +143,7 @@ class Batches {
   BatchedArrays arrays_;
   std::vector<Batch> contacts_;
   std::vector<ContactRun> runs_;
-  std::vector<BodyLanes> movers_, bodies_;  // bodies moved with their contact, and others
+  std::vector<BodyLanes> movers_, bodies_;  // bodies moved with their contact; other bodies
   std::vector<std::size_t> others_;
   bool useful_ = false;
 };
@@ -167,7 +167,8 @@ inline void Batches::fill(bool hertz_mindlin, bool nothing_between) {
       ++first;
     }
   }
-  // Motion energies are summed body by body; they are absent without damping and gravity.
+  // Energies of the motion are summed body by body, so movers require that damping and gravity are
+  // zero or that energies are off.
   const bool is_simple =
       nothing_between &&
       (!arrays_.tracks_energy || (arrays_.newton.damping == 0 && arrays_.newton.gravity.isZero(0)));
@@ -208,7 +209,7 @@ inline void Batches::fill_movers() {
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       bodies.load(lane, contacts.body_1[lane], arrays_.bodies[contacts.body_1[lane]],
                   arrays_.newton);
-      if (lane >= contacts.count) bodies.bounded[lane] = 0;  // it moves without its contact
+      if (lane >= contacts.count) bodies.bounded[lane] = 0;  // unused lane: has no contact force
     }
   }
 }
@@ -276,7 +277,7 @@ inline void Batches::load(ContactLanes& batch, std::size_t lane) {
   put(batch.velocity_2, lane, two.motion.velocity);
   put(batch.spin_1, lane, one.motion.angular_velocity);
   put(batch.spin_2, lane, two.motion.angular_velocity);
-  // If nothing rotates, products with a spin are 0 and change at most the sign of a 0 in a sum. A
+  // Without spins, products with a spin are 0 and change at most the sign of a 0 in a sum. A
   // velocity that is not -0 never becomes -0.
   for (const Body* body : {&one, &two}) {
     for (int i = 0; i < 3; ++i) {
@@ -354,7 +355,7 @@ bool Batches::act(ContactLanes& batch, const LanesStep& step, const One& one) {
   return true;
 }
 
-// Like apply(), through the arrays, for bodies that are moved here. @param added forces [N]
+// apply() through the scene arrays, for bodies moved with this batch. @param added forces [N]
 template <bool tracks_energy, class One>
 bool Batches::apply_via_arrays(ContactLanes& batch, BodyLanes& bodies, const LanesStep& step,
                                const One& one, Pack3& added) {

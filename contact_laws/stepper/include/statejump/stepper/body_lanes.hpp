@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Motion of four non-rotating bodies at once: sum_forces() and move() in their order.
+// One step of four non-rotating bodies at once: sum_forces() and move() in this order.
 #pragma once
 
 #include <array>
@@ -11,14 +11,14 @@
 
 namespace statejump::stepper {
 
-/// Up to four bodies. Unused lanes repeat the first.
+/// Up to four bodies. Unused lanes repeat the first body.
 struct BodyLanes {
   std::array<std::size_t, lanes> body;
   std::size_t count;
   Pack3 position, velocity, permanent_force, bound_position;
   Pack mass, damping, bound_reach;
-  Mask moves_x, moves_y, moves_z, free, held;  // along an axis, along all, along none
-  Mask bounded;                                // the collider runs again if it leaves its bound
+  Mask moves_x, moves_y, moves_z, free, held;  // free to move along an axis, along all, along none
+  Mask bounded;  // has a bound: the collider runs again if the body leaves it
 
   void load(std::size_t lane, std::size_t index, const Body& from, const Newton& newton) {
     body[lane] = index;
@@ -57,8 +57,8 @@ namespace detail {
 
 }  // namespace detail
 
-/// One step. @param added forces since the last step [N]; @return lanes whose body has left its
-/// bound
+/// One step. @param added forces since the last step [N]
+/// @return lanes whose body has left its bound
 [[gnu::always_inline]] inline Mask move_lanes(BodyLanes& at, const Pack3& added,
                                               const Newton& newton, double time_step) {
   const Pack3 force = added + at.permanent_force;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One step of a journal or ball with a meshed bore: several contacts, the law at each, and the
-// state until the next step. The plugin's functors and the stepper call the same functions, with
-// YADE's objects or with plain values.
+// One step of a journal or ball with a meshed bore: finds the contacts, applies the law at each,
+// and stores the state until the next step. The plugin's functors and the stepper call the same
+// functions, with YADE's objects or with plain values.
 //
 // A list of contacts holds values or pointers; contact_of() returns the contact of an entry.
 #pragma once
@@ -24,7 +24,7 @@ namespace statejump::stepper {
 /// Geometry of one of several contacts of a pair; the attributes of JointGeom.
 struct BoreContactGeometry : ContactGeometry {
   Vector3 contactPoint = Vector3::Zero();  ///< [m]
-  double refR1 = 0.0, refR2 = 0.0;         ///< radii, that of the wall as magnitude [m]
+  double refR1 = 0.0, refR2 = 0.0;  ///< radii [m]; refR2 is the magnitude of the wall's radius
 };
 
 /// Geometry of a pair; the attributes of BoreGeom.
@@ -42,45 +42,46 @@ struct BorePhysics : ContactPhysics {
   std::vector<ContactPhysics> contacts;
 };
 
-/// Data of a contact with a meshed bore, in addition to its Contact.
+/// Data of a contact with a meshed bore that Contact does not hold.
 struct Bore {
   const geometry::BoreMesh* mesh = nullptr;
   bool is_ball = false;
   double patch_angle = 0.0;   ///< [rad], for follow_contacts()
-  double largest_tilt = 0.0;  ///< between the axes of journal and bore [rad]
-  bool has_geometry = false;  ///< also without contact, to keep the known wall geometry
-  bool renewed = false;       ///< geometry created since the arrays were filled
+  double largest_tilt = 0.0;  ///< allowed angle between the axes of journal and bore [rad]
+  bool has_geometry = false;  ///< kept without contact, because it stores the known wall geometry
+  bool renewed = false;       ///< its geometry was created after the arrays were filled
   BoreGeometry geometry;
   BorePhysics physics;
 };
 
-/// The journal or ball at its current temperature.
+/// Journal or ball at its current temperature.
 struct BoreProbe {
   bool is_ball;
   double radius;       ///< [m]
-  double radius_rate;  ///< by expansion [m/s]
+  double radius_rate;  ///< rate of the radius by thermal expansion [m/s]
   Vector3 axis;        ///< world, unit; zero for a ball
 };
 
-/// The wall at its current temperature.
+/// Wall at its current temperature.
 struct BoreWall {
   const geometry::BoreMesh& mesh;
   double thermal_stretch;  ///< 1 + thermal strain [-]
-  double strain_rate;      ///< of the last step [1/s]
+  double strain_rate;      ///< rate over the last step [1/s]
   double patch_angle;      ///< [rad]
 };
 
 enum class BoreSearch : unsigned char {
-  apart,      ///< no contact, and none before
-  contact,    ///< the geometry is that of this step
+  apart,      ///< no contact now and none in the previous step
+  contact,    ///< contact; the pair's geometry is updated to this step
   undefined,  ///< the relative position is undefined
-  conforming  ///< the concave wall's radius is not larger than that of the journal or ball
+  conforming  ///< error: the wall is concave with a radius not larger than that of the journal or
+              ///< ball
 };
 
 struct BoreStep {
   BoreSearch found;
-  double wall_radius = 0.0;            ///< if conforming [m]
-  Vector3 position = Vector3::Zero();  ///< if conforming [m]
+  double wall_radius = 0.0;            ///< only for conforming: radius of the wall [m]
+  Vector3 position = Vector3::Zero();  ///< only for conforming: point of contact [m]
 };
 
 template <class Entry>
@@ -105,16 +106,17 @@ Entry new_contact() {
   }
 }
 
-/// Whether the angle between the axes of journal and bore exceeds the allowed one.
+/// Whether the angle between the axes of journal and bore exceeds `allowed` [rad] (small angle).
 inline bool tilted_in_bore(const Vector3& journal_axis, const geometry::BoreMesh& mesh,
                            const Quaternion& orientation, double allowed) {
   return !(journal_axis.cross(orientation * mesh.axis()).squaredNorm() <= allowed * allowed);
 }
 
-/// Updates the pair's contact list from the contacts found now. Continuing contacts keep their
-/// labels. Contacts that have just ended stay for one step, so that the law can complete their
+/// Updates the pair's contact list with the contacts found in this step. A continuing contact keeps
+/// its label. A contact that has just ended stays for one step, so that the law can complete its
 /// energy balance.
-/// @param touches whether a found position is in contact; @param turn from the mesh into the world
+/// @param touches whether a found position is in contact
+/// @param turn rotation from the mesh axes to the world axes
 template <class Pair, class Touches>
 void list_contacts(const std::vector<geometry::FollowedContact>& found, const Touches& touches,
                    const Eigen::Matrix3d& turn, Pair& pair) {
@@ -128,7 +130,7 @@ void list_contacts(const std::vector<geometry::FollowedContact>& found, const To
     geometry::set_label(pair.known, i, label);
     touching += now;
   }
-  if (same && touching == pair.contacts.size()) {  // as in most steps
+  if (same && touching == pair.contacts.size()) {  // unchanged list, as in most steps
     for (std::size_t i = 0; i < touching; ++i) pair.previous[i] = static_cast<int>(i);
     return;
   }
@@ -160,12 +162,12 @@ void list_contacts(const std::vector<geometry::FollowedContact>& found, const To
   }
 }
 
-/// All contacts of a journal or ball (1) with a bore (2).
+/// Finds all contacts of a journal or ball (body 1) with a bore (body 2).
 /// @param centres from the centre of body 2 to that of body 1 [m]
 /// @param keep whether the pair is already in contact; @param time_step [s]
 /// @param make returns the geometry of the pair and creates it if necessary. It persists without
 ///        contact, because it stores the known wall geometry.
-/// @throws as follow_contacts() and the kernel
+/// @throws what follow_contacts() and the kernel throw
 template <class CreatePhysics>
 BoreStep find_in_bore(const BoreProbe& probe, const BoreWall& wall,
                       const kernel::BodyMotion& motion_1, const kernel::BodyMotion& motion_2,
@@ -211,8 +213,8 @@ BoreStep find_in_bore(const BoreProbe& probe, const BoreWall& wall,
     here.arm_2 = centres + here.arm_1;
     here.relative_velocity = kernel::material_velocity(motion_1, here.arm_1) -
                              kernel::material_velocity(motion_2, here.arm_2);
-    // Expansion alone moves the foot away from the wall's centre and changes the depth. The
-    // clearance is the sum of these changes, so motion along an uneven wall does not count as
+    // Expansion alone moves the wall point along the normal and changes the depth. The clearance is
+    // the sum of these changes only, so that motion along an uneven wall does not count as thermal
     // expansion.
     const double reach = foot.dot(one.normal);
     const double clearance_rate = wall.strain_rate * reach - probe.radius_rate;
@@ -238,8 +240,8 @@ BoreStep find_in_bore(const BoreProbe& probe, const BoreWall& wall,
   return {keep || next > 0 ? BoreSearch::contact : BoreSearch::apart};
 }
 
-/// Applies the law at every contact of a pair; the list of physics follows the list of geometries.
-/// @param step steps one contact from its geometry and physics; false if it is open
+/// Applies the law at every contact of a pair. Physics get the order of the geometries.
+/// @param step steps one contact from its geometry and physics; returns false if it is open
 /// @return whether any contact touches
 template <class Geometry, class Physics, class Step>
 bool bore_law_step(const Geometry& geometry, Physics& pair, Step&& step) {
@@ -274,7 +276,8 @@ bool bore_law_step(const Geometry& geometry, Physics& pair, Step&& step) {
   for (std::size_t i = 0; i < count; ++i) {
     const auto& here = contact_of(geometry.contacts[i]);
     auto& physics = contact_of(pair.contacts[i]);
-    // Only expansion changes this radius; a different radius at another position does not count.
+    // Only thermal expansion counts as a change of this radius, not motion to a wall point of
+    // another radius.
     physics.previousBearingRadius = here.bearingRadius * (1 - geometry.strain_change);
     if (!step(here, physics)) continue;
     touching = true;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks of the numbers of a step: ranges of link and contact parameters, and validity of results.
-// The plugin's engines and functors and the stepper use the same checks. NaN never passes.
+// Checks of link and contact parameters and of the results of a step. The plugin's engines and
+// functors and the stepper use the same checks. NaN never passes.
 //
-// Ranges are checked when a number enters: when an attribute is set, a run begins or arrays are
-// filled. Results are checked in every step by a few comparisons. Only a result that fails these is
+// Parameters are checked when they enter: when an attribute is set, a run begins or arrays are
+// filled. Results are checked in every step by a few comparisons; only a result that fails these is
 // examined in detail.
 #pragma once
 
@@ -27,14 +27,14 @@ inline bool allows(ValueRange allowed, double value) {
                                   (allowed == ValueRange::not_negative && value == 0));
 }
 
-/// Text of the range, followed by a unit in messages.
+/// Text of the range for messages; the unit follows it.
 inline const char* range_text(ValueRange allowed) {
   return allowed == ValueRange::finite     ? "finite"
          : allowed == ValueRange::positive ? "above 0"
                                            : "0 or above";
 }
 
-/// A member of an object with the name that users know.
+/// A number of an object: its public name, member, allowed range and unit.
 template <class Object>
 struct Quantity {
   const char* name;
@@ -56,7 +56,7 @@ const Quantity<Object>* first_invalid(const Quantities<Object, size>& quantities
   return nullptr;
 }
 
-/// Quantities of an active link.
+/// Parameters of an active link.
 constexpr Quantities<Link, 6> link_quantities = {
     {{"youngModulus", &Link::youngModulus, ValueRange::not_negative, "Pa"},
      {"crossSectionArea", &Link::crossSectionArea, ValueRange::not_negative, "m2"},
@@ -65,8 +65,7 @@ constexpr Quantities<Link, 6> link_quantities = {
      {"dampingRatio", &Link::dampingRatio, ValueRange::not_negative, "-"},
      {"pinDamping", &Link::pinDamping, ValueRange::not_negative, "N m s/rad"}}};
 
-/// Quantities of an active torsion spring. With a friction limit, the friction stiffness must be >
-/// 0.
+/// Parameters of an active torsion spring. If frictionLimit > 0, frictionStiffness must be > 0.
 constexpr Quantities<Torsion, 8> torsion_quantities = {
     {{"stiffness", &Torsion::stiffness, ValueRange::not_negative, "N m/rad"},
      {"freeAngle", &Torsion::freeAngle, ValueRange::finite, "rad"},
@@ -81,8 +80,8 @@ inline bool has_friction_without_stiffness(const Torsion& spring) {
   return spring.frictionLimit > 0 && !(spring.frictionStiffness > 0);
 }
 
-/// Quantities of a slider between two bodies. With a friction limit or stops, their stiffness must
-/// be > 0. Clearances are >= 0, infinite without a stop.
+/// Parameters of a slider between two bodies. With a friction limit or stops, their stiffness must
+/// be > 0. Clearances are >= 0, and infinite without a stop.
 constexpr Quantities<Prismatic, 9> prismatic_quantities = {
     {{"stiffnessAcross", &Prismatic::stiffnessAcross, ValueRange::not_negative, "N/m"},
      {"frictionLimit", &Prismatic::frictionLimit, ValueRange::not_negative, "N"},
@@ -103,7 +102,7 @@ inline bool has_stop_without_stiffness(const Prismatic& joint) {
          !(joint.stopStiffness + joint.stopSpring > 0);
 }
 
-/// Quantities of a touching contact: ContactPhysics or JointPhys.
+/// Parameters of a contact that touches; Physics is ContactPhysics or JointPhys.
 template <class Physics>
 constexpr Quantities<Physics, 6> contact_quantities = {
     {{"effectiveYoungModulus", &Physics::effectiveYoungModulus, ValueRange::positive, "Pa"},
@@ -122,41 +121,41 @@ inline bool is_finite(const kernel::BodyMotion& motion) {
          is_finite(motion.angular_velocity);
 }
 
-/// Fast check in every step: all components are finite. May be false for finite components if their
-/// sum overflows.
+/// Fast check in every step: all components are finite. It may return false for finite components
+/// whose sum overflows.
 inline bool is_finite_fast(const Vector3& v) {
   const double sum = v[0] + v[1] + v[2];
   return sum - sum == 0;
 }
 
-/// Whether a linear thermal strain leaves a positive length [-].
+/// Whether a body with this linear thermal strain [-] has a positive length.
 inline bool is_strain(double strain) {
   return 1 + strain > 0 && std::isfinite(strain);
 }
 
-/// Fast check in every step: far from a strain that leaves no length.
+/// Fast check in every step; sufficient for is_strain().
 inline bool is_small_strain(double strain) {
   return std::abs(strain) < 1;
 }
 
-/// Leapfrog is unstable for omega dt > 2 of the stiffest contact alone, independent of other
-/// forces.
+/// Whether the step exceeds the stability limit omega dt = 2 of the stiffest contact alone;
+/// leapfrog is then unstable, whatever the other forces are.
 /// @param stiffness [N/m]; @param time_step [s]
 template <class Physics>
 bool step_is_too_long(double stiffness, const Physics& physics, double time_step) {
   return time_step * time_step * stiffness > 4 * physics.effectiveMass && physics.effectiveMass > 0;
 }
 
-/// Fast check in every step of a touching contact: it is stiff, and the step is stable. False if a
-/// modulus, depth, mass or time step is NaN, and if both bodies are fixed.
+/// Fast check in every step of a touching contact: its stiffness is positive and the step is
+/// stable. False if a modulus, depth, mass or time step is NaN, and if both bodies are fixed.
 template <class Physics>
 bool is_stable_stiffness(double stiffness, const Physics& physics, double time_step) {
   const double rate = time_step * stiffness;
   return rate > 0 && time_step * rate <= 4 * physics.effectiveMass;
 }
 
-/// Upper bound, once per run, of normal stiffnesses >= 0 for which is_stable_stiffness() holds
-/// [N/m], with a margin above rounding. NaN for invalid numbers; no stiffness is below NaN.
+/// Largest normal stiffness [N/m] for which is_stable_stiffness() holds, computed once per run and
+/// reduced by a margin for rounding. NaN for invalid parameters: every comparison with it is false.
 template <class Physics>
 double stable_stiffness(const Physics& physics, double time_step) {
   if (!(time_step > 0) || first_invalid(contact_quantities<Physics>, physics)) {
@@ -166,22 +165,23 @@ double stable_stiffness(const Physics& physics, double time_step) {
   return less * 4 * physics.effectiveMass / time_step / time_step;
 }
 
-/// Upper bound, once per run, of |temperature change| for which an expansion leaves every length
-/// positive [K], with a margin above rounding; 0 for a NaN coefficient. @param expansion [1/K]
+/// Largest |temperature change| [K] for which the thermal expansion leaves every length positive,
+/// computed once per run and reduced by a margin for rounding; 0 for a NaN coefficient. @param
+/// expansion [1/K]
 inline double safe_temperature_change(double expansion) {
   constexpr double less = 1 - 8 * std::numeric_limits<double>::epsilon();
   return std::isfinite(expansion) ? less / std::abs(expansion) : 0;
 }
 
-/// Fast check in every step: below a bound of the run. False if either is NaN.
+/// Fast check in every step against a bound of the run. False if either is NaN.
 inline bool is_below(double value, double bound) {
   return value < bound;
 }
 
-/// Outcome for a response that fails the fast check.
+/// Result of the detailed check of a response.
 enum class ResponseCheck : unsigned char { valid, step_is_too_long, not_finite };
 
-/// @param stiffness of the normal law [N/m]; @param force on body 1 [N]
+/// @param stiffness of the normal contact [N/m]; @param force on body 1 [N]
 template <class Physics>
 ResponseCheck check_response(double stiffness, const Vector3& force, const Physics& physics,
                              double time_step) {
@@ -193,7 +193,7 @@ ResponseCheck check_response(double stiffness, const Vector3& force, const Physi
                                                          : ResponseCheck::valid;
 }
 
-/// Fast check in every step of a link: its length is positive and its force is finite.
+/// Fast check in every step of a link: its stress-free length is positive and its force is finite.
 inline bool is_finite_fast(const LinkStep& step, const Vector3& force) {
   return step.stress_free_length > 0 && is_finite_fast(force);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One step of one contact of a clearance joint: geometry, law, and the state until the next step.
-// The plugin's functors and the stepper call the same functions, with YADE's objects or with plain
-// values. The attributes have the same names.
+// One step of one contact of a clearance joint: finds the contact geometry, applies the law and
+// stores the state until the next step. The plugin's functors and the stepper call the same
+// functions, with YADE's objects or with plain values, whose attributes have the same names.
 #pragma once
 
 #include <algorithm>
@@ -53,10 +53,10 @@ struct ContactPhysics {
   double tangentialDampingRatio = 0.0;    ///< [-]
   bool slipping = false;
   Vector3 slipAxis = Vector3::Zero();
-  std::vector<Vector3> slipMemory;  ///< 8 G* r [N/m], elastic displacement along both axes [m]
+  std::vector<Vector3> slipMemory;  ///< per point: 8 G* r [N/m], elastic displacement [m], [m]
   double slipSlope = 0.0;           ///< [m^3/N^2]
   double slipMerged = 0.0;          ///< [N]
-  // ShiftedPrefix of slipMemory, see PartialSlipMemory.
+  // PartialSlipMemory::ShiftedPrefix of slipMemory: count, shift, force and squares, bounds.
   int slipHeld = 0;
   Vector3 slipShift = Vector3::Zero();  ///< [m]
   Vector3 slipSums = Vector3::Zero();   ///< [N], [N], [J]
@@ -73,15 +73,15 @@ struct ContactPhysics {
   double previousDepth = 0.0;          ///< [m]
 };
 
-/// Length at the reference temperature with its thermal expansion.
+/// Length at the reference temperature, with the current thermal strain.
 struct ThermalLength {
   double length;           ///< radius, or distance of a face [m]
   double thermal_stretch;  ///< 1 + thermal strain [-]
-  double strain_rate;      ///< of the last step [1/s]
+  double strain_rate;      ///< rate over the last step [1/s]
   double expanded() const { return length * thermal_stretch; }
 };
 
-/// Energies of one contact in one step [J]; elastic is the energy stored now.
+/// Energies of one contact in one step [J]; elastic is stored, the others are increments.
 struct ContactEnergy {
   double elastic;
   double friction;
@@ -91,14 +91,14 @@ struct ContactEnergy {
 
 /// Result of the contact search for a pair in a step.
 enum class ContactSearch {
-  apart,    ///< no contact, and none before
-  contact,  ///< the geometry is that of this step
-  closed,   ///< no contact: the clearance is closed, or a centre is inside the other ball
-  tilted    ///< the axes are not parallel
+  apart,    ///< no contact now and none in the previous step
+  contact,  ///< contact; the geometry is updated to this step
+  closed,   ///< error: no clearance is left, or a centre is inside the other ball
+  tilted    ///< error: the axes are not parallel
 };
 
 /// Stores the contact geometry of this step.
-/// @param motion_1, motion_2 of the two bodies; @param time_step [s]
+/// @param motion_1, motion_2 motion of the two bodies; @param time_step [s]
 template <class Geometry>
 void update(const kernel::JointContact& contact, const kernel::BodyMotion& motion_1,
             const kernel::BodyMotion& motion_2, double time_step, Geometry& geometry) {
@@ -116,10 +116,10 @@ void update(const kernel::JointContact& contact, const kernel::BodyMotion& motio
       (motion_1.angular_velocity + motion_2.angular_velocity).dot(geometry.normal);
 }
 
-/// Journal (1) in a bearing (2).
-/// @param axis unit, of the bearing; @param keep whether the contact exists already
-/// @param tilted returns whether the axes are tilted by more than is allowed
-/// @param make returns the geometry to fill; a new one starts with the given normal
+/// Finds the contact of a journal (body 1) in a bearing (body 2).
+/// @param axis unit, of the bearing; @param keep whether the contact already exists
+/// @param tilted returns whether the axes are tilted by more than the allowed angle
+/// @param make returns the geometry to fill; a new geometry starts with the given normal
 template <class Tilted, class CreatePhysics>
 ContactSearch find_revolute(const ThermalLength& journal, const ThermalLength& bearing,
                             const kernel::BodyMotion& motion_1, const kernel::BodyMotion& motion_2,
@@ -145,7 +145,7 @@ ContactSearch find_revolute(const ThermalLength& journal, const ThermalLength& b
   return ContactSearch::contact;
 }
 
-/// Ball (1) in a socket (2); otherwise as find_revolute().
+/// Ball (body 1) in a socket (body 2); otherwise as find_revolute().
 template <class CreatePhysics>
 ContactSearch find_ball(const ThermalLength& ball, const ThermalLength& socket,
                         const kernel::BodyMotion& motion_1, const kernel::BodyMotion& motion_2,
@@ -168,9 +168,9 @@ ContactSearch find_ball(const ThermalLength& ball, const ThermalLength& socket,
   return ContactSearch::contact;
 }
 
-/// Two balls in external contact; otherwise as find_revolute(). The second radius is negative, as
-/// for a bearing turned inside out. @return closed when the centre of one ball is inside the other,
-/// where no contact can be computed
+/// Two balls in external contact; otherwise as find_revolute(). The stored second radius is
+/// negative, as for a bearing turned inside out. @return closed if the centre of one ball is inside
+/// the other, where no contact is defined
 template <class CreatePhysics>
 ContactSearch find_outer_balls(const ThermalLength& ball_1, const ThermalLength& ball_2,
                                const kernel::BodyMotion& motion_1,
@@ -199,7 +199,7 @@ ContactSearch find_outer_balls(const ThermalLength& ball_1, const ThermalLength&
   return ContactSearch::contact;
 }
 
-/// Pad of a slider (1) on a face of its slot (2); otherwise as find_revolute().
+/// Pad of a slider (body 1) on a face of its slot (body 2); otherwise as find_revolute().
 /// @param normal unit, world, from the slider into the face
 template <class CreatePhysics>
 ContactSearch find_plane(const ThermalLength& pad, const ThermalLength& face,
@@ -227,8 +227,8 @@ kernel::ContactParameters contact_parameters(const Physics& physics) {
           physics.effectiveMass};
 }
 
-/// Friction history, rotated into the tangent plane of this step. Stored forces act on body 2, the
-/// kernel's on body 1. The memory is moved in, not copied, and moved back on destruction.
+/// Friction history, rotated into the tangent plane of this step. YADE stores forces on body 2, the
+/// kernel uses forces on body 1. The memory is moved in, not copied, and moved back on destruction.
 template <class Physics>
 class ScopedHistory {
  public:
@@ -271,7 +271,7 @@ class ScopedHistory {
   bool moved_in_ = false;
 };
 
-/// Stores stiffnesses and forces until the next step.
+/// Stores stiffnesses and forces for the next step.
 template <class Physics>
 void store(const kernel::ContactResponse& response, const kernel::ContactHistory& history,
            const Vector3& normal, Physics& physics) {
@@ -282,13 +282,13 @@ void store(const kernel::ContactResponse& response, const kernel::ContactHistory
   physics.shearForce = -history.tangential_force;
 }
 
-/// Energies of one contact. Expansion does work on it through the clearance c and the radii. With
+/// Energies of one contact. Thermal expansion does work through the clearance c and the radii. With
 /// V(delta, radii) and delta = eccentricity - c, this work is the part of dV without body motion:
-/// -F dc plus the change of V by the radii at fixed depth. The trapezoidal rule is used, as for the
-/// motion.
-/// @param dissipation_force of the dissipation law [N]
-/// @param radius stored until the next step [m]
-/// @param add_radius_work adds the work of the changing radii to a number [J]
+/// -F dc plus the change of V by the radii at fixed depth. The trapezoidal rule integrates it over
+/// the step, as it does the work of the motion.
+/// @param dissipation_force force of the dissipation law [N]
+/// @param radius [m] that is stored as physics.previousRadius
+/// @param add_radius_work adds the work of the changing radii [J] to its argument
 template <class Geometry, class Physics, class AddRadiusWork>
 ContactEnergy account(const kernel::ContactResponse& response, double dissipation_force,
                       double radius, const AddRadiusWork& add_radius_work, double time_step,
@@ -311,15 +311,17 @@ ContactEnergy account(const kernel::ContactResponse& response, double dissipatio
           response.friction_dissipation, response.damping_dissipation, thermal_work};
 }
 
-/// Interface that the laws need from the calling stepper:
+/// Functions that the laws require of the caller (Host):
 ///  time_step() [s], tracks_energy(), add(ContactEnergy)
 ///  apply(wrench)              adds forces to the two bodies
-///  checks_response            whether a response is checked before it acts; else the caller checks
-///                             the stored state afterwards
-///  accepts(k, force, physics) if checks_response: decides on a response that fails the fast check,
-///                             with normal stiffness k [N/m] and force on body 1 [N]; else it fails
+///  checks_response            true: the response is checked before its forces act; false: the
+///  caller
+///                             checks the stored state afterwards
+///  accepts(k, force, physics) only if checks_response: decides on a response that fails the fast
+///  check,
+///                             with normal stiffness k [N/m] and force on body 1 [N]
 ///
-/// Whether the response of a contact can be used.
+/// Whether the forces of this response may be applied.
 template <class Physics, class Host>
 [[gnu::always_inline]] inline bool is_usable(const kernel::ContactResponse& response,
                                              const Physics& physics, Host&& host) {
@@ -332,7 +334,8 @@ template <class Physics, class Host>
   }
 }
 
-/// Hertz and Mindlin. @return false if the contact is open; true, without forces, if it failed
+/// Step with the Hertz–Mindlin law. @return false if the contact is open; true if it touches, also
+/// after a failed check, which applies no forces
 template <class Geometry, class Physics, class Host>
 bool hertz_mindlin_step(const Geometry& geometry, Physics& physics, Host&& host) {
   ScopedHistory scoped(geometry, physics);
@@ -368,7 +371,7 @@ enum class Misfit { none, bulging_wall, no_axis };
 template <class Law>
 struct Named {
   Law law;
-  bool needs_axis = false;  ///< some of the laws need a bearing's axis
+  bool needs_axis = false;  ///< a law needs the axis of a bearing
 };
 using NamedLaw = Named<kernel::laws::JointLaw>;
 
@@ -381,9 +384,9 @@ Misfit misfit(const Named<Law>& named, const Geometry& geometry) {
   return named.needs_axis && geometry.axis.isZero() ? Misfit::no_axis : Misfit::none;
 }
 
-/// Begins a contact and returns its start time [s]. In the last step the bodies moved uniformly, at
-/// the velocity of the half step, and the clearance changed by clearanceRate dt. The contact starts
-/// where this line crosses 0.
+/// Begins a contact and returns its start time [s]. In the last step the bodies moved uniformly,
+/// with the velocity of the half step, and the clearance changed by clearanceRate dt. The contact
+/// starts when the linearly interpolated depth is 0.
 template <class Geometry, class Physics>
 double begin(const Geometry& geometry, Physics& physics, double time, double time_step) {
   physics.begun = true;
@@ -395,7 +398,7 @@ double begin(const Geometry& geometry, Physics& physics, double time, double tim
   return ever_apart ? time - since : time;
 }
 
-/// Number of contacts that have begun, and the first start time.
+/// Number of contacts that have begun, and the earliest start time.
 struct FirstTouch {
   double first = std::numeric_limits<double>::quiet_NaN();  ///< [s]
   int count = 0;
@@ -410,8 +413,9 @@ struct FirstTouch {
   }
 };
 
-/// Step with named laws, for a contact without Misfit that has begun if it touches.
-/// @return false if the contact is open; true, without forces, if it failed
+/// Step with named laws. The contact must have no Misfit and, if it touches, must have begun.
+/// @return false if the contact is open; true if it touches, also after a failed check, which
+///         applies no forces
 /// @throws std::domain_error outside the range of a law
 template <class Law, class Geometry, class Physics, class Host>
 bool joint_law_step(const Law& law, const Geometry& geometry, Physics& physics,
@@ -439,10 +443,10 @@ bool joint_law_step(const Law& law, const Geometry& geometry, Physics& physics,
   if (host.tracks_energy()) {
     host.add(account(
         contact, response.dissipation_force, geometry.journalRadius,
-        [&](double& work) {  // V(delta, R1, R2) of a general law is known only by values
+        [&](double& work) {  // for a general law V(delta, R1, R2) has no closed form
           if (geometry.journalRadius == physics.previousRadius &&
               geometry.bearingRadius == physics.previousBearingRadius) {
-            work += 0.0;  // the same sum as with the loop
+            work += 0.0;  // adds zero, so that the result has the same bits as with the loop
             return;
           }
           laws::NormalGeometry before = kinematics.geometry;
@@ -458,7 +462,7 @@ bool joint_law_step(const Law& law, const Geometry& geometry, Physics& physics,
   if (!touches) return false;
   store(contact, history, geometry.normal, physics);
   host.apply(response.wrench);
-  // A law without memory returns a force but no history.
+  // For a law without memory, the force is not part of the history.
   if (!(physics.ks > 0)) physics.shearForce = -contact.tangential_force;
   physics.dissipationSlope = response.dissipation_slope;
   physics.frictionSlope = response.friction_slope;

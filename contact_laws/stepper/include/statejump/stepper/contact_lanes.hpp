@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hertz and Mindlin for four contacts at once: the operations of find_revolute(), find_ball(),
-// find_plane() and hertz_mindlin_step(), in their order and without branches. The bodies do not
-// rotate, and each contact stays open or stays in contact. Any other case is detected and left
-// unchanged for those functions.
+// Hertz–Mindlin contact of four contacts at once: the operations of find_revolute(), find_ball(),
+// find_plane() and hertz_mindlin_step(), in the same order and without branches. It applies if the
+// bodies do not rotate and each contact stays open or stays in contact. Lanes with any other case
+// are marked as deferred and left to those functions.
 #pragma once
 
 #include <array>
@@ -15,28 +15,28 @@
 
 namespace statejump::stepper {
 
-/// Up to four contacts of one joint type and their state. Unused lanes repeat the first.
+/// Up to four contacts of one joint type and their state. Unused lanes repeat the first contact.
 struct ContactLanes {
-  std::size_t first;  ///< index in Scene::contacts; the others follow
+  std::size_t first;  ///< index in Scene::contacts; the contacts are consecutive
   std::size_t count;
   Joint joint;
   std::array<std::size_t, lanes> body_1, body_2, strain_1, strain_2;
   std::array<bool, lanes> moves_1, moves_2;
   bool any_moves_2, damps_normal, damps_tangential;
-  bool spins;  // false: products with spins are 0
+  bool spins;  // false: no body has a spin
   Mask used, real;
   Pack length_1, length_2;  // [m]
-  Pack3 axis;               // unit, of the bearing; for a plane its normal
+  Pack3 axis;               // unit axis of the bearing; for a plane its normal
   Pack3 position_2, velocity_2, spin_1, spin_2;
   Pack young, shear, friction, normal_damping, tangential_damping, mass;
   Pack stable_stiffness;  // [N/m]
   // State of a real contact.
-  Pack3 normal, tangential_force;  // on body 1 [N]
+  Pack3 normal, tangential_force;  // tangential_force on body 1 [N]
   Pack stiffness;                  // tangential [N/m]
   Mask slipping;
   Pack elastic_force, elastic_energy, clearance, radius;  // of the last step
 
-  /// Loads the state of a contact; the other members of a lane stay constant between steps.
+  /// Loads the state of a contact. The other members do not change between steps.
   void load(std::size_t lane, const Contact& contact) {
     const ContactPhysics& physics = contact.physics;
     real[lane] = contact.real ? -1 : 0;
@@ -59,7 +59,7 @@ struct ContactLanes {
     radius[lane] = physics.previousRadius;
   }
 
-  /// Stores the state that the next step of the contact needs.
+  /// Writes back the state that the next scalar step of the contact needs.
   void unload(std::size_t lane, Contact& contact) const {
     if (!contact.real) return;
     ContactPhysics& physics = contact.physics;
@@ -76,9 +76,9 @@ struct ContactLanes {
 
 /// Results of four contacts in one step.
 struct LanesStep {
-  Mask deferred;                         ///< not computed here: the contact begins, ends or fails
-  Mask touches;                          ///< of the other lanes: in contact; the rest is open
-  Pack3 force;                           ///< on body 1 [N]
+  Mask deferred;  ///< left to the scalar functions: the contact begins, ends or fails
+  Mask touches;   ///< among the other lanes: in contact; the remaining ones are open
+  Pack3 force;    ///< on body 1 [N]
   Pack friction, damping, thermal_work;  ///< as in ContactEnergy
 };
 
@@ -94,7 +94,7 @@ namespace detail {
   return stiffness < largest;
 }
 
-/// kernel::transport() without twist. @param left gains the lanes with opposite normals
+/// kernel::transport() without twist. @param deferred gains the lanes with opposite normals
 [[gnu::always_inline]] inline Pack3 transport(const Pack3& tangential, const Pack3& n_old,
                                               const Pack3& n_new, const Mask& real,
                                               Mask& deferred) {
@@ -120,7 +120,7 @@ struct LanesGeometry {
   Pack eccentricity, depth, radius;  ///< [m]
 };
 
-/// find_revolute(), find_ball() and find_plane(). @param deferred gains contacts that begin or fail
+/// As find_revolute(), find_ball(), find_plane(). @param deferred gains contacts that begin or fail
 [[gnu::always_inline]] inline LanesGeometry find_lanes(const ContactLanes& at, const Pack3& centres,
                                                        const Pack& length_1, const Pack& length_2,
                                                        Mask& deferred) {
@@ -149,7 +149,7 @@ struct LanesGeometry {
   return found;
 }
 
-/// Velocity of 1 relative to 2 of the material at the contact point [m/s].
+/// Velocity of body 1 relative to body 2, of the material at the contact point [m/s].
 [[gnu::always_inline]] inline Pack3 relative_velocity(const ContactLanes& at,
                                                       const MotionLanes& one,
                                                       const MotionLanes& two,
@@ -161,7 +161,7 @@ struct LanesGeometry {
   return (one.velocity + cross(at.spin_1, arm_1)) - (two.velocity + cross(at.spin_2, arm_2));
 }
 
-/// Normal contact of four contacts.
+/// Normal forces of four contacts.
 struct LanesNormal {
   Pack contact_radius;        ///< a [m]
   Pack elastic_force, force;  ///< [N]
@@ -169,14 +169,14 @@ struct LanesNormal {
   Pack damping_power;         ///< [W]
 };
 
-/// hertz() and the normal part of contact_step(). @param deferred gains unstable contacts
+/// As hertz() and the normal part of contact_step(). @param deferred gains unstable contacts
 [[gnu::always_inline]] inline LanesNormal normal_lanes(const ContactLanes& at,
                                                        const LanesGeometry& geometry,
                                                        const Pack3& velocity, Mask& deferred) {
   LanesNormal normal;
   normal.contact_radius = root(geometry.radius * geometry.depth);
   const Pack stiffness = 2.0 * at.young * normal.contact_radius;
-  // Without a depth the root is not positive. Stable stiffnesses imply that both moduli are > 0.
+  // The root is not positive without overlap. A stable stiffness implies both moduli > 0.
   deferred |=
       at.real & ~((normal.contact_radius > 0.0) & are_below(stiffness, at.stable_stiffness));
   normal.elastic_force = 2.0 / 3.0 * stiffness * geometry.depth;
@@ -193,17 +193,18 @@ struct LanesNormal {
   return normal;
 }
 
-/// Tangential contact of four contacts.
+/// Tangential forces of four contacts.
 struct LanesFriction {
   Pack3 velocity;  ///< tangential [m/s]
-  Pack3 force;     ///< of the spring, on body 1 [N]
+  Pack3 force;     ///< spring force on body 1 [N]
   Pack stiffness;  ///< k_t [N/m]
   Pack limit;      ///< mu F_N [N]
-  Mask free;       ///< without friction
+  Mask free;       ///< no friction
   Mask slipping;
 };
 
-/// mindlin_step(). @param step its friction loss is set; it defers contacts whose normal reverses
+/// As mindlin_step(). @param step receives the friction loss; its deferred gains contacts whose
+/// normal reverses
 template <bool tracks_energy>
 [[gnu::always_inline]] inline LanesFriction friction_lanes(const ContactLanes& at,
                                                            const Pack3& normal,
@@ -253,7 +254,7 @@ template <bool tracks_energy>
   return friction;
 }
 
-/// The tangential part of contact_step(). @param damping_loss set if energy is tracked [J]
+/// As the tangential part of contact_step(). @param damping_loss set if energy is tracked [J]
 /// @return tangential force with its viscous part [N]
 template <bool tracks_energy>
 [[gnu::always_inline]] inline Pack3 damp_lanes(const ContactLanes& at,
@@ -274,7 +275,7 @@ template <bool tracks_energy>
   return select(damped, sum, friction.force);
 }
 
-/// account(); updates the energy state of touching lanes.
+/// As account(); updates the stored energy state of touching lanes.
 [[gnu::always_inline]] inline void account_lanes(ContactLanes& at, const LanesGeometry& geometry,
                                                  const LanesNormal& normal, double time_step,
                                                  LanesStep& step) {
@@ -295,7 +296,7 @@ template <bool tracks_energy>
 
 /// One step of four contacts. Touching lanes receive their new state; deferred lanes keep the old
 /// one.
-/// @param length_1, length_2 current radii, or pad and distance of the face [m]
+/// @param length_1, length_2 current radii; for a plane, pad radius and face distance [m]
 template <bool tracks_energy>
 [[gnu::always_inline]] inline LanesStep step_lanes(ContactLanes& at, const MotionLanes& one,
                                                    const MotionLanes& two, const Pack& length_1,

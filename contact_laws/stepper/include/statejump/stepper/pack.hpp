@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Four numbers in one vector operation. Each lane gets the bits of scalar arithmetic, because sum,
-// product, quotient and square root are correctly rounded in any width. The vector types are those
-// of the compiler, so one source serves every processor. With AVX2 an operation is one instruction,
-// without it two.
+// product, quotient and square root are correctly rounded in any width. The vector types are
+// compiler extensions, so one source serves every processor. An operation is one instruction with
+// AVX2 and two without.
 //
 // All functions with these types are inlined into callers compiled for one processor, so no vector
-// is passed in a register. Sources that use this header are compiled with -Wno-psabi.
+// is passed in a register. Sources that include this header are compiled with -Wno-psabi.
 #pragma once
 
 #include <cmath>
@@ -17,15 +17,15 @@
 namespace statejump::stepper {
 
 constexpr std::size_t lanes = 4;
-// Aligned explicitly: without AVX the compiler would align them to half of their size only.
+// Aligned explicitly: without AVX the compiler aligns them to half of their size only.
 using Pack [[gnu::vector_size(lanes * sizeof(double)), gnu::aligned(lanes * sizeof(double))]] =
     double;
-/// Lanes are 0 or -1.
+/// Lanes are 0 (false) or -1 (true).
 using Mask
     [[gnu::vector_size(lanes * sizeof(std::int64_t)), gnu::aligned(lanes * sizeof(std::int64_t))]] =
         std::int64_t;
 
-/// Whether the processor has AVX2; always false for other families than x86.
+/// Whether the processor has AVX2; always false for processors other than x86-64.
 inline bool has_avx2() {
 #ifdef __x86_64__
   return __builtin_cpu_supports("avx2") != 0;
@@ -65,7 +65,7 @@ struct Pack3 {
 [[gnu::always_inline]] inline Pack3 operator*(const Pack3& a, double b) {
   return {a.x * b, a.y * b, a.z * b};
 }
-/// Sums in the order in which Eigen adds three numbers.
+/// Sums in the order in which Eigen adds three numbers, for equal bits.
 [[gnu::always_inline]] inline Pack dot(const Pack3& a, const Pack3& b) {
   return a.x * b.x + (a.y * b.y + a.z * b.z);
 }

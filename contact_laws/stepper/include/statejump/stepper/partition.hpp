@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Partition of a scene into subscenes that do not interact. Each makes all its steps while its data
-// are in the cache, on all cores. A subscene's results do not depend on the others, so neither the
-// partition nor the number of threads changes a bit.
+// Partition of a scene into subscenes that do not interact. Each subscene makes all its steps while
+// its data are in the cache; subscenes run on all cores. Their results are independent, so neither
+// the partition nor the number of threads changes a bit.
 #pragma once
 
 #include <algorithm>
@@ -15,12 +15,12 @@
 
 namespace statejump::stepper {
 
-/// Bodies per subscene: they fit into a processor's first-level cache.
+/// Bodies per subscene, such that they fit into a processor's first-level cache.
 constexpr std::size_t bodies_per_subscene = 32;
 
 namespace detail {
 
-/// Disjoint sets of interacting bodies.
+/// Union-find of interacting bodies.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parent_(count) {
@@ -41,7 +41,7 @@ class DisjointSets {
 
 }  // namespace detail
 
-/// A scene split into subscenes. Bodies at rest may be in several of them.
+/// A scene split into subscenes. A body at rest may be in several of them.
 class Partition {
  public:
   /// @param whole after Scene::prepare()
@@ -49,17 +49,17 @@ class Partition {
 
   std::size_t size() const { return subscenes_.size(); }
 
-  /// Steps all subscenes as Scene::run(); make is called from several threads.
+  /// Runs all subscenes as Scene::run() does; several threads call `make`.
   long run(long steps, const Scene::CreatePhysics& make);
-  /// Copies the subscenes back into a scene like the original one. All have made equally many
-  /// steps.
+  /// Copies the results into a scene with the same bodies and contacts as the original one. All
+  /// subscenes must have made equally many steps.
   void collect(Scene& whole) const;
 
  private:
   struct Subscene {
     Scene scene;
-    std::vector<std::size_t> bodies, contacts;     // indices in the whole
-    std::vector<std::vector<std::size_t>> stages;  // indices for each stage
+    std::vector<std::size_t> bodies, contacts;     // indices in the whole scene
+    std::vector<std::vector<std::size_t>> stages;  // for each stage, indices of its entries there
   };
   void split();
   void fill(Subscene& subscene, std::vector<int>& local_ids) const;
@@ -88,7 +88,7 @@ inline void Partition::split() {
         },
         stage);
   }
-  // Sets in the order of their first body, several per subscene.
+  // Groups in the order of their first body, several per subscene.
   constexpr std::size_t none = static_cast<std::size_t>(-1);
   std::vector<std::size_t> size(whole_.bodies.size(), 0), subscene_of(whole_.bodies.size(), none);
   for (std::size_t i = 0; i < whole_.bodies.size(); ++i) {
@@ -113,7 +113,7 @@ inline void Partition::split() {
     subscenes_.emplace_back();
     subscenes_.back().stages.resize(whole_.stages.size());
   }
-  // Objects that act only on bodies at rest belong to the first subscene.
+  // Objects that act only on bodies at rest go to the first subscene.
   const auto subscene_with = [&](const auto& ids) -> Subscene& {
     for (const int id : ids) {
       if (moves(id)) return subscenes_[subscene_of[groups.of(static_cast<std::size_t>(id))]];

@@ -16,27 +16,27 @@ namespace statejump::stepper {
 using kernel::Vector3;
 
 /// A slider between two bodies; the attributes of PrismaticJoint. Body 1 slides relative to body 2
-/// along an axis fixed in space. With the slide s = (x1 - x2 - offset) . axis, the force on body 1
-/// opposite to the axis is friction and stop,
+/// along an axis fixed in space. With the slide s = (x1 - x2 - offset) . axis, friction and stop
+/// act on body 1 opposite to the axis:
 ///
-///    F_f = clamp(k_t b; -f, f),   s_f follows during slip: a spring in series with a slider;
-///    stop: Hertz's K d^1.5 and a spring k_s d, where d is the excess of s over a clearance.
+///    friction  F_f = clamp(k_t b; -f, f), a spring in series with a friction slider at s_f;
+///    stop      K d^1.5 (Hertz) + k_s d, where d is the excess of s over a clearance.
 ///
 /// The spring deflection b is the part of s - s_f beyond half of the play w: b = (s - s_f) -
 /// clamp(s - s_f; -w/2, w/2). Within the play only stops resist.
 ///
-/// Across the axis a spring k_n constrains both bodies. Forces act at the bodies' centres and do
-/// not rotate them. Each spring has a dashpot with the damping ratio. The dashpot of friction acts
-/// during stick, within the friction limit. That of a stop or of a closed play acts unless it would
-/// pull.
+/// A spring k_n resists relative displacement perpendicular to the axis. Forces act at the bodies'
+/// centres and do not rotate them. Each spring has a dashpot with the damping ratio. The dashpot of
+/// the friction spring acts during stick, within the friction limit. The dashpot of a stop or of a
+/// closed play acts only while the total force pushes.
 struct Prismatic {
   int id1 = -1;
   int id2 = -1;
   Vector3 axis = Vector3::UnitX();
-  Vector3 offset = Vector3::Zero();  ///< x1 - x2 where the slide is 0 [m]
-  double stiffnessAcross = 0;        ///< k_n [N/m]
-  double frictionLimit = 0;          ///< f [N]
-  double frictionStiffness = 0;      ///< k_t [N/m]
+  Vector3 offset = Vector3::Zero();                                 ///< x1 - x2 at zero slide [m]
+  double stiffnessAcross = 0;                                       ///< k_n [N/m]
+  double frictionLimit = 0;                                         ///< f [N]
+  double frictionStiffness = 0;                                     ///< k_t [N/m]
   double clearanceMinus = std::numeric_limits<double>::infinity();  ///< [m]
   double clearancePlus = std::numeric_limits<double>::infinity();   ///< [m]
   double stopStiffness = 0;                                         ///< K [N/m^1.5]
@@ -45,27 +45,27 @@ struct Prismatic {
   double dampingRatio = 0;                                          ///< [-]
   double slide = 0;                                                 ///< s [m]
   double slipPosition = 0;                                          ///< s_f [m]
-  double frictionForce = 0;                                         ///< F_f without dashpot [N]
-  double stopForce = 0;  ///< of stop and its dashpot, against the axis [N]
+  double frictionForce = 0;                                         ///< F_f without its dashpot [N]
+  double stopForce = 0;  ///< of stop and its dashpot, positive opposite to the axis [N]
 };
 
 /// Position and velocity of body 1 relative to body 2.
 struct PrismaticMotion {
   Vector3 apart;     ///< x1 - x2 [m]
   Vector3 velocity;  ///< v1 - v2 [m/s]
-  double mass;       ///< 1/(1/m1 + 1/m2) [kg]; 0: neither moves
+  double mass;       ///< reduced mass 1/(1/m1 + 1/m2) [kg]; 0: neither body moves
 };
 
 /// Result of a step.
 struct PrismaticStep {
   Vector3 force;        ///< on body 1 [N]; body 2 gets the opposite
-  double elastic;       ///< energy stored now [J]
+  double elastic;       ///< stored energy [J]
   double friction;      ///< loss of this step [J]
   double damping;       ///< loss of this step by dashpots [J]
   double largest_step;  ///< stable time step of the joint alone [s]
 };
 
-/// Depth of the slide beyond its stop [m]; negative if there is none.
+/// Depth of the slide beyond its stop [m]; negative if the stop is open.
 inline double stop_depth(const Prismatic& joint) {
   return joint.slide > 0 ? joint.slide - joint.clearancePlus : -joint.slide - joint.clearanceMinus;
 }
@@ -79,12 +79,12 @@ inline double largest_stiffness(const Prismatic& joint) {
   return std::max(joint.stiffnessAcross, sticks + stop);
 }
 
-/// Damping coefficient of that stiffness [N s/m]. @param mass 1/(1/m1 + 1/m2) [kg]
+/// Damping coefficient [N s/m] at largest_stiffness(). @param mass 1/(1/m1 + 1/m2) [kg]
 inline double largest_damping(const Prismatic& joint, double mass) {
   return kernel::viscous_damping(joint.dampingRatio, mass, largest_stiffness(joint));
 }
 
-/// Part of s - s_f beyond the play [m].
+/// Deflection b of the friction spring: part of s - s_f beyond the play [m].
 inline double friction_bend(const Prismatic& joint) {
   const double bend = joint.slide - joint.slipPosition;
   return bend - std::clamp(bend, -0.5 * joint.play, 0.5 * joint.play);
@@ -108,7 +108,7 @@ inline PrismaticStep prismatic_step(Prismatic& joint, const PrismaticMotion& mot
                      0.5 * joint.stiffnessAcross * across.squaredNorm(), 0,
                      damping_across * speed_across.squaredNorm() * time_step, 0};
 
-  double along = 0;  // opposite to the axis
+  double along = 0;  // force on body 1 opposite to the axis [N]
   if (joint.frictionLimit > 0) {
     const double limit = joint.frictionLimit;
     double friction = joint.frictionStiffness * friction_bend(joint);
@@ -116,7 +116,7 @@ inline PrismaticStep prismatic_step(Prismatic& joint, const PrismaticMotion& mot
       friction = std::copysign(limit, friction);
       const double slid_to =
           slide - friction / joint.frictionStiffness - std::copysign(0.5 * joint.play, friction);
-      // Leapfrog does work with the mean of the forces of two steps.
+      // Leapfrog does work with the mean of the forces of two successive steps.
       step.friction = 0.5 * (friction + joint.frictionForce) * (slid_to - joint.slipPosition);
       joint.slipPosition = slid_to;
       along = friction;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene of clearance joints, links and torsion springs as plain arrays, and its steps. A step
-// does the work of YADE's engines, in the same order, without YADE.
+// A scene of clearance joints, links and torsion springs as plain arrays, and its time steps. A
+// step does the work of YADE's engines, in the same order, without YADE.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@
 
 namespace statejump::stepper {
 
-/// Default contact law, not composed of named laws.
+/// The default contact law, which is not composed of named laws.
 struct HertzMindlin {};
 
 class Scene {
@@ -34,7 +34,7 @@ class Scene {
   long iteration = 0;
   bool tracks_energy = false;
   bool uses_avx2 = has_avx2();
-  double largest_tilt = 0;  ///< between the axes of journal and bearing [rad]
+  double largest_tilt = 0;  ///< allowed angle between the axes of journal and bearing [rad]
   Newton newton;
   std::vector<thermal::Program> programs;
   std::vector<Strain> strains;
@@ -46,32 +46,32 @@ class Scene {
   std::variant<HertzMindlin, NamedLaw> law;
   NamedLaw bore_law;  ///< for contacts with meshed bores
   Energies energies;
-  StoredEnergies stored;  ///< of the last step of a run
+  StoredEnergies stored;  ///< of the last step of run()
   FirstTouch begun, begun_in_bores;
   bool any_contact = false;  ///< a contact was computed since the arrays were filled
 
   /// Creates the physics of a contact that begins, by its index; empty for invalid materials.
   using CreatePhysics = std::function<std::optional<ContactPhysics>(std::size_t)>;
 
-  /// Observes the last step of a run between forces and motion. Positions, forces and contacts are
-  /// of one time, velocities half a step older.
+  /// Called in the last step of a run, between forces and motion. Positions, forces and contacts
+  /// then belong to the same time; velocities are half a step older.
   using Observe = std::function<void()>;
 
-  /// Determines which bodies rest and move; call it after filling the arrays.
+  /// Computes derived data, such as which bodies rest or move; call it after filling the arrays.
   void prepare();
 
-  /// Makes steps until one is impossible here: a failure, which YADE's own loop reports, or a body
-  /// that leaves its bound, after which the collider must run. That step is left incomplete: fill
-  /// the arrays again and repeat the steps before it.
+  /// Makes steps until one cannot be done here. Reasons: a failure, which YADE's own loop reports,
+  /// or a body that leaves its bound, after which the collider must run. That step is left
+  /// incomplete: fill the arrays again and repeat the complete steps.
   /// @param observe called in the last step; may be empty
   /// @return number of complete steps
   long run(long steps, const CreatePhysics& make, const Observe& observe = {});
 
-  /// Whether all numbers that a step leaves behind are finite.
+  /// Whether all numbers that a step writes are finite.
   bool has_finite_state() const;
 
  private:
-  // Receives the forces and energies of contacts.
+  // Receives the forces and energies of one contact.
   struct Host {
     Scene& scene;
     const Contact& contact;
@@ -95,10 +95,10 @@ class Scene {
         if (two.rotates) two.added_torque += wrench.torque_2;
       }
     }
-    static constexpr bool checks_response = false;  // step_contact() checks
+    static constexpr bool checks_response = false;  // step_contact() checks afterwards
   };
 
-  // Whether the angle between a journal's axis and the bearing's exceeds the allowed one.
+  // Whether the angle between the axes of a journal and its bearing exceeds largest_tilt.
   bool is_tilted(const Body& journal, const Vector3& axis) const {
     return !(axis_of(journal.orientation).cross(axis).squaredNorm() <= largest_tilt * largest_tilt);
   }
@@ -132,7 +132,7 @@ class Scene {
   std::vector<std::size_t> moving_;
   std::vector<double> changes_;  // temperature changes of the programs in this step [K]
   std::vector<double>
-      safe_changes_;  // of the programs: for smaller changes keeps_lengths_positive() holds [K]
+      safe_changes_;  // per program: keeps_lengths_positive() holds for smaller |changes| [K]
   std::vector<Vector3> scratch_;  // moments on tips, forces across planes
   bool summed_ = false;
 };
@@ -198,7 +198,7 @@ inline bool Scene::sums_before_moving() const {
   });
 }
 
-// Calls act with the contact law, with its static type if it is precompiled.
+// Calls act with the contact law, in its static type if that is precompiled.
 template <class Act>
 decltype(auto) Scene::with_law(Act&& act) const {
   const auto* named = std::get_if<NamedLaw>(&law);
@@ -216,7 +216,7 @@ inline long Scene::run(long steps, const CreatePhysics& make, const Observe& obs
       Batches batches({bodies, contacts, stages, strains, energies, newton, time_step,
                        tracks_energy, uses_avx2});
       batches.fill(std::is_same_v<decltype(one), const HertzMindlin&>, !sums_before_moving());
-      // The last step is not batched: it leaves all data in the arrays.
+      // The last step is not batched, so that it leaves all data in the arrays.
       while (done < steps - 1 && batches.useful() &&
              step([&] { return batches.step_contacts(contact); },
                   [&] { return batches.move() && move_all(batches.others(), false); })) {
@@ -297,7 +297,7 @@ inline bool Scene::change_temperatures() {
   return true;
 }
 
-// Whether all lengths heated by a program stay positive.
+// Whether all lengths that a program heats stay positive.
 [[gnu::cold, gnu::noinline]] inline bool Scene::keeps_lengths_positive(std::size_t program) const {
   const double change = changes_[program];
   const auto of_heater = [&](const Heater& heater) {

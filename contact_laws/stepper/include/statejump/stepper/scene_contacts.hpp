@@ -38,7 +38,7 @@ inline ContactSearch Scene::find(Contact& contact) {
     case Joint::outer_balls:
       return find_outer_balls(part_1, part_2, one.motion, two.motion, contact.real, time_step,
                               geometry);
-    case Joint::bore:  // step_in_bore()
+    case Joint::bore:  // handled by step_in_bore()
     case Joint::plane:
       break;
   }
@@ -63,8 +63,8 @@ bool Scene::step_contact(const Law& one, std::size_t index, const CreatePhysics&
     contact.made = iteration;
   }
   any_contact = true;
-  // The check comes after the computation, which is faster; a failed step is left incomplete
-  // anyway. A NaN force persists: has_finite_state() detects it after the steps.
+  // The check follows the computation, which is faster; a failed step is left incomplete anyway. A
+  // NaN force persists in the state, where has_finite_state() detects it after the steps.
   if constexpr (std::is_same_v<Law, HertzMindlin>) {
     const ContactPhysics& physics = contact.physics;
     contact.real = hertz_mindlin_step(contact.geometry, contact.physics, Host{*this, contact});
@@ -74,7 +74,7 @@ bool Scene::step_contact(const Law& one, std::size_t index, const CreatePhysics&
   }
 }
 
-// @param touches out: whether the contact is in contact
+// @param touches out: whether the contact touches
 template <class Law>
 bool Scene::step_named(const Named<Law>& named, const Contact& contact,
                        const ContactGeometry& geometry, ContactPhysics& physics,
@@ -93,8 +93,8 @@ bool Scene::step_named(const Named<Law>& named, const Contact& contact,
   return !touches || is_stable_stiffness(physics.kn, physics, time_step) || accepts(physics);
 }
 
-// YADE's own loop reports exceptions of the wall's geometry and of the kernel, as for all results
-// except apart and contact.
+// Returns `undefined` for tilted axes and if the wall's geometry or the kernel throws: YADE's own
+// loop then repeats the step and reports the error, as for every result except apart and contact.
 inline BoreSearch Scene::find(const Contact& contact, Bore& bore) {
   const Body& one = body(contact.body_1);
   const Body& two = body(contact.body_2);
@@ -154,7 +154,7 @@ inline bool Scene::step_in_bore(std::size_t index, const CreatePhysics& make) {
   return valid;
 }
 
-// Whether the stored response of a contact is valid in the detailed check.
+// Detailed check of a stored response that failed the fast check.
 [[gnu::cold, gnu::noinline]] inline bool Scene::accepts(const ContactPhysics& physics) const {
   return check_response(physics.kn, physics.normalForce + physics.shearForce, physics, time_step) ==
          ResponseCheck::valid;

@@ -11,9 +11,8 @@
 
 namespace statejump::stepper {
 
-// Measures all links while the bodies do not move, before the other operations of a step. Their
-// roots and quotients depend only on positions. Out-of-order execution, which looks some hundred
-// operations ahead, can then overlap them.
+// Measures all links at the start of a step, before any body moves. The square roots and quotients
+// depend only on positions, so out-of-order execution can overlap them with each other.
 inline void Scene::measure_links() {
   for (Stage& stage : stages) {
     auto* links = std::get_if<Links>(&stage);

@@ -4,19 +4,20 @@
 // Debian ships YADE's libraries without headers. This folder declares the part of the binary
 // interface that the plugin uses: names, order of virtual functions, order of members. Nothing here
 // was copied from YADE; the layouts were measured. The measured sizes, offsets and tables are in
-// ../variants, one set for each variant of the interface; layout_checks.hpp holds the declarations
-// against them at compile time, and the guard compares them with the running libraries before any
-// object is touched. Only this folder knows offsets.
+// ../variants, one set for each variant of the interface. layout_checks.hpp compares the
+// declarations with them at compile time; the guard compares them with the running libraries before
+// it touches any object. Only this folder knows offsets.
 //
-// STATEJUMP_YADE_VARIANT is the variant that is declared, named by the first version of YADE that
-// has it: 202302 (2023.02a, 2025.2) or 202601 (2026.1). known_binaries.csv says which binary has
-// which.
+// STATEJUMP_YADE_VARIANT selects the declared variant. Its value is the first version of YADE with
+// that interface: 202302 (2023.02a, 2025.2) or 202601 (2026.1). known_binaries.csv lists the
+// variant of each binary.
 //
-// Members that the plugin does not use are bytes of their measured size (Unused): what no check
-// sees is not declared.
+// Members that the plugin does not use are declared as bytes of their measured size (Unused), so
+// that every other declared member is covered by a check.
 //
 // Virtual functions that YADE exports are declared and not defined: their definitions, the vtables
 // and the type information come from YADE's libraries. Constructors that YADE does not export are
+// defined here and set every member to the default that a fresh object shows in Python.
 // defined here and give every member the default that a fresh object shows in Python.
 #pragma once
 
@@ -64,8 +65,8 @@ using Se3r = Se3<Real>;
 
 class Scene;
 
-// Bytes of unused members. Zeros correspond to YADE's defaults (null pointers) where the plugin
-// constructs the object; elsewhere YADE constructs it.
+// Bytes of unused members. Where the plugin constructs the object, zeros equal YADE's defaults
+// (null pointers); elsewhere YADE constructs it.
 template <std::size_t size, std::size_t alignment = alignof(void*)>
 struct alignas(alignment) Unused {
   std::array<char, size> bytes{};
@@ -100,7 +101,7 @@ class Serializable : public Factorable {
 };
 
 // Multiple dispatch: each derived class has a static index, assigned once in its constructor. YADE
-// does not export the table of this class, so its functions are defined here. Every derived class
+// does not export the vtable of this class, so its functions are defined here. Every derived class
 // overrides them.
 class Indexable {
   [[noreturn]] static void no_dispatch_index() {

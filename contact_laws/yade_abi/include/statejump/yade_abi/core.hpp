@@ -12,7 +12,7 @@ class Body;
 
 class Shape : public Serializable, public Indexable {
  public:
-  Unused<32> functors;  // two shared pointers, set by YADE alone
+  Unused<32> functors;  // two shared pointers that only YADE sets
   Vector3r color = Vector3r(1, 1, 1);
   bool wire = false;
   bool highlight = false;
@@ -60,7 +60,7 @@ class Bound : public Serializable, public Indexable {
   void incrementMaxCurrentlyUsedClassIndexOfKin() override;
 };
 
-// Constructed only through Aabb's exported constructor, because YADE exports no function of Bound.
+// Only constructed by Aabb's exported constructor, because YADE exports no function of Bound.
 class Aabb : public Bound {
  public:
   Aabb();
@@ -79,7 +79,7 @@ class Aabb : public Bound {
 
 class State : public Serializable, public Indexable {
  public:
-  Unused<56> referencesAndMutex;  // pos and ori refer to se3
+  Unused<56> referencesAndMutex;  // pos and ori, which refer to se3, and a mutex
   Se3r se3;
   Vector3r vel;
   Real mass;
@@ -138,7 +138,7 @@ class ElastMat : public Material {
   Real poisson;
 
  protected:
-  // FrictMat's exported constructor constructs this part. The plugin never constructs it alone.
+  // Only FrictMat's exported constructor constructs this base.
   ElastMat();
   ~ElastMat() override;
 };
@@ -179,8 +179,8 @@ class IGeom : public Serializable, public Indexable {
   void incrementMaxCurrentlyUsedClassIndexOfKin() override;
 };
 
-// YADE's time stepper and its recorders cast every interaction geometry to this type without a
-// check.
+// YADE's time stepper and recorders cast every interaction geometry to this type without a check,
+// so the plugin's geometries derive from it.
 class GenericSpheresContact : public IGeom {
  public:
   Vector3r normal = Vector3r::Zero();
@@ -228,7 +228,7 @@ class NormPhys : public IPhys {
   Vector3r normalForce;
 
  protected:
-  // FrictPhys's exported constructor constructs this part and the next.
+  // Only FrictPhys's exported constructor constructs this base and NormShearPhys.
   NormPhys();
   ~NormPhys() override;
 };
@@ -315,7 +315,7 @@ class ForceContainer {
   ForceContainer(const ForceContainer&) = delete;
 
   Unused<296> forcesAndTorques;
-  long lastReset;  // number of the step that the forces were set to zero for
+  long lastReset;  // step for which the forces were last set to zero
 };
 
 class BodyContainer : public Serializable {
@@ -323,7 +323,7 @@ class BodyContainer : public Serializable {
   std::vector<shared_ptr<Body>> body;
   Unused<152> listsAndMutex;
 
-  // Null pointers stand for erased bodies.
+  // A null pointer marks an erased body.
   std::size_t size() const { return body.size(); }
   const shared_ptr<Body>& operator[](unsigned int id) const { return body[id]; }
   bool exists(int id) const {
@@ -349,7 +349,7 @@ class InteractionContainer : public Serializable {
 
 class EnergyTracker : public Serializable {
  public:
-  // id starts at -1; reset: the entry is set to zero at the start of every step.
+  // id is -1 before the first call; reset: the entry is set to zero at the start of every step.
   void add(const Real& value, const std::string& name, int& id, bool reset);
   EnergyTracker(const EnergyTracker&) = delete;
   ~EnergyTracker() override;

@@ -27,8 +27,8 @@ class Functor : public Serializable {
   virtual std::vector<std::string> getFunctorTypes() const;
 };
 
-// One virtual overload of go and goReverse for each number of arguments up to seven. Further
-// arguments have the type that boost::mpl returns beyond the end of a vector.
+// Virtual overloads of go and goReverse for each number of arguments up to seven. Arguments beyond
+// the end of the list have the type that boost::mpl returns there.
 template <class Result, class Arguments>
 class FunctorWrapper {
   template <int i>
@@ -138,10 +138,10 @@ class LawFunctor
   void pyRegisterClass(boost::python::object scope) override;
 };
 
-// The renderer passes it on; the plugin does not use it.
+// The renderer passes it to the functors; the plugin does not use it.
 class GLViewInfo;
 
-// Draws a shape in YADE's 3-D view. The origin is already at the body's position.
+// Draws a shape in YADE's 3-D view, relative to the body's position.
 class GlShapeFunctor
     : public Functor1D<Shape, void,
                        boost::mpl::vector<const shared_ptr<Shape>&, const shared_ptr<State>&, bool,
@@ -160,7 +160,7 @@ class GlShapeFunctor
   virtual void initgl();
 };
 
-// The 3-D view. When YADE's user interface starts, it searches once for classes that draw. If the
+// The 3-D view. When YADE's user interface starts, it searches once for drawing functors. After the
 // flag is reset, it searches again before the next picture.
 class OpenGLRenderer {
  public:

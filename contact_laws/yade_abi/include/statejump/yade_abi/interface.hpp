@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The interface for which the plugin was compiled, as data. The guard compares it with the running
-// libraries. It does not depend on the declarations of the classes, so neither do the checks.
+// libraries. This header and the checks do not depend on the class declarations.
 #pragma once
 
 #include <cstddef>
@@ -12,36 +12,36 @@ namespace statejump::yade_abi {
 struct DeclaredClass {
   std::string name;  // without the namespace yade
   std::size_t size;  // [byte]
-  bool allocated;    // YADE has a function Create<Class>; else the class is only a part of others
+  bool allocated;    // YADE has a function Create<Class>; false: the class occurs only as a base of
+                     // others
 };
 
 struct DeclaredMember {
   std::string class_name, name;
   std::size_t offset, size;  // [byte]
-  std::string type;          // as the C++ runtime spells it
-  bool has_getter;           // a plain data member for Boost.Python; else it is found by its value
+  std::string type;          // as demangled by the C++ runtime
+  bool has_getter;           // plain data member in Boost.Python; false: it is found by its value
 };
 
 struct DeclaredInterface {
   std::vector<DeclaredClass> classes;
   std::vector<DeclaredMember> members;
-  // Classes whose table of virtual functions is compared, each with the mangled name of a
-  // do-nothing child.
+  // Classes whose vtable is compared, each with the mangled name of an empty derived class.
   struct Table {
     std::string class_name, mangled_child;
   };
   std::vector<Table> tables;
-  std::size_t view_flag_size;  // of OpenGLRenderer::initDone [byte]; 0: not used
+  std::size_t view_flag_size;  // size of OpenGLRenderer::initDone [byte]; 0: not used
 
-  // Null when there is none.
+  // Null if there is none.
   const DeclaredClass* find_class(const std::string& name) const;
   const DeclaredMember* find_member(const std::string& class_name, const std::string& name) const;
 };
 
-// Made from the declarations, or from YADE's own headers if the plugin is built against those.
+// Built from the declarations, or from YADE's own headers if the plugin is compiled with those.
 DeclaredInterface declared_interface();
 
-// The readable form of a mangled type name; the name itself if it is not mangled.
+// Demangled type name; the name itself if it is not mangled.
 std::string demangled(const char* mangled);
 
 }  // namespace statejump::yade_abi

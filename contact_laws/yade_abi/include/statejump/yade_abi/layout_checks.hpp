@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compares the measured sizes and offsets of the declared variant with the declarations, at compile
-// time. The guard compares them with the running libraries.
+// Compares the declarations with the measured sizes and offsets of their variant, at compile time.
+// The guard makes the same comparison with the running libraries.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 namespace statejump::yade_abi {
 
 #pragma GCC diagnostic push
-// The classes have virtual functions. GCC lays out their single bases as offsetof assumes.
+// The classes have virtual functions. GCC lays out single inheritance as offsetof assumes.
 #pragma GCC diagnostic ignored "-Winvalid-offsetof"
 
 static_assert(sizeof(yade::Vector3r) == 24 && alignof(yade::Vector3r) == 8);
@@ -20,8 +20,8 @@ static_assert(sizeof(yade::Factorable) == 24);
 static_assert(sizeof(yade::Serializable) == 24);
 static_assert(sizeof(yade::Indexable) == 8);
 
-// The build makes measured_layout.inc from variants/<variant>_members.csv. offsetof accepts no
-// function.
+// The build generates measured_layout.inc from variants/<variant>_members.csv. Macros, because
+// offsetof needs the names of class and member.
 #define STATEJUMP_CLASS(Class, bytes, allocated) static_assert(sizeof(yade::Class) == (bytes));
 #define STATEJUMP_MEMBER(Class, member, place, bytes, getter) \
   static_assert(offsetof(yade::Class, member) == (place));    \
@@ -32,7 +32,7 @@ static_assert(sizeof(yade::Indexable) == 8);
 #undef STATEJUMP_MEMBER
 #undef STATEJUMP_PRIVATE_MEMBER
 
-// The second base of a functor, through which multiple dispatch calls it.
+// Functor has two bases; multiple dispatch calls it through the second.
 static_assert(sizeof(yade::Functor) == 80 && sizeof(yade::BoundFunctor) == 80 + sizeof(void*));
 
 #pragma GCC diagnostic pop

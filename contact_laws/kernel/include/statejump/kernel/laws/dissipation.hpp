@@ -15,9 +15,8 @@ struct ImpactParameters {
   double impact_speed = 1.0;  ///< delta_dot_0 [m/s], > 0: approach speed when the contact began
 };
 
-/// Checks an impact when it is set. Whether a law accepts e = 0 depends on the law, see
+/// Checks restitution and impact speed; call it whenever they are set. Some laws reject e = 0, see
 /// restitution_of().
-/// @throws std::invalid_argument that names the field, its value and its range
 inline void validate(const ImpactParameters& impact) {
   check(parameter::restitution_from_zero, impact.restitution);
   require(std::isfinite(impact.impact_speed) && impact.impact_speed > 0.0, "impact_speed",
@@ -25,8 +24,8 @@ inline void validate(const ImpactParameters& impact) {
 }
 
 /// Normal force with hysteresis damping, F = F_elastic (1 + (chi/K) delta_dot) [N], clipped at 0:
-/// the bodies never pull on each other. For F_elastic = K delta^n this is K delta^n + chi delta^n
-/// delta_dot. A free impact never reaches the clip; a joint pulled apart does.
+/// the bodies never pull on each other. For F_elastic = K delta^n, F = K delta^n + chi delta^n
+/// delta_dot. The clip is never active in a free impact, but it is in a joint that is pulled apart.
 ///
 /// Resulting restitution. The equation v dv/(1 + lambda v) = -(F_elastic/m) d(delta), lambda =
 /// chi/K, has the same right side during approach and rebound. So for every elastic law the true
@@ -34,8 +33,8 @@ inline void validate(const ImpactParameters& impact) {
 ///
 ///    a - ln(1 + a) = -a e' - ln(1 - a e'),   e' = 1 - 2a/3 + ... for small a.
 ///
-/// lankarani_nikravesh and hunt_crossley (a = 3/2 (1 - e) to first order) return e only for e -> 1.
-/// flores (a = 8/5 (1 - e)) returns 1 - 16/15 (1 - e) there, but e' -> 0 as e -> 0.
+/// lankarani_nikravesh and hunt_crossley (a = 3/2 (1 - e) to first order) give e' = e only for e ->
+/// 1. flores (a = 8/5 (1 - e)) gives e' = 1 - 16/15 (1 - e) there, but e' -> 0 as e -> 0.
 /// @param elastic_force [N], >= 0; @param damping_ratio chi/K [s/m]
 /// @param penetration_rate delta_dot [m/s], positive while approaching
 inline double damped_force(double elastic_force, double damping_ratio, double penetration_rate) {
@@ -50,7 +49,7 @@ struct NoDissipation {
 };
 
 /// Lankarani and Nikravesh, J. Mech. Des. 112, 1990: chi/K = 3/4 (1 - e^2)/v0 [s/m]. Derived for
-/// small losses; for e -> 0 it still returns e' = 0.66. See damped_force().
+/// small losses; for e -> 0 the true restitution is still 0.66. See damped_force().
 struct LankaraniNikravesh {
   static constexpr LawInfo info{"lankarani_nikravesh",
                                 "chi = 3/4 K (1 - e^2)/v0",
@@ -65,7 +64,7 @@ struct LankaraniNikravesh {
 };
 
 /// Hunt and Crossley, J. Appl. Mech. 42, 1975: chi/K = 3/2 (1 - e)/v0 [s/m]. Derived for small
-/// losses; for e -> 0 it still returns e' = 0.49. See damped_force().
+/// losses; for e -> 0 the true restitution is still 0.49. See damped_force().
 struct HuntCrossley {
   static constexpr LawInfo info{"hunt_crossley",
                                 "chi = 3/2 K (1 - e)/v0",
@@ -79,7 +78,7 @@ struct HuntCrossley {
 };
 
 /// Flores, Machado, Silva and Martins, Multibody Syst. Dyn. 25, 2011: chi/K = 8/5 (1 - e)/(e v0)
-/// [s/m]. Meant for the whole range of e; for e -> 1 the loss is 16/15 of the requested one. See
+/// [s/m]. Meant for the whole range of e; for e -> 1 the loss 1 - e' is 16/15 of 1 - e. See
 /// damped_force().
 struct FloresDissipation {
   static constexpr LawInfo info{"flores",
@@ -93,18 +92,18 @@ struct FloresDissipation {
   }
 };
 
-/// Dissipation that returns e exactly: a = lambda v0 of damped_force() for e' = e,
+/// Dissipation whose true restitution is exactly e: a = lambda v0 of damped_force() for e' = e,
 ///
 ///    a - ln(1 + a) = -a e - ln(1 - a e),   chi/K = a/v0.
 ///
 /// With q = -ln(1 - a e), a = (1 - exp(-q))/e, Newton's method finds the nonzero root of a (1 + e)
-/// - ln(1 + a) - q from above. The function is concave there, so that the steps do not overshoot.
-/// Starts: a < 1/e, and a e < 3/2 (1 - e). No constant is fitted.
+/// - ln(1 + a) - q from above. The function is concave there: no overshoot. The initial q follows
+/// from a < 1/e for e <= 0.5 and from a e < 3/2 (1 - e) otherwise. No constant is fitted.
 ///
 /// e = 0 would need an infinite damper; e < 1e-6 is replaced by 1e-6, which is the largest error of
-/// this law. For small e, a = 1/e: the force rises 1/e times as fast. An explicit integrator then
-/// has to resolve a depth smaller by e^0.4. The solution costs as much as many time steps, so
-/// prepare() computes it once.
+/// this law. For small e, a = 1/e and the force rises 1/e times as fast. An explicit integrator
+/// then has to resolve a depth smaller by the factor e^0.4. One solution costs as much as many time
+/// steps, so prepare() computes it once.
 struct ExactRestitution {
   static constexpr LawInfo info{
       "exact_restitution",
@@ -118,7 +117,7 @@ struct ExactRestitution {
     const double e = std::max(impact.restitution, smallest);
     return (e == known_for_ ? known_ : coefficient(e)) / impact.impact_speed;
   }
-  /// Computes the coefficient of later impacts in advance; results do not change.
+  /// Computes the coefficient for this e in advance; it changes the cost, not the results.
   void prepare(double restitution) {
     known_for_ = std::max(restitution, smallest);
     known_ = coefficient(known_for_);
@@ -139,7 +138,7 @@ struct ExactRestitution {
 
  private:
   static constexpr double smallest = 1e-6;
-  double known_for_ = 1.0;  // e for which the coefficient is known
+  double known_for_ = 1.0;  // e of the stored coefficient `known_`
   double known_ = 0.0;
 };
 

@@ -17,31 +17,31 @@ namespace statejump::kernel::laws {
 
 /// One contact without bodies, driven along a path of depth and slide.
 struct DrivenContact {
-  JointLaw law;         ///< its tangential velocity law is not used: the path prescribes the slide
-  ElasticPair elastic;  ///< E*, G* [Pa], > 0
+  JointLaw law;             ///< tangential_velocity is ignored: the path prescribes the slide
+  ElasticPair elastic;      ///< E*, G* [Pa], > 0
   NormalGeometry geometry;  ///< see driven_geometry()
 };
 
-/// End point of one step of the path, which is a straight line from the current point. The laws
-/// receive the whole step.
+/// End point of one step. The step is a straight line from the current point, and the laws
+/// receive it as a single increment.
 struct DrivenTarget {
-  double depth = 0.0;                  ///< delta [m]; <= 0: the contact is open
-  std::optional<double> normal_force;  ///< [N], >= 0; if given, the depth follows from it
-  double slide_x = 0.0;                ///< of body 1 against body 2 since the start of the path [m]
-  double slide_y = 0.0;                ///< across it [m]
-  std::optional<double> tangential_force;  ///< along x [N], positive along the slide that causes
-                                           ///< it; if given, slide_x follows from it
-  double duration = 0.0;  ///< of the step [s]; 0: rates are unknown and count as zero
+  double depth = 0.0;                      ///< delta [m]; <= 0: the contact is open
+  std::optional<double> normal_force;      ///< F_N [N], >= 0; if given, the depth follows from it
+  double slide_x = 0.0;                    ///< body 1 relative to body 2 [m], 0 at the start
+  double slide_y = 0.0;                    ///< perpendicular to slide_x [m]
+  std::optional<double> tangential_force;  ///< F_T along x [N], positive along the slide that
+                                           ///< causes it; if given, slide_x follows from it
+  double duration = 0.0;  ///< duration of the step [s]; 0: rates are unknown and count as zero
 };
 
 /// State of the contact at the end of a step.
 struct DrivenState {
-  double depth = 0.0;                      ///< [m]
-  double slide_x = 0.0;                    ///< [m]
-  double slide_y = 0.0;                    ///< [m]
-  double normal_force = 0.0;               ///< with the dissipation law [N], >= 0
-  double tangential_force_x = 0.0;         ///< [N], positive along the slide that causes it
-  double tangential_force_y = 0.0;         ///< [N]
+  double depth = 0.0;               ///< [m]
+  double slide_x = 0.0;             ///< [m]
+  double slide_y = 0.0;             ///< [m]
+  double normal_force = 0.0;        ///< F_N including the dissipation law [N], >= 0
+  double tangential_force_x = 0.0;  ///< [N], positive in the direction of the slide that causes it
+  double tangential_force_y = 0.0;  ///< [N]
   double normal_elastic_energy = 0.0;      ///< [J]
   double tangential_elastic_energy = 0.0;  ///< [J]
   double friction_dissipation = 0.0;       ///< since the start of the path [J]
@@ -66,7 +66,7 @@ inline NormalGeometry driven_geometry(double effective_radius, double radial_cle
   return {journal_radius, journal_radius + radial_clearance, contact_length};
 }
 
-/// Checks a contact when it is set.
+/// Checks a driven contact; call it whenever it is set.
 /// @throws std::invalid_argument that names the field, its value and its range, or the law that
 ///        needs a missing field
 inline void validate(const DrivenContact& contact) {
@@ -86,7 +86,7 @@ inline void validate(const DrivenContact& contact) {
 namespace detail {
 
 /// Smallest number in [low, high] for which a monotone predicate holds, found by bisection down to
-/// neighbouring numbers. The predicate must hold at high and at every number above the first.
+/// neighbouring floating-point numbers. The predicate must hold at high.
 template <class Predicate>
 double first_true(double low, double high, const Predicate& holds) {
   for (;;) {
@@ -152,8 +152,8 @@ inline DrivenState drive(const DrivenContact& contact, const DrivenState& before
   after.damping_dissipation += (after.normal_force - normal.force) * rate * duration;
 
   const double stiffness = tangential_stiffness(contact.elastic, normal.stiffness);
-  // The contact slides only while it touches: in the part of the step after it closes, or before it
-  // opens.
+  // The contact slides only while it touches: after it closes or before it opens within the step.
+  // The slide is scaled by the fraction of the step with positive depth.
   const double one = std::max(before.depth, after.depth);
   const double other = std::min(before.depth, after.depth);
   const double fraction = one > 0.0 && other < 0.0 ? one / (one - other) : 1.0;
@@ -173,13 +173,13 @@ inline DrivenState drive(const DrivenContact& contact, const DrivenState& before
       return -friction(slide_x, trial).force_on_1.x();
     };
     const double limit = contact.law.friction_parameters.friction_coefficient * after.normal_force;
-    const double margin =
-        1e-14 * limit;  // so that the limit itself, rounded as in a file, can be reached
+    const double margin = 1e-14 * limit;  // a force rounded in a file can exceed the limit
+                                          // slightly; it must still be reachable
     const double side = force < at(before.slide_x) ? -1.0 : 1.0;
     const auto reaches = [&](double slide_x) { return side * (at(slide_x) - force) >= -margin; };
     after.slide_x = before.slide_x;
     if (!reaches(after.slide_x)) {
-      // Start at half the slide without slip; stop at a slide that is too large for any joint.
+      // Start with half the elastic slide force/k_t; give up at 1000 journal radii.
       double far = stiffness > 0.0 ? 0.5 * std::max(std::abs(force), limit) / stiffness : 0.0;
       const double beyond = 1e3 * contact.geometry.journal_radius;
       while (far > 0.0 && far < beyond && !reaches(before.slide_x + side * far)) far *= 2.0;

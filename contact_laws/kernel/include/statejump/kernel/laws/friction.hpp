@@ -12,15 +12,15 @@
 
 namespace statejump::kernel::laws {
 
-/// Parameters of the friction laws; each law reads those that it needs.
+/// Parameters of the friction laws; each law reads only its own.
 struct FrictionParameters {
   double friction_coefficient = parameter::friction_coefficient.default_value;  ///< mu [-], >= 0
   double v0 =
-      parameter::v0.default_value;  ///< [m/s], 0 <= v0 < v1; ambrosio: no friction up to here
-  double v1 = parameter::v1.default_value;  ///< [m/s], ambrosio: full friction from here
+      parameter::v0.default_value;  ///< [m/s], 0 <= v0 < v1; ambrosio: no friction for v <= v0
+  double v1 = parameter::v1.default_value;  ///< [m/s]; ambrosio: full friction for v >= v1
 };
 
-/// Checks friction parameters when they are set.
+/// Checks friction parameters; call it whenever they are set.
 /// @throws std::invalid_argument that names the field, its value and its range
 inline void validate(const FrictionParameters& parameters) {
   check(parameter::friction_coefficient, parameters.friction_coefficient);
@@ -32,7 +32,7 @@ inline void validate(const FrictionParameters& parameters) {
 /// Input of a friction law in this step.
 struct FrictionKinematics {
   double normal_force;          ///< F_N [N], >= 0
-  double tangential_stiffness;  ///< k_t [N/m]; read by laws with a memory
+  double tangential_stiffness;  ///< k_t [N/m]; read only by laws with a memory
   Vector3 tangential_velocity;  ///< v_t of 1 relative to 2 [m/s], see tangential_velocity.hpp
   double time_step;             ///< dt [s], >= 0
   Vector3 normal;               ///< unit, perpendicular to the tangent plane
@@ -45,10 +45,10 @@ struct FrictionResponse {
   double dissipation;     ///< of this step [J], >= 0
 };
 
-/// A friction law either has a memory (Trait::has_memory) or is a function of the velocity at one
-/// instant. With a memory it receives the slide of the step, as velocity times step. Without, it is
-/// smooth enough for an adaptive integrator. `largest_slope()` is the largest slope of force over
-/// velocity [N s/m]: a viscous damper that an explicit integrator has to resolve.
+/// A friction law is one of two types. A law with a memory (Trait::has_memory) receives the slide
+/// of the step, as velocity times time step. A law without one is a function of the current
+/// velocity, smooth enough for an adaptive integrator. `largest_slope()` returns the largest slope
+/// of force over velocity [N s/m]: a viscous damper that an explicit integrator has to resolve.
 
 /// No friction; the force is exactly zero.
 struct NoFriction {
@@ -65,7 +65,8 @@ struct NoFriction {
 ///
 ///    F_T = mu mu_d F_N,   mu_d = 0 (v <= v0), (v - v0)/(v1 - v0) between, 1 (v >= v1),
 ///
-/// directed opposite to v_t, which the paper does not state. Dissipation F_T v dt of the step [J].
+/// directed opposite to v_t, which the paper does not state. The dissipation of a step is F_T v dt
+/// [J].
 /// Limits: zero up to v0, so it cannot hold a static load. Under a tangential load T a joint creeps
 /// at v0 + (v1 - v0) T/(mu F_N). Stores no energy, has no history.
 struct AmbrosioFriction {
@@ -95,7 +96,7 @@ struct AmbrosioFriction {
 
 /// Mindlin's history spring under Coulomb's limit: mindlin_step() with limit mu F_N. The caller
 /// rotates the history with the contact, see transport(). Holds a static load up to mu F_N. k_t = 8
-/// G* a is that of a circular contact; for a line contact the caller supplies k_t.
+/// G* a is the stiffness of a circular contact; for a line contact the caller supplies k_t.
 struct MindlinFriction {
   static double largest_slope(const FrictionParameters&, double) { return 0.0; }
   static constexpr LawInfo info{"mindlin",
@@ -146,8 +147,9 @@ struct MindlinDeresiewiczFriction {
     if (history.memory.size() == 0) first = Vector3::Zero();
     return {history.tangential_force, response.elastic, response.dissipation};
   }
-  /// History of a contact loaded at a constant ratio of both forces: no annulus has slipped, slide
-  /// = 3/2 F_T/k_t. @param force_on_1 [N], within the limit; @param under the velocity is not read
+  /// History of a contact that was loaded with a constant ratio of tangential to normal force: no
+  /// annulus has slipped, the slide is 3/2 F_T/k_t.
+  /// @param force_on_1 [N], at most mu F_N; @param under kinematics; its velocity is ignored
   ContactHistory preloaded(const FrictionParameters& parameters, const Vector3& force_on_1,
                            FrictionKinematics under) const {
     under.tangential_velocity = -1.5 / under.tangential_stiffness * force_on_1;

@@ -19,14 +19,14 @@ struct JointLaw {
   TangentialVelocityLaw tangential_velocity = MaterialVelocity{};
   FrictionParameters friction_parameters;                     ///< mu, v0, v1
   double restitution = parameter::restitution.default_value;  ///< e [-], see restitution_of()
-  /// Lower bound of the impact speed that scales dissipation [m/s], > 0. A contact that begins more
-  /// slowly, for example one closed by a slow expansion, would have unbounded damping.
+  /// Lower bound of the impact speed in the dissipation law [m/s], > 0. Without it, a contact that
+  /// begins slowly, for example by thermal expansion, would have unbounded damping.
   double smallest_impact_speed = parameter::smallest_impact_speed.default_value;
   /// Axial length of a line contact [m], > 0; point laws ignore it.
   double contact_length = parameter::contact_length.default_value;
 };
 
-/// Names of the four laws, as case files spell them.
+/// Names of the four laws as spelled in case files.
 struct JointLawNames {
   std::string normal = HertzInternal::info.name;
   std::string dissipation = NoDissipation::info.name;
@@ -53,7 +53,7 @@ inline std::string incompatibility(const JointLaw& law) {
          names_with<NormalLaw>(Trait::point_contact) + ", not '" + law_info(law.normal).name + "'";
 }
 
-/// Checks the parameters when they are set, and that the laws are compatible.
+/// Checks the parameters and whether the laws are compatible; call it whenever they are set.
 /// @throws std::invalid_argument that names the field, its value and its range
 inline void validate(const JointLaw& law) {
   if (const std::string wrong = incompatibility(law); !wrong.empty()) {
@@ -65,10 +65,10 @@ inline void validate(const JointLaw& law) {
   check(parameter::contact_length, law.contact_length);
 }
 
-/// Tangential stiffness of any normal law, k_t = 4 (G*/E*) k_n [N/m]. This is Mindlin's ratio of
-/// the two stiffnesses of a circular contact, where it is exactly 8 G* a (k_n = 2 E* a). For a line
-/// contact it is a choice: the tangential compliance of an infinite cylinder has the same logarithm
-/// as the normal one.
+/// Tangential stiffness for any normal law, k_t = 4 (G*/E*) k_n [N/m]. This is Mindlin's ratio of
+/// the two stiffnesses. It is exact for a circular contact, where k_n = 2 E* a and k_t = 8 G* a.
+/// For a line contact it is a choice: the tangential compliance of an infinite cylinder has the
+/// same logarithm as the normal one.
 /// @param normal_stiffness dF_N/d(delta) [N/m], elastic
 inline double tangential_stiffness(const ElasticPair& elastic, double normal_stiffness) {
   return 4.0 * elastic.effective_shear_modulus / elastic.effective_young_modulus * normal_stiffness;

@@ -21,24 +21,25 @@ struct JointKinematics {
   BodyMotion motion_2;      ///< of the bearing (slot)
   Vector3 axis;             ///< unit, of the bearing; read only by the velocity law 'paper'
   double impact_speed;      ///< approach speed when this contact began [m/s]
-  double clearance_rate;  ///< dc/dt by expansion [m/s]; delta_dot = approach speed - clearance_rate
-  double time_step;       ///< dt [s], >= 0
+  double clearance_rate;    ///< dc/dt by thermal expansion [m/s]; delta_dot = approach speed -
+                            ///< clearance_rate
+  double time_step;         ///< dt [s], >= 0
 };
 
 /// Contact forces of a joint and their effect on the two bodies.
 struct JointResponse {
   ContactResponse contact;   ///< forces at the contact, energies of this step
-  Wrench wrench;             ///< from the same tangential velocity law as the velocity of friction
-  double dissipation_force;  ///< of the dissipation law alone [N]; times clearance_rate it is work
-                             ///< of the expansion
+  Wrench wrench;             ///< computed with the arms of the same tangential velocity law
+  double dissipation_force;  ///< force of the dissipation law alone [N]; times clearance_rate it is
+                             ///< the power of the thermal expansion
   double dissipation_slope;  ///< dF/d(approach speed) of the dissipation law [N s/m], >= 0
-  double friction_slope;     ///< largest dF_T/dv of the friction law [N s/m], >= 0; for ambrosio a
-                             ///< viscous damper that an explicit integrator has to resolve
+  double friction_slope;  ///< largest dF_T/dv of the friction law [N s/m], >= 0: a viscous damper
+                          ///< that an explicit integrator has to resolve (ambrosio)
 };
 
 namespace detail {
 
-/// Laws of the catalogue for contact_step(). Members are set once: this is the inner loop.
+/// Catalogue laws as the Laws of contact_step(). Members are set once: this is the inner loop.
 template <class Law>
 struct CatalogueLaws {
   const Law& law;
@@ -90,13 +91,13 @@ struct CatalogueLaws {
 
 }  // namespace detail
 
-/// Any joint law in contact_step(), with k_t = tangential_stiffness(). The viscous part c_t belongs
-/// to the history spring, so friction laws without one (none, ambrosio) have no c_t. hertz_internal
-/// + none + mindlin + material equals hertz_mindlin() up to rounding of k_t.
+/// contact_step() with any joint law and k_t = tangential_stiffness(). The viscous part c_t belongs
+/// to the history spring, so friction laws without a spring (none, ambrosio) have no c_t.
+/// hertz_internal + none + mindlin + material equals hertz_mindlin() up to rounding of k_t.
 ///
 /// Velocity and wrench come from the same tangential velocity law. Energy: as in hertz_mindlin().
-/// @param law a JointLaw or a StaticJointLaw. Its friction coefficient is not read; that of the
-///        contact pair applies.
+/// @param law a JointLaw or a StaticJointLaw. Its friction coefficient is ignored; `parameters` has
+///        the one that applies.
 /// @param parameters see validate(); not checked here
 /// @param history of this contact, rotated into the current tangent plane by the caller; updated
 /// @throws std::domain_error when the depth is outside the range of the normal law
@@ -115,9 +116,9 @@ JointResponse joint_response(const Law& law, const ContactParameters& parameters
 }
 
 /// Change of the potential V(delta, R1, R2) of the normal law when only the radii change, at fixed
-/// depth [J]. The effect of the radii on the depth, -F dc, is not included. Computed by a central
-/// difference along the change, with a step of 1e-5 of the smaller of clearance and R1. The change
-/// in one time step is too small to subtract. Relative error about 1e-9.
+/// depth [J]. The effect of the radii on the depth, -F dc, is not included. The change in one time
+/// step is too small to subtract, so a central difference along the change is used. Its step is
+/// 1e-5 of the smaller of clearance and R1. Relative error about 1e-9.
 /// @param before, after radii [m]; @param depth [m]
 template <class Law>
 double radius_energy_change(const Law& law, const NormalMaterial& material, double depth,

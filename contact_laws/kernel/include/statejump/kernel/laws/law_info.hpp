@@ -11,21 +11,21 @@
 
 namespace statejump::kernel::laws {
 
-/// Properties of a law besides its numbers. Code that depends on what a law can do reads its
+/// Properties of a law besides its numbers. Code that depends on a capability of a law reads its
 /// traits, never its name or type.
 enum class Trait : unsigned {
-  /// a body at rest can stay at rest under a load carried by this law
+  /// a body at rest can remain at rest under a load on this law
   holds_static_load = 1U << 0,
   /// no force at all
   frictionless = 1U << 1,
-  /// receives the slide of the step and keeps a history; else a function of the current velocity
+  /// receives the slide of the step and keeps a history; otherwise a function of the velocity
   has_memory = 1U << 2,
-  /// needs the axis of a bearing: invalid in a socket and on a flat face
+  /// needs the axis of a bearing: not available in a socket or on a flat face
   needs_axis = 1U << 3,
-  /// accepts the negative bearing radius of a bulging wall: the bearing's curvature has its sign
+  /// accepts a negative bearing radius (a bulging wall): uses signed curvature
   accepts_bulging_wall = 1U << 4,
-  /// Hertz's point contact F = 4/3 E* sqrt(R) delta^1.5; 1/R = 1/R1 - 1/R2 with
-  /// accepts_bulging_wall and 1/R1 + 1/R2 without
+  /// Hertz's point contact F = 4/3 E* sqrt(R) delta^1.5, with 1/R = 1/R1 - 1/R2 if
+  /// accepts_bulging_wall is set and 1/R = 1/R1 + 1/R2 otherwise
   point_contact = 1U << 5,
   /// valid only under a normal law that is a point_contact
   needs_point_contact = 1U << 6,
@@ -46,18 +46,18 @@ constexpr Traits operator|(Trait a, Trait b) {
   return Traits(a) | Traits(b);
 }
 
-/// A parameter of a law, as data: one range and one default for all checks and listings.
+/// A parameter of a law. All checks and listings use this one range and default.
 struct LawParameter {
-  const char* name;  ///< of the field of its parameter struct
+  const char* name;  ///< name of the field in the parameter struct
   const char* unit;  ///< "-" for a ratio
   double low;        ///< smallest value
-  double high;       ///< largest value, allowed unless infinite
+  double high;       ///< largest value; itself allowed if finite
   bool low_excluded;
-  double default_value;  ///< default value
+  double default_value;
   const char* meaning;
   const char* source;
 
-  /// False for NaN.
+  /// Whether the value lies in the range; false for NaN.
   constexpr bool allows(double value) const {
     const bool above = low_excluded ? value > low : value >= low;
     return above && (value < high || (value == high && high < infinity));
@@ -73,7 +73,7 @@ struct LawParameter {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 };
 
-/// Checks a parameter when it is set.
+/// Checks a parameter; call it whenever it is set.
 /// @throws std::invalid_argument that names the parameter, its value and its range
 inline void check(const LawParameter& parameter, double value) {
   if (parameter.allows(value)) return;
@@ -82,13 +82,13 @@ inline void check(const LawParameter& parameter, double value) {
 
 /// Description of a law, as data.
 struct LawInfo {
-  const char* name;     ///< as case files spell it
+  const char* name;     ///< name in case files
   const char* formula;  ///< plain text
   const char* source;   ///< publication and equation
   const char* range;    ///< range of validity; values outside are an error
   Traits traits;
   std::array<const LawParameter*, 4>
-      parameters;  ///< those that it reads; the remaining ones are null
+      parameters;  ///< the parameters that this law reads; unused entries are null
 
   constexpr bool has(Trait trait) const { return traits.has(trait); }
 };

@@ -39,7 +39,7 @@ struct NormalState {
   double elastic_energy;  ///< integral of F over delta [J], >= 0
 };
 
-/// Checks geometry and material when they are set; the laws do not check them.
+/// Checks geometry and material; call it whenever they are set, because the laws do not check them.
 /// @throws std::invalid_argument that names the field, its value and its range
 inline void validate(const NormalGeometry& geometry, const NormalMaterial& material) {
   const auto positive = [](double value, const char* name, const char* range) {
@@ -70,8 +70,8 @@ inline NormalState from_hertz(const HertzState& state) {
   return {state.force, state.stiffness, state.contact_radius, state.elastic_energy};
 }
 
-/// Line contact with delta = f/(pi E*) u, u = s + ln(4 pi E* dR/f), f = F/L; s = -1 is Johnson's
-/// formula, s = +1 ESDU's.
+/// Line contact with delta = f/(pi E*) u, u = s + ln(4 pi E* dR/f), f = F/L. The constant s is -1
+/// in Johnson's formula and +1 in ESDU's.
 ///
 /// With y = delta/(4 dR) the relation is u e^-u = y e^-s. So u = -W(-y e^-s) on the lower branch of
 /// Lambert's W, where u > 1: a closed form. Then
@@ -79,7 +79,7 @@ inline NormalState from_hertz(const HertzState& state) {
 ///    dF/d(delta) = pi E* L/(u - 1)
 ///    integral of F d(delta) = F f/(4 pi E*) (2u - 1)
 ///
-/// At u = 1 (delta = 4 dR e^(s-1)) the stiffness is infinite and F(delta) turns over.
+/// At u = 1 (delta = 4 dR e^(s-1)) the stiffness is infinite: F(delta) has its turning point.
 inline NormalState logarithmic_line_contact(double depth, const NormalGeometry& geometry,
                                             const NormalMaterial& material, double scaled_limit) {
   const double modulus = pi * material.effective_young_modulus;
@@ -97,9 +97,9 @@ inline NormalState logarithmic_line_contact(double depth, const NormalGeometry& 
 }  // namespace detail
 
 /// Hertz as printed in the paper, eqs (6) to (8): F = 4/3 E* sqrt(R) delta^1.5 with R = R1 R2/(R1 +
-/// R2) [m], the radius of two balls in external contact. For a pin in a hole the sign is wrong and
-/// the joint is ten times too soft at Table 2. Kept for comparison with the paper. Limits: see
-/// hertz().
+/// R2) [m], the radius of two balls in external contact. A pin in a hole needs R2 - R1 instead;
+/// with the data of Table 2 this makes the joint ten times too soft. Kept for comparison with the
+/// paper. Limits: see hertz().
 struct HertzPaper {
   static constexpr LawInfo info{
       "hertz_paper",
@@ -184,9 +184,9 @@ struct Johnson {
 /// that is delta = f/(pi E*) (ln(4 pi E* dR/f) + 1): Johnson's logarithm with another reference
 /// depth, a softer contact. Units: m, N, Pa. (Texts that define sigma without 1/pi print other
 /// factors. The coefficient 1/(pi E*) of f ln f follows from elasticity, so it is used here.)
-/// Limits: turns over at f = 4 pi E* dR, delta = 4 dR; from that depth on the law reports an error.
-/// The half width is 4 R1 there, so the half-plane assumption fails much earlier: a < R1 needs f <
-/// pi E* dR/4.
+/// Limits: F(delta) turns over at f = 4 pi E* dR, delta = 4 dR; from that depth on the law reports
+/// an error. The half width is 4 R1 there, so the half-plane assumption fails much earlier: a < R1
+/// needs f < pi E* dR/4.
 struct Esdu78035 {
   static constexpr LawInfo info{
       "esdu_78035",
@@ -214,7 +214,7 @@ struct PerssonPoint {
   double offset;        ///< omega - 1; delta = C f/pi + omega - 1
 };
 
-/// X = 0: the arc reached by an infinite load or without clearance; epsilon = 84.83 degrees.
+/// Largest t, at X = 0: infinite load or no clearance; epsilon = 84.83 degrees.
 constexpr double persson_largest_t = 0.83461524547765723156;
 
 inline PerssonPoint persson_point(double t) {
@@ -244,9 +244,9 @@ inline PerssonPoint persson_point(double t) {
 ///    f/(E* dR) = 2 pi t (1 + t)/X,   X = 2 - ln(1 + t) - 2 t^2,   f = F/L.
 ///
 /// Depth: the first harmonic is a rigid translation, which a plane problem leaves undetermined (a
-/// point load sinks infinitely deep in an infinite plane). By choice, a light load here sinks as in
-/// Johnson's formula, delta -> f/(pi E*) (ln(4 pi E* dR/f) - 1). The reciprocal theorem between the
-/// contact and its increment then gives, in units of dR,
+/// point load sinks infinitely deep in an infinite plane). It is fixed here by a choice: at light
+/// load the depth tends to Johnson's, delta -> f/(pi E*) (ln(4 pi E* dR/f) - 1). The reciprocal
+/// theorem between the contact and its increment then gives, in units of dR,
 ///
 ///    delta = C f/(pi E* dR) + omega - 1,   C = pi E* d(delta)/df, where
 ///    N = 2 + 5t + 2t^2 - (1 + 2t) ln(1 + t)
@@ -254,7 +254,8 @@ inline PerssonPoint persson_point(double t) {
 ///    C = ln(4(1 + t)/t) - 2 - (omega - 1)/2 + t (2 + 5t/2 + (1 + 2t) X/N)/(1 + t)^2
 ///        + (1 + 2t)^2 ln(1 + t)/((1 + t) N).
 ///
-/// Boost's toms748 solves for t(delta); no constant is fitted. The energy is 1/2 integral of p u:
+/// Boost's toms748 solves for t(delta); no constant is fitted. The energy is half the integral of p
+/// u:
 /// 1/2 f (delta - dR (ln(1 + t) - t + t^2)/(t (1 + t))) L. The contact width is the arc R1 epsilon.
 /// Units: m, N, Pa.
 /// Limits: delta < R1, else an error; small strain; equal elastic constants of both bodies (only E*

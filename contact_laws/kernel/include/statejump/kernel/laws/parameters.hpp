@@ -3,13 +3,13 @@
 
 #include "statejump/kernel/laws/law_info.hpp"
 
-/// Parameters shared by the laws of a joint; each law lists those that it reads.
+/// Parameters shared by the laws of a joint; each law lists the ones that it reads.
 namespace statejump::kernel::laws::parameter {
 
 inline constexpr LawParameter friction_coefficient{
     "friction_coefficient",    "-", 0.0, LawParameter::infinity, false, 0.0, "mu",
     "of the pair of materials"};
-/// Must be below v1; validate(FrictionParameters) checks that.
+/// v0 must be less than v1; validate(FrictionParameters) checks that.
 inline constexpr LawParameter v0{
     "v0",
     "m/s",

@@ -18,7 +18,7 @@
 namespace statejump::kernel::laws {
 
 /// The catalogue. To add a law, write one type with an `info` and add it here; names, listing and
-/// look-up follow. The last type holds laws from shared objects, see user_law.hpp.
+/// look-up use these lists. The last type of each list holds user laws, see user_law.hpp.
 using NormalLaw =
     std::variant<HertzPaper, HertzInternal, Johnson, Esdu78035, Persson, UserNormalLaw>;
 using DissipationLaw = std::variant<NoDissipation, LankaraniNikravesh, HuntCrossley,
@@ -39,7 +39,7 @@ struct Catalogue<std::variant<Types...>> {
   static constexpr bool is_loaded = std::is_base_of_v<UserLawValue, Type>;
   static constexpr LawKind kind = std::variant_alternative_t<sizeof...(Types) - 1, Variant>::kind;
 
-  template <class Visit>  // visits a value of each law type of the project
+  template <class Visit>  // visits one value of each built-in law type
   static void for_each(Visit&& visit) {
     const auto own = [&](const auto& law) {
       if constexpr (!is_loaded<std::decay_t<decltype(law)>>) visit(law);
@@ -122,7 +122,7 @@ const LawInfo& info_of(const Law& law) {
 
 /// Law with that name.
 /// @throws std::invalid_argument that lists the known names, or explains why a loaded law is
-///        unusable
+/// @throws std::invalid_argument that lists the known names, or states why a loaded law is unusable
 inline NormalLaw normal_law(const std::string& name) {
   return detail::Catalogue<NormalLaw>::find("normal_law", name);
 }
@@ -146,7 +146,7 @@ std::vector<LawInfo> law_infos() {
 }
 
 /// Names of one kind, in the order of the catalogue, e.g. law_names<FrictionLaw>(). Unusable loaded
-/// laws are included, because their look-up explains the problem.
+/// laws are included, because looking them up reports the problem.
 template <class Law>
 std::vector<std::string> law_names() {
   return detail::Catalogue<Law>::names();
@@ -243,7 +243,7 @@ double damping_ratio(const Law& law, const ImpactParameters& impact) {
   return visit_law(law, [&](const auto& l) { return l(impact); });
 }
 
-/// Computes once what depends on e alone, for laws that are evaluated in every step.
+/// Precomputes the coefficient for this e, for laws that are evaluated in every step.
 inline void prepare(DissipationLaw& law, double restitution) {
   std::visit(
       [&](auto& l) {
@@ -252,8 +252,9 @@ inline void prepare(DissipationLaw& law, double restitution) {
       law);
 }
 
-/// History of a contact that is loaded at the start: from the law if it defines one, else that of a
-/// spring. @param force_on_1 [N], within the limit; @param under the velocity is not read
+/// History of a contact that is loaded at the start: from the law if it defines `preloaded`,
+/// otherwise that of a spring.
+/// @param force_on_1 [N], at most mu F_N; @param under kinematics; its velocity is ignored
 inline ContactHistory preloaded_history(const FrictionLaw& law,
                                         const FrictionParameters& parameters,
                                         const Vector3& force_on_1,

@@ -10,7 +10,7 @@
 namespace statejump::kernel::laws {
 
 /// A JointLaw whose four laws are known at compile time. A contact step is one inlined function
-/// without type dispatch. Its results are those of the JointLaw, bit for bit.
+/// without type dispatch. The results equal those of the JointLaw, bit for bit.
 template <class Normal, class Dissipation, class Friction, class TangentialVelocity>
 struct StaticJointLaw {
   Normal normal;
@@ -22,7 +22,7 @@ struct StaticJointLaw {
   double smallest_impact_speed;
   double contact_length;
 
-  /// Whether a law is of these types.
+  /// Whether the four laws have the types of this class.
   static bool covers(const JointLaw& law) {
     return std::holds_alternative<Normal>(law.normal) &&
            std::holds_alternative<Dissipation>(law.dissipation) &&
@@ -41,8 +41,7 @@ struct StaticJointLaw {
         contact_length(law.contact_length) {}
 };
 
-/// Precompiled combinations: the default laws of the cases. Each entry adds the code size of one
-/// step.
+/// Precompiled combinations: the default laws of the cases. Each adds the code of one contact step.
 using PrecompiledJointLaws =
     std::tuple<StaticJointLaw<HertzInternal, NoDissipation, MindlinFriction, MaterialVelocity>>;
 
@@ -61,7 +60,7 @@ decltype(auto) with_precompiled_law(const JointLaw& law, Act&& act) {
 
 }  // namespace detail
 
-/// Calls act with the law as one of PrecompiledJointLaws if it is one, else with the law itself.
+/// Calls act with the law as one of PrecompiledJointLaws, or with `law` itself if it is none.
 template <class Act>
 decltype(auto) with_precompiled_law(const JointLaw& law, Act&& act) {
   return detail::with_precompiled_law<0>(law, act);

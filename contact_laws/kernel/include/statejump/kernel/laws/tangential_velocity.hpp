@@ -8,17 +8,18 @@
 
 namespace statejump::kernel::laws {
 
-/// A tangential velocity law is a pair. The first is the relative velocity v of 1 (journal) to 2
-/// (bearing) [m/s] that enters friction. The second are the forces and moments on the two centres
-/// caused by a contact force F. They are transposes of each other: for all motions
+/// A tangential velocity law has two parts. The first is the velocity v of body 1 (journal)
+/// relative to body 2 (bearing) [m/s] that friction uses. The second are the forces and moments on
+/// the two centres caused by a contact force F. They are transposes of each other: for all motions
 ///
 ///    F . v = force_1 . v_C + torque_1 . omega_1 + force_2 . v_D + torque_2 . omega_2,
 ///
-/// so a friction force opposite to v can only take power from the bodies. Never mix the two laws.
+/// so a friction force opposite to v only takes power from the bodies. Never combine the parts of
+/// different laws.
 
 /// Velocity of the material at the contact point, v_C + omega_1 x arm_1 - v_D - omega_2 x arm_2,
-/// and moments arm x F. This is the behaviour of two rough surfaces. See revolute_contact(),
-/// contact_wrench(). Forces and moments balance.
+/// and moments arm x F, as for two rough surfaces. Forces and moments balance. See
+/// revolute_contact(), contact_wrench().
 struct MaterialVelocity {
   static constexpr LawInfo info{"material",
                                 "v = v_C + w1 x r1 - v_D - w2 x r2, moments r x F",
@@ -42,7 +43,8 @@ struct MaterialVelocity {
 ///    v = d' - c dn/dt = (d'.n) n + (delta/|d|) d'_t.
 ///
 /// The spins are absent: a journal that rotates in place slides without friction. The tangential
-/// part is that of the centres times delta/|d|, a few hundredths in a joint with play.
+/// part is the relative velocity of the centres times delta/|d|, a few hundredths in a joint with
+/// play.
 /// The transpose, by virtual power, is force_1 = F_n n + (delta/|d|) F_t on C, the opposite on D,
 /// and no moment on either body. (F_t and R x F_t on the bodies, combined with this velocity, would
 /// create power.)

@@ -20,7 +20,7 @@
 ///
 /// A law is one type, as in the catalogue: `info`, and the call operator of its kind. A tangential
 /// velocity law has velocity() and wrench() instead. The shared object contains a table of
-/// functions made from the type; the program stores values that point to such a table.
+/// functions generated from that type; the program stores values that point to such a table.
 namespace statejump::kernel::laws {
 
 enum class LawKind : std::uint32_t { normal, dissipation, friction, tangential_velocity };
@@ -30,14 +30,14 @@ using ErrorText = const char*;
 
 /// Interface of a shared object. Functions of other kinds are null.
 struct UserLawTable {
-  // The first four fields never move, so that a program can report what is wrong with an object of
-  // another version.
+  // The position of the first four fields never changes, so that a program can identify an object
+  // compiled for another version.
   std::uint32_t version;  ///< user_law_version of the object
   LawKind kind;
   const char* name;
-  const char* kernel;  ///< hash of the kernel headers used to compile it
+  const char* kernel;  ///< hash of the kernel headers that the object was compiled with
 
-  std::uint32_t sizes;  ///< exchanged_sizes() of its compiler
+  std::uint32_t sizes;  ///< exchanged_sizes() as computed by the compiler of the object
   const LawInfo* info;
   ErrorText (*largest_depth)(const NormalGeometry&, double&);
   ErrorText (*normal)(double, const NormalGeometry&, const NormalMaterial&, NormalState&);
@@ -52,7 +52,7 @@ struct UserLawTable {
 
 inline constexpr std::uint32_t user_law_version = 1;
 
-/// Sizes of the types in the table, as one number.
+/// Hash of the sizes of all types in the table, to detect incompatible compilers and versions.
 constexpr std::uint32_t exchanged_sizes() {
   std::uint32_t all = 0;
   for (const std::size_t size :
@@ -93,7 +93,7 @@ constexpr LawKind kind_of() {
                        : LawKind::tangential_velocity;
 }
 
-/// Calls a function of the law; no exception leaves the object.
+/// Calls a function of the law; returns the text of its exception, which must not leave the object.
 template <class Function>
 ErrorText guarded(Function&& function) {
   thread_local std::string text;
@@ -161,10 +161,10 @@ const UserLawTable* user_law_table(const char* kernel) {
 struct LoadedLaw {
   LawKind kind{};
   std::string name;
-  std::string origin;                   ///< where it was found, for messages
+  std::string origin;                   ///< file that contains it, for messages
   std::string problem;                  ///< why it is unusable; empty if usable
-  LawInfo info{};                       ///< its parameters are copies of the program
-  const UserLawTable* table = nullptr;  ///< null if it has a problem
+  LawInfo info{};                       ///< description; its parameters are copied into the program
+  const UserLawTable* table = nullptr;  ///< null if `problem` is not empty
 };
 
 /// All loaded laws. The loader fills them before laws are looked up; entries keep their address.
@@ -186,7 +186,7 @@ class UserLawValue {
   void throw_if(ErrorText error) const {
     if (error) fail(error);
   }
-  /// Rejects a result that is not finite, or negative where that has no meaning.
+  /// Rejects a result that is not finite or not `good`, for example not positive.
   void require_result(bool good, const char* what, double value) const {
     if (good && std::isfinite(value)) return;
     char text[96];
