@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <list>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -23,6 +24,9 @@ using Matrix = Eigen::Ref<const Eigen::SparseMatrix<double>>;
 
 /// Fill of L over the fill that AMD predicted, above which COLAMD is tried as well.
 constexpr double exceeded_fill = 2.0;
+/// Positions over nonzero entries up to which a new pattern has the positions of the last one as
+/// well. Iterates with other zeros then share an order; more positions fill the factors too much.
+constexpr double widest = 1.5;
 /// Columns that a thread takes at once.
 constexpr std::size_t columns_at_once = 20000;
 
@@ -48,55 +52,55 @@ struct SparseFactor::Factors {
     // as much, gigabytes for a large truss. KLU enlarges the factors on demand.
     common.initmem = 1.0;
   }
-  ~Factors() { klu_free_numeric(&numeric, &common); }
   Factors(const Factors&) = delete;
   Factors& operator=(const Factors&) = delete;
 
   /// Computes factors with new pivots.
   bool choose_pivots(int* columns, int* rows, double* values) {
     halves.end();
-    klu_free_numeric(&numeric, &common);
-    odd_permutation.reset();
-    numeric = klu_factor(columns, rows, values, order->symbolic, &common);
-    if (numeric == nullptr || common.status != KLU_OK) return false;
-    halves.begin(*numeric, *order->symbolic, order->halves);
+    now.odd_permutation.reset();
+    now.numeric.reset(klu_factor(columns, rows, values, now.order->symbolic, &common));
+    if (now.numeric == nullptr || common.status != KLU_OK) return false;
+    halves.begin(*now.numeric, *now.order->symbolic, now.order->halves);
     return true;
   }
 
   /// Computes factors of a small matrix in the order of COLAMD, and keeps them if they have fewer
   /// entries. AMD's order fills far more than predicted if rows are exchanged for pivots.
   bool choose_order(double* values) {
-    const std::shared_ptr<const Order> first = order;
+    const std::shared_ptr<const Order> first = now.order;
     const double foreseen = first->symbolic->lnz;  // negative for COLAMD, which predicts no fill
-    if (foreseen < 0.0 || numeric->lnz <= exceeded_fill * foreseen || settled == first) return true;
-    const int filled = numeric->lnz + numeric->unz;
-    order = std::make_shared<const Order>(size, *first->pattern, Ordering::colamd, common);
-    const bool is_better = order->symbolic != nullptr &&
-                           choose_pivots(order->columns(), order->rows(), values) &&
-                           numeric->lnz + numeric->unz < filled;
+    if (foreseen < 0.0 || now.numeric->lnz <= exceeded_fill * foreseen || now.settled == first)
+      return true;
+    const int filled = now.numeric->lnz + now.numeric->unz;
+    now.order = std::make_shared<const Order>(size, *first->pattern, Ordering::colamd, common);
+    const bool is_better = now.order->symbolic != nullptr &&
+                           choose_pivots(now.order->columns(), now.order->rows(), values) &&
+                           now.numeric->lnz + now.numeric->unz < filled;
     if (is_better) return true;
-    order = settled = first;
-    return choose_pivots(order->columns(), order->rows(), values);
+    now.order = now.settled = first;
+    return choose_pivots(now.order->columns(), now.order->rows(), values);
   }
 
   /// Whether every pivot exceeds the rounding of its column, within its diagonal block.
   /// @param growth possible growth of rounding errors before the pivot
   bool has_pivots(const Matrix& matrix, double growth) const {
     const double least = singular_pivot * growth;
-    const double* pivots = static_cast<const double*>(numeric->Udiag);
+    const double* pivots = static_cast<const double*>(now.numeric->Udiag);
     // KLU divides every row by its largest entry, in the order of the pivots.
-    const double* row_size = numeric->Rs;
+    const double* row_size = now.numeric->Rs;
     std::atomic<bool> has = true;
-    for (int block = 0; block < order->symbolic->nblocks; ++block) {
-      const int first = order->symbolic->R[block];
-      each_in_parallel(static_cast<std::size_t>(order->symbolic->R[block + 1] - first),
+    for (int block = 0; block < now.order->symbolic->nblocks; ++block) {
+      const int first = now.order->symbolic->R[block];
+      each_in_parallel(static_cast<std::size_t>(now.order->symbolic->R[block + 1] - first),
                        columns_at_once, [&](std::size_t in_block) {
                          const int k = first + static_cast<int>(in_block);
                          // Sufficient if the entries of the column are at most 1.
                          if (std::abs(pivots[k]) > least) return;
                          double largest = 0.0;
-                         for (Matrix::InnerIterator it(matrix, order->symbolic->Q[k]); it; ++it) {
-                           const int pivot = numeric->Pinv[it.row()];
+                         for (Matrix::InnerIterator it(matrix, now.order->symbolic->Q[k]); it;
+                              ++it) {
+                           const int pivot = now.numeric->Pinv[it.row()];
                            if (pivot < first) continue;
                            largest = std::max(largest, std::abs(it.value()) / row_size[pivot]);
                          }
@@ -110,11 +114,12 @@ struct SparseFactor::Factors {
   /// more than `most`, or if a pivot does not exceed the rounding amplified by that factor. New
   /// pivots then show whether the matrix is singular.
   bool keeps_pivots(int* columns, int* rows, double* values, const Matrix& matrix, double most) {
-    if (numeric == nullptr) return false;
+    if (now.numeric == nullptr) return false;
     if (halves.are_halved()) {
-      if (!halves.refactor(columns, rows, values, *numeric, *order->symbolic)) return false;
+      if (!halves.refactor(columns, rows, values, *now.numeric, *now.order->symbolic)) return false;
     } else {
-      const int made = klu_refactor(columns, rows, values, order->symbolic, numeric, &common);
+      const int made =
+          klu_refactor(columns, rows, values, now.order->symbolic, now.numeric.get(), &common);
       if (made == 0 || common.status != KLU_OK) return false;
     }
     const double growth = std::max(1.0, largest_of_lower());
@@ -126,11 +131,11 @@ struct SparseFactor::Factors {
   /// column precede its entries, because klu_extract() copies all of L.
   double largest_of_lower() const {
     double largest = 0.0;
-    for (int block = 0; block < order->symbolic->nblocks; ++block) {
-      const auto first = static_cast<std::size_t>(order->symbolic->R[block]);
-      const auto length = static_cast<std::size_t>(order->symbolic->R[block + 1]) - first;
+    for (int block = 0; block < now.order->symbolic->nblocks; ++block) {
+      const auto first = static_cast<std::size_t>(now.order->symbolic->R[block]);
+      const auto length = static_cast<std::size_t>(now.order->symbolic->R[block + 1]) - first;
       if (length < 2) continue;
-      auto* units = static_cast<double*>(numeric->LUbx[block]);
+      auto* units = static_cast<double*>(now.numeric->LUbx[block]);
       std::vector<double> of_piece((length + columns_at_once - 1) / columns_at_once, 0.0);
       in_parallel(of_piece.size(), [&](std::size_t piece) {
         const std::size_t begin = first + piece * columns_at_once;
@@ -142,7 +147,7 @@ struct SparseFactor::Factors {
     return largest;
   }
   double column_of_lower(double* units, std::size_t column) const {
-    const FactorColumn lower(units, numeric->Lip, numeric->Llen, static_cast<int>(column));
+    const FactorColumn lower(units, now.numeric->Lip, now.numeric->Llen, static_cast<int>(column));
     double largest = 0.0;
     for (int i = 0; i < lower.length; ++i) raise(largest, std::abs(lower.entries[i]));
     return largest;
@@ -152,10 +157,16 @@ struct SparseFactor::Factors {
   struct Pattern {
     std::vector<int> columns, rows;
 
-    explicit Pattern(const Matrix& matrix) : columns{0} {
+    /// @param other pattern whose positions are included; null: none
+    explicit Pattern(const Matrix& matrix, const Pattern* other = nullptr) : columns{0} {
       for (Eigen::Index column = 0; column < matrix.outerSize(); ++column) {
+        const auto k = static_cast<std::size_t>(column);
+        auto at = other == nullptr ? 0 : static_cast<std::size_t>(other->columns[k]);
+        const auto end = other == nullptr ? 0 : static_cast<std::size_t>(other->columns[k + 1]);
         for (Matrix::InnerIterator it(matrix, column); it; ++it) {
-          if (it.value() != 0.0) rows.push_back(static_cast<int>(it.row()));
+          while (at < end && other->rows[at] < it.row()) ++at;
+          const bool is_included = at < end && other->rows[at] == it.row();
+          if (is_included || it.value() != 0.0) rows.push_back(static_cast<int>(it.row()));
         }
         columns.push_back(static_cast<int>(rows.size()));
       }
@@ -216,6 +227,23 @@ struct SparseFactor::Factors {
   };
 
   /// Arguments of KLU for a matrix. KLU takes no const pointers, but does not write to them.
+  struct FreeNumeric {
+    void operator()(klu_numeric* numeric) const {
+      klu_common defaults;
+      klu_defaults(&defaults);
+      klu_free_numeric(&numeric, &defaults);
+    }
+  };
+
+  /// An order with the last factors in it. Entries that are zero at some iterates make the pattern
+  /// of a truss alternate, often between the first and the later iterations of each solve.
+  struct Kept {
+    std::shared_ptr<const Order> order;    ///< Shared and only read.
+    std::shared_ptr<const Order> settled;  ///< Order that COLAMD did not improve.
+    std::unique_ptr<klu_numeric, FreeNumeric> numeric;
+    std::optional<bool> odd_permutation;  ///< Parity of rows and columns together, once computed.
+  };
+
   struct Arrays {
     int* columns;
     int* rows;
@@ -228,32 +256,53 @@ struct SparseFactor::Factors {
       const Arrays all{const_cast<int*>(matrix.outerIndexPtr()),
                        const_cast<int*>(matrix.innerIndexPtr()),
                        const_cast<double*>(matrix.valuePtr())};
-      if (order == nullptr) {
-        order = std::make_shared<const Order>(size, all.columns, all.rows, common);
+      if (now.order == nullptr) {
+        now.order = std::make_shared<const Order>(size, all.columns, all.rows, common);
       }
-      if (order->symbolic != nullptr) return all;
+      if (now.order->symbolic != nullptr) return all;
     } else {
-      if (order == nullptr || !order->pattern->take(matrix, entries)) {
-        klu_free_numeric(&numeric, &common);
-        Pattern pattern(matrix);
-        pattern.take(matrix, entries);
-        order = std::make_shared<const Order>(size, std::move(pattern), Ordering::amd, common);
-      }
-      if (order->symbolic != nullptr)
-        return Arrays{order->columns(), order->rows(), entries.data()};
+      choose_kept(matrix);
+      if (now.order->symbolic != nullptr)
+        return Arrays{now.order->columns(), now.order->rows(), entries.data()};
     }
-    order = nullptr;
+    now.order = nullptr;
     return std::nullopt;
   }
 
+  /// Makes current the factors whose pattern has a place for every entry of a small matrix: the
+  /// present ones, else the ones used last, else none in a new order.
+  void choose_kept(const Matrix& matrix) {
+    if (now.order != nullptr && now.order->pattern->take(matrix, entries)) return;
+    if (now.order != nullptr) others.push_front(std::move(now));
+    const auto found = std::find_if(others.begin(), others.end(), [&](const Kept& one) {
+      return one.order->pattern->take(matrix, entries);
+    });
+    if (found != others.end()) {
+      now = std::move(*found);
+      others.erase(found);
+    } else {
+      Pattern pattern(matrix);
+      if (!others.empty()) {
+        Pattern wide(matrix, &*others.front().order->pattern);
+        const double most = widest * static_cast<double>(pattern.rows.size());
+        if (static_cast<double>(wide.rows.size()) <= most) pattern = std::move(wide);
+      }
+      pattern.take(matrix, entries);
+      now = Kept{};
+      now.order = std::make_shared<const Order>(size, std::move(pattern), Ordering::amd, common);
+    }
+    if (others.size() > most_others) others.pop_back();
+  }
+
+  /// Most orders of a small matrix whose factors are kept beside the current ones.
+  static constexpr std::size_t most_others = 4;
+
   klu_common common{};
-  std::shared_ptr<const Order> order;    ///< Shared and only read.
-  std::shared_ptr<const Order> settled;  ///< Order that COLAMD did not improve.
+  Kept now;
+  std::list<Kept> others;       ///< Of a small matrix, the one used last first.
   std::vector<double> entries;  ///< Entries of a small matrix, in the positions of its pattern.
-  klu_numeric* numeric = nullptr;
   HalvedFactors halves;
   int size = 0;
-  std::optional<bool> odd_permutation;  ///< Parity of rows and columns together, once computed.
 };
 
 SparseFactor::SparseFactor() : factors_(std::make_unique<Factors>()) {}
@@ -267,18 +316,19 @@ bool SparseFactor::factorize(const Matrix& matrix, double most_growth) {
   if (!of) return false;
   if (f.keeps_pivots(of->columns, of->rows, of->values, matrix, most_growth)) return true;
   if (!f.choose_pivots(of->columns, of->rows, of->values)) return false;
-  if (f.order->pattern && !f.choose_order(of->values)) return false;
+  if (f.now.order->pattern && !f.choose_order(of->values)) return false;
   return f.has_pivots(matrix, 1.0);
 }
 
 void SparseFactor::order_like(const SparseFactor& other) {
-  if (other.factors_->order == nullptr || factors_->numeric != nullptr) return;
-  factors_->order = other.factors_->order;
+  if (other.factors_->now.order == nullptr || factors_->now.numeric != nullptr) return;
+  factors_->now.order = other.factors_->now.order;
 }
 
 void SparseFactor::release() {
   factors_->halves.end();
-  klu_free_numeric(&factors_->numeric, &factors_->common);
+  factors_->now.numeric.reset();
+  factors_->others.clear();
 }
 
 Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& right_side) const {
@@ -286,17 +336,17 @@ Eigen::VectorXd SparseFactor::solve(const Eigen::VectorXd& right_side) const {
   Factors& f = *factors_;
   if (f.size == 0) return result;
   if (f.halves.are_halved()) {
-    f.halves.solve(*f.numeric, *f.order->symbolic, result.data());
+    f.halves.solve(*f.now.numeric, *f.now.order->symbolic, result.data());
   } else {
-    klu_solve(f.order->symbolic, f.numeric, f.size, 1, result.data(), &f.common);
+    klu_solve(f.now.order->symbolic, f.now.numeric.get(), f.size, 1, result.data(), &f.common);
   }
   return result;
 }
 
 double SparseFactor::solutions_per_factorization() const {
   if (factors_->size == 0) return 1.0;
-  const double lower = factors_->numeric->lnz;
-  const double upper = factors_->numeric->unz;
+  const double lower = factors_->now.numeric->lnz;
+  const double upper = factors_->now.numeric->unz;
   return lower * upper / factors_->size / (lower + upper);
 }
 
@@ -304,11 +354,12 @@ int SparseFactor::determinant_sign() const {
   Factors& f = *factors_;
   if (f.size == 0) return 1;
   // Rows are divided by positive numbers; both permutations make the matrix block triangular.
-  if (!f.odd_permutation) {
-    f.odd_permutation = odd(f.numeric->Pnum, f.size) != odd(f.order->symbolic->Q, f.size);
+  if (!f.now.odd_permutation) {
+    f.now.odd_permutation =
+        odd(f.now.numeric->Pnum, f.size) != odd(f.now.order->symbolic->Q, f.size);
   }
-  bool negative = *f.odd_permutation;
-  const double* pivots = static_cast<const double*>(f.numeric->Udiag);
+  bool negative = *f.now.odd_permutation;
+  const double* pivots = static_cast<const double*>(f.now.numeric->Udiag);
   for (int k = 0; k < f.size; ++k) negative = negative != (pivots[k] < 0.0);
   return negative ? -1 : 1;
 }
