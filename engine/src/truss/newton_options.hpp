@@ -5,8 +5,8 @@
 
 namespace statejump::truss::detail {
 
-/// Tolerances and limits of Newton::solve(). `closure_tolerance` is in system.hpp, because the path
-/// uses it too.
+/// Tolerances and limits of Newton::solve(). `closure_tolerance` and force_rounding() belong to
+/// System, because the path uses them too. `closed` and `still` in solve() combine them.
 struct NewtonOptions {
   /// Forces balance to this fraction of the largest one. A sum of some fifteen entries in a row
   /// leaves 1e-15 by rounding, and the condition of a structure of many elements takes two to three
