@@ -106,8 +106,8 @@ PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_mistakes.py
 ```
 
 A message is one sentence on standard error with file, key, value and allowed values. For a misspelt name it suggests
-the nearest known one. A command with bad input runs nothing and writes nothing. A run that cannot continue reports
-joint, time, temperature and, if known, a remedy; its samples are dropped.
+the nearest known one. A command with bad input runs nothing and writes nothing. If a run cannot continue, the message
+names joint, time, temperature and, if known, a remedy. The samples of the run are not stored.
 
 | exit status | meaning |
 |---|---|
@@ -115,7 +115,7 @@ joint, time, temperature and, if known, a remedy; its samples are dropped.
 | 1 | done, but a tolerance of the case file is missed, or a contact problem is not solved to its tolerance |
 | 2 | bad input, a run that cannot finish, or results that cannot be written |
 | 70 | a fault of the program itself, with a traceback; please report it |
-| 129 | ended because its terminal was closed, as 143 |
+| 129 | ended because its terminal was closed, without incomplete files and without a message |
 | 130 | interrupted by Ctrl-C; the message states what was kept |
 | 143 | ended by SIGTERM, without incomplete files and without a message |
 

@@ -278,3 +278,38 @@ def test_bar_jumps_by_partial_slip_as_in_the_dem() -> None:
     assert abs(jumps["mindlin"]) < 0.3e-9
     assert "set dem.friction_law to 'mindlin_deresiewicz'" in reasons["mindlin"]
     assert "friction_law" not in reasons["mindlin_deresiewicz"]
+
+
+def hot_joint(part: str, expansion_per_K: float) -> dict[str, Any]:
+    """Return a case: 10 N press a journal down into its bearing, and one of both expands."""
+    return {
+        "case": {"name": "hot_joint", "kind": "truss"},
+        "truss": {"dimension": 2},
+        "node": [{"name": "A", "position_m": [-0.5, 0.0], "fixed": ["x", "y"]},
+                 {"name": "B", "position_m": [0.0, 0.0], "fixed": ["x", "y"]},
+                 {"name": "J", "position_m": [0.0, 0.0], "force_N": [0.0, -10.0]}],
+        "link": [{"name": "L", "nodes": ["A", "J"], "young_modulus_Pa": 70e9, "cross_section_area_m2": 9e-6,
+                  "thermal_expansion_per_K": 0.0, "mass_kg": 0.1}],
+        "revolute": [{"name": "R", "bearing_node": "B", "journal_node": "J", "journal_link": "L",
+                      "journal_radius_m": 5e-3, "radial_clearance_m": 1e-4, "friction_coefficient": 0.0,
+                      "young_modulus_Pa": 70e9, "poisson_ratio": 0.3, f"{part}_thermal_expansion_per_K": expansion_per_K}],
+        "thermal": {"shape": "triangle", "temperature_change_max_K": 100.0, "period_s": 0.2},
+        "reduced": {"sticking": "elastic"},
+        "output": {"samples_per_cycle": 20},
+    }
+
+
+@pytest.mark.parametrize(("part", "radius_m", "sign"), [("bearing", 5.1e-3, -1.0), ("journal", 5e-3, 1.0)])
+def test_journal_sinks_as_its_bearing_expands_in_every_model(part: str, radius_m: float, sign: float) -> None:
+    """The clearance changes by α ΔT R of the part, 25 µm. Its other value changes the depth of contact by 0.05 µm, and
+    motion swings by less."""
+    expansion_per_K = 5e-5
+    case = sj.load(hot_joint(part, expansion_per_K))
+    explicit = case.changed({"motion.scheme": "regularised", "motion.masses": "lumped", "motion.steps_per_cycle": 8000})
+    runs = {"quasi-static": case.reduced(), "motion": case.reduced(dynamic=True),
+            "penalty contact": explicit.reduced(dynamic=True), "DEM": case.dem()}
+    for name, run in runs.items():
+        height = run["displacement_m"][:, 2, 1]
+        assert height[0] == pytest.approx(-1e-4, abs=1e-6), name
+        assert height[10] - height[0] == pytest.approx(sign * expansion_per_K * 100.0 * radius_m, abs=1e-7), name
+        assert height[-1] == pytest.approx(height[0], abs=5e-8), name

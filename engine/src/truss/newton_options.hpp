@@ -5,8 +5,8 @@
 
 namespace statejump::truss::detail {
 
-/// Tolerances and limits of Newton::solve(). `closure_tolerance` is in system.hpp, because the path
-/// uses it too.
+/// Tolerances and limits of Newton::solve(). `closure_tolerance` and force_rounding() belong to
+/// System, because the path uses them too. `closed` and `still` in solve() combine them.
 struct NewtonOptions {
   /// Tolerated force residual over the largest force. Rounding leaves 1e-15 in a row of about
   /// fifteen entries, and the condition number of a large structure costs two to three decades.

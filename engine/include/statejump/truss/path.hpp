@@ -134,8 +134,9 @@ struct Path {
 /// statuses stick, slip, stop and open. The types in joints/ document their laws. One step is an
 /// implicit Euler step of this evolution. Newton's method with block pivoting between the statuses
 /// solves it (truss/newton.hpp). It has converged if every joint satisfies its status, forces
-/// balance to 1e-12 of the largest one, closures in metres to 1e-13 of the largest displacement,
-/// and forces at their limits to rounding.
+/// balance to 1e-12 of the largest one, closures in metres to 1e-13 of System::reach() (the largest
+/// displacement, within bounds), and forces at their limits to rounding. If rounding exceeds these
+/// bounds, it has converged when its steps vanish and forces balance to 1e-9.
 ///
 /// **Why the result does not depend on the increment.** With fixed statuses the state is an
 /// algebraic function of temperature: stick, stops and the cone |λ_t| = μ λ_n are holonomic. A step

@@ -2,8 +2,9 @@
 """The Python part of a type of element: one object per type, in a file of its own.
 
 Elements have a conservative law between nodes or links. Links are part of the truss itself, because joints and
-temperatures refer to them. Case, checks, arrays, solver, result, drawing, sensitivities and DEM use the registry
-(:data:`statejump.kinds.truss.elements.ELEMENTS`) and know no single type.
+temperatures refer to them. Case, checks, arrays, solver, result, drawing, sensitivities and input of the DEM use the
+registry (:data:`statejump.kinds.truss.elements.ELEMENTS`) and know no single type. The scene of the DEM, ``build`` in
+``yade_scripts/runner/scene_truss.py``, has a loop for each type that it supports.
 """
 from __future__ import annotations
 
