@@ -29,6 +29,8 @@ struct Argument {
     return name == other.name && same && text == other.text && item == other.item;
   }
 
+  bool operator!=(const Argument& other) const { return !(*this == other); }
+
   std::string name;
   double value = 0;
   std::string text = {};
