@@ -31,9 +31,6 @@ struct JointEngines {
   bool has_collider = false;
 };
 
-// Throws std::invalid_argument: "JointStepper: " and the object that cannot be stepped.
-[[noreturn]] void refuse_scene(const std::string& what);
-
 // Reads the engines of a scene, those of YADE through Python. Throws std::invalid_argument for an
 // unknown engine or an unsupported order.
 JointEngines joint_engines(const yade::Scene& scene, const yade::Engine& stepper);
