@@ -10,6 +10,7 @@
 
 #include "bindings.hpp"
 #include "statejump/geometry/mesh_failure.hpp"
+#include "statejump/kernel/laws/normal.hpp"
 #include "statejump/kernel/require.hpp"
 
 namespace py = pybind11;
@@ -90,6 +91,17 @@ void raise(const kernel::OutOfRange& refused) {
         attributes);
 }
 
+void raise(const kernel::laws::DepthOutOfRange& left) {
+  py::dict attributes;
+  attributes["item"] = left.law();
+  attributes["key"] = "penetration_depth";
+  attributes["value"] = left.depth();
+  py::dict numbers;
+  numbers["limit_m"] = left.limit();
+  attributes["numbers"] = numbers;
+  raise(to_string(FailureKind::law_left_range), left.what(), attributes);
+}
+
 void raise(const geometry::MeshFailure& failure) {
   py::dict attributes;
   attributes["file"] = failure.file();
@@ -111,6 +123,8 @@ void translate(std::exception_ptr thrown) {
     raise(refused);
   } catch (const geometry::MeshFailure& failure) {
     raise(failure);
+  } catch (const kernel::laws::DepthOutOfRange& left) {
+    raise(left);
   }
 }
 
