@@ -10,6 +10,7 @@
 #include "contact_parts.hpp"
 #include "failure.hpp"
 #include "ranges.hpp"
+#include "statejump/geometry/mesh_failure.hpp"
 #include "statejump/stepper/bore.hpp"
 
 namespace statejump::dem {
@@ -35,8 +36,7 @@ struct TrianglesConverter {
     for (py::ssize_t i = 0; i < py::len(sequence); ++i) {
       const py::object corners = sequence[i];
       if (py::len(corners) != 3) {
-        throw std::invalid_argument("a triangle has three corners, number " + std::to_string(i) +
-                                    " has another number of them");
+        dem::refuse({"no_triangle", "MeshBore.triangles", std::to_string(i)});
       }
       list.push_back({py::extract<int>(corners[0]), py::extract<int>(corners[1]),
                       py::extract<int>(corners[2])});
@@ -87,9 +87,7 @@ py::dict socket_triangles(Real radius, Real opening, int around, int along) {
 
 // ---- shape
 
-void MeshBore::check() {
-  require_positive(class_name, "scale", scale, "[m]");
-  if (mesh_ || (file.empty() && vertices.empty() && triangles.empty())) return;
+void MeshBore::make_mesh() {
   if (vertices.empty() && triangles.empty()) {
     geometry::Triangles read = geometry::read_triangles(file);
     vertices.assign(read.vertices.begin(), read.vertices.end());
@@ -101,6 +99,17 @@ void MeshBore::check() {
   options.flip = flip;
   mesh_.emplace(geometry::Triangles{vertices, triangles}, options,
                 file.empty() ? std::string(class_name) : file);
+}
+
+void MeshBore::check() {
+  require_positive(class_name, "scale", scale, "[m]");
+  if (mesh_ || (file.empty() && vertices.empty() && triangles.empty())) return;
+  try {
+    make_mesh();
+  } catch (const geometry::MeshFailure& failure) {
+    keep({failure.reason_name(), class_name, failure.file(), "", failure.what()});
+    throw;
+  }
   for (const Vector3r& vertex : mesh_->triangles().vertices) {
     half_box_ = half_box_.cwiseMax(vertex.cwiseAbs());
   }
@@ -201,7 +210,8 @@ namespace {
   text << "the wall of the MeshBore conforms too closely: its radius of curvature is "
        << wall_radius << " m, that of the " << inner << " " << radius << " m,";
   text << " at the contact at (" << point.x() << ", " << point.y() << ", " << point.z() << ") m";
-  record_failure(text.str(), scene, contact);
+  record_failure({"wall_conforms", "radius of curvature", text_of(wall_radius), "above " + text_of(radius)},
+                 text.str(), scene, contact);
 }
 
 }  // namespace
@@ -223,7 +233,8 @@ bool BoreContacts::find(const stepper::BoreProbe& probe, const MeshBore& bore,
                         const yade::shared_ptr<yade::Interaction>& contact,
                         yade::Scene& scene) const {
   if (!bore.mesh()) {
-    record_failure("a MeshBore has neither a file nor triangles", scene, *contact);
+    record_failure({"bore_missing"}, "a MeshBore has neither a file nor triangles", scene,
+                   *contact);
     return false;
   }
   stepper::BoreStep step;
@@ -239,12 +250,12 @@ bool BoreContacts::find(const stepper::BoreProbe& probe, const MeshBore& bore,
           return static_cast<BoreGeom&>(*contact->geom);
         });
   } catch (const std::exception& error) {
-    record_failure(error.what(), scene, *contact);
+    record_failure({"bore_failed"}, error.what(), scene, *contact);
     return false;
   }
   switch (step.found) {
     case stepper::BoreSearch::undefined:
-      record_failure("no place of the parts against each other", scene, *contact);
+      record_failure({"no_position"}, "no place of the parts against each other", scene, *contact);
       return false;
     case stepper::BoreSearch::conforming:
       fail_curvature(probe.is_ball ? "ball" : "journal", probe.radius, step.wall_radius,

@@ -73,6 +73,7 @@ struct MeshBore : RegisteredIndexable<MeshBore, ThermalShape> {
   }
 
  private:
+  void make_mesh();
   const geometry::BoreMesh& made() const;
   std::optional<geometry::BoreMesh> mesh_;  // made by check()
   std::vector<std::array<int, 2>> rim_;

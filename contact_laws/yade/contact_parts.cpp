@@ -42,7 +42,9 @@ void fail_closed(const char* inner, Real inner_radius, const char* outer, Real o
   text.precision(9);
   text << "the clearance is closed: " << inner << " radius " << inner_radius << " m, " << outer
        << " radius " << outer_radius << " m at the current temperature";
-  record_failure(text.str(), scene, contact);
+  record_failure(
+      {"clearance_closed", inner, text_of(inner_radius), "below " + text_of(outer_radius)},
+      text.str(), scene, contact);
 }
 
 void fail_inside(Real distance, Real radius_1, Real radius_2, const yade::Scene& scene,
@@ -52,14 +54,14 @@ void fail_inside(Real distance, Real radius_1, Real radius_2, const yade::Scene&
   text << "the centre of one ball lies inside the other: the centres are " << distance
        << " m apart, the radii " << radius_1 << " m and " << radius_2
        << " m at the current temperature";
-  record_failure(text.str(), scene, contact);
+  record_failure({"centre_inside", "distance", text_of(distance)}, text.str(), scene, contact);
 }
 
 void fail_tilted(const yade::Scene& scene, const yade::Interaction& contact) {
-  record_failure(
-      "the axes of journal and bearing are tilted by more than maxTilt, and contact "
-      "at the edges is not covered",
-      scene, contact);
+  record_failure({"tilted", "maxTilt"},
+                 "the axes of journal and bearing are tilted by more than maxTilt, and contact "
+                 "at the edges is not covered",
+                 scene, contact);
 }
 
 void fail_unstable(Real effective_mass, Real stiffness, const yade::Scene& scene,
@@ -68,8 +70,15 @@ void fail_unstable(Real effective_mass, Real stiffness, const yade::Scene& scene
   std::ostringstream text;
   text.precision(6);
   text << "the time step " << scene.dt << " s is above the stable one, " << stable << " s";
-  record_failure({Failure::Part::contact, contact.id1, contact.id2, text.str(), "", scene.time,
-                  stable, when(scene)});
+  record_failure({Failure::Part::contact,
+                  contact.id1,
+                  contact.id2,
+                  text.str(),
+                  "",
+                  scene.time,
+                  stable,
+                  when(scene),
+                  {"time_step_unstable", "O.dt", text_of(scene.dt)}});
 }
 
 }  // namespace statejump::dem

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <mutex>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -54,11 +55,22 @@ std::string Failure::sentence() const {
          ")";
 }
 
-void record_failure(const std::string& sentence, const yade::Scene& scene,
+std::string text_of(yade::Real value, int digits) {
+  std::ostringstream text;
+  text.precision(digits);
+  text << value;
+  return text.str();
+}
+
+std::string text_of(const yade::Vector3r& value) {
+  return "(" + text_of(value[0]) + ", " + text_of(value[1]) + ", " + text_of(value[2]) + ")";
+}
+
+void record_failure(FailureDetail detail, const std::string& sentence, const yade::Scene& scene,
                     const yade::Interaction& contact) {
   if (auto fault = fault_of_contact(scene, contact)) return record_failure(*std::move(fault));
   record_failure({Failure::Part::contact, contact.id1, contact.id2, sentence, "", scene.time,
-                  std::numeric_limits<yade::Real>::quiet_NaN(), when(scene)});
+                  std::numeric_limits<yade::Real>::quiet_NaN(), when(scene), std::move(detail)});
 }
 
 void record_failure(Failure failure) {
@@ -124,6 +136,12 @@ boost::python::object take_failure() {
   result["time"] = failure.time;
   result["stable_time_step"] =
       std::isnan(failure.stable_time_step) ? py::object() : py::object(failure.stable_time_step);
+  const std::string& quantity = failure.detail.quantity;
+  const bool has_article = quantity.compare(0, 4, "the ") == 0;
+  result["code"] = failure.detail.code;
+  result["quantity"] = has_article ? quantity.substr(4) : quantity;
+  result["value"] = failure.detail.value;
+  result["allowed"] = failure.detail.allowed;
   result["sentence"] = failure.sentence();
   return result;
 }

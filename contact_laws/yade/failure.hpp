@@ -29,7 +29,18 @@ class RaisesFailures {
   static void begin(const yade::Scene& scene);
 };
 
-// A failure as fields, so that scripts can insert the name of the part in their model and need not
+// What went wrong, for programs. Codes are public and do not change.
+struct FailureDetail {
+  const char* code = "failed";
+  std::string quantity = {};  // name as in the sentence, without an article
+  std::string value = {};
+  std::string allowed = {};
+};
+
+std::string text_of(yade::Real value, int digits = 9);
+std::string text_of(const yade::Vector3r& value);  // "(1, 2, 3)"
+
+// A failure as fields. Scripts use the fields, with the part's name in their model, and do not
 // parse the sentence.
 struct Failure {
   // Type of the failed part. It has two bodies or one; the scene has none.
@@ -45,6 +56,7 @@ struct Failure {
   // Only if the time step is too long: the largest stable step of this part [s].
   yade::Real stable_time_step = std::numeric_limits<yade::Real>::quiet_NaN();
   std::string when = {};  // time and temperature changes as text
+  FailureDetail detail = {};
   std::string sentence() const;
 };
 
@@ -52,13 +64,13 @@ struct Failure {
 void record_failure(Failure failure);
 // For functors: records a failure of a contact. If one of its numbers is invalid, the failure
 // reports that number instead of the sentence.
-void record_failure(const std::string& sentence, const yade::Scene& scene,
+void record_failure(FailureDetail detail, const std::string& sentence, const yade::Scene& scene,
                     const yade::Interaction& contact);
 // For engines: throws std::runtime_error with the sentence.
 [[noreturn]] void throw_failure(Failure failure);
-// Returns and removes the last thrown failure, as a dict: part, bodies (two ids, one or none),
-// before, after, time, stable_time_step (None if the step is not the cause), sentence. None if
-// there is no failure.
+// The last thrown failure that was not yet taken, as a dict: part, bodies (two ids, one or none),
+// before, after, time, stable_time_step (None if the step is not the cause), code, quantity, value,
+// allowed, sentence. None if there is no failure.
 boost::python::object take_failure();
 
 }  // namespace statejump::dem

@@ -26,33 +26,30 @@ using Fault = std::optional<Failure>;
 
 constexpr Real no_step = std::numeric_limits<Real>::quiet_NaN();
 
-std::string text_of(Real value) {
-  std::ostringstream text;
-  text.precision(9);
-  text << value;
-  return text.str();
-}
-
-std::string text_of(const Vector3r& value) {
-  return "(" + text_of(value[0]) + ", " + text_of(value[1]) + ", " + text_of(value[2]) + ")";
-}
-
-// Example: " is nan kg, allowed is above 0".
+// " is nan kg, allowed is above 0"
 template <class Value>
 std::string wrong(const Value& value, const std::string& unit, const std::string& allowed) {
   return " is " + text_of(value) + unit + ", allowed is " + allowed;
 }
 
 Failure failure(const yade::Scene& scene, Part part, int id1, int id2, std::string before,
-                std::string after) {
-  return {part, id1, id2, std::move(before), std::move(after), scene.time, no_step, when(scene)};
+                std::string after, FailureDetail detail) {
+  return {part,       id1,     id2,         std::move(before), std::move(after),
+          scene.time, no_step, when(scene), std::move(detail)};
+}
+
+template <class Value>
+FailureDetail not_allowed(const std::string& quantity, const Value& value,
+                          const std::string& allowed) {
+  return {"not_allowed", quantity, text_of(value), allowed};
 }
 
 // Example: "the mass of body 3 is nan kg, allowed is above 0".
 template <class Value>
 Failure of_body(const yade::Scene& scene, int id, const std::string& name, const Value& value,
                 const std::string& unit, const std::string& allowed) {
-  return failure(scene, Part::body, id, -1, name + " of ", wrong(value, unit, allowed));
+  return failure(scene, Part::body, id, -1, name + " of ", wrong(value, unit, allowed),
+                 not_allowed(name, value, allowed));
 }
 
 Fault fault_of_motion(const yade::Scene& scene, int id, const yade::State& state) {
@@ -140,7 +137,9 @@ Fault fault_of_physics(const yade::Scene& scene, const yade::Interaction& contac
                  std::string(JointPhys::class_name) + "." + quantity->name +
                      wrong(physics.*quantity->value, std::string(" ") + quantity->unit,
                            range_text(quantity->allowed)),
-                 "");
+                 "",
+                 not_allowed(std::string(JointPhys::class_name) + "." + quantity->name,
+                             physics.*quantity->value, range_text(quantity->allowed)));
 }
 
 Fault fault_of_physics(const yade::Scene& scene, const yade::Interaction& contact) {
@@ -160,7 +159,9 @@ Fault fault_of_values(const yade::Scene& scene, const ThermalLink& link) {
   return failure(scene, Part::link, link.id1, link.id2,
                  std::string(ThermalLink::class_name) + "." + quantity->name + " of ",
                  wrong(values.*quantity->value, std::string(" ") + quantity->unit,
-                       range_text(quantity->allowed)));
+                       range_text(quantity->allowed)),
+                 not_allowed(std::string(ThermalLink::class_name) + "." + quantity->name,
+                             values.*quantity->value, range_text(quantity->allowed)));
 }
 
 template <class List, class FaultOf>
@@ -214,9 +215,10 @@ std::optional<MaterialFault> fault_of(const ThermalFrictMat& material) {
 Fault fault_of_spring(const yade::Scene& scene, const TorsionSpring& spring) {
   const auto fault = [&](const char* name, Real value, const std::string& unit,
                          const char* allowed) {
-    return failure(scene, Part::torsion_spring, spring.link1->id2, spring.link2->id2,
-                   std::string(TorsionSpring::class_name) + "." + name + " of ",
-                   wrong(value, unit, allowed));
+    return failure(
+        scene, Part::torsion_spring, spring.link1->id2, spring.link2->id2,
+        std::string(TorsionSpring::class_name) + "." + name + " of ", wrong(value, unit, allowed),
+        not_allowed(std::string(TorsionSpring::class_name) + "." + name, value, allowed));
   };
   const stepper::Torsion& values = spring;
   if (const auto* wrong_one =
@@ -241,9 +243,10 @@ Fault fault_of_prismatic(const yade::Scene& scene, const PrismaticJoint& joint) 
   }
   const auto fault = [&](const char* name, Real value, const std::string& unit,
                          const char* allowed) {
-    return failure(scene, Part::prismatic_joint, joint.id1, joint.id2,
-                   std::string(PrismaticJoint::class_name) + "." + name + " of ",
-                   wrong(value, unit, allowed));
+    return failure(
+        scene, Part::prismatic_joint, joint.id1, joint.id2,
+        std::string(PrismaticJoint::class_name) + "." + name + " of ", wrong(value, unit, allowed),
+        not_allowed(std::string(PrismaticJoint::class_name) + "." + name, value, allowed));
   };
   const stepper::Prismatic& values = joint;
   if (const auto* wrong_one =
@@ -275,7 +278,7 @@ Fault fault_of_scene(const yade::Scene& scene) {
   if (!allows(ValueRange::positive, scene.dt)) {
     return failure(scene, Part::scene, -1, -1,
                    "the time step O.dt" + wrong(scene.dt, " s", range_text(ValueRange::positive)),
-                   "");
+                   "", not_allowed("O.dt", scene.dt, range_text(ValueRange::positive)));
   }
   for (std::size_t i = 0; i < number_of_bodies(scene); ++i) {
     const auto& body = body_at(scene, i);
@@ -309,12 +312,14 @@ void fail_strain(const yade::Scene& scene, int id, Real strain, Real expansion) 
   if (Fault fault = fault_of_body(scene, id)) throw_failure(*std::move(fault));
   throw_failure(failure(
       scene, Part::body, id, -1, "the thermal strain of ",
-      wrong(strain, "", "above -1") + ", with thermalExpansion " + text_of(expansion) + " 1/K"));
+      wrong(strain, "", "above -1") + ", with thermalExpansion " + text_of(expansion) + " 1/K",
+      {"no_length", "thermal strain", text_of(strain), "above -1"}));
 }
 
 void fail_answer(Real stiffness, const Vector3r& force, const yade::Scene& scene,
                  const yade::Interaction& contact) {
-  record_failure("the law answers with a normal stiffness of " + text_of(stiffness) +
+  record_failure({"law_not_finite", "force", text_of(force), "finite"},
+                 "the law answers with a normal stiffness of " + text_of(stiffness) +
                      " N/m and a force of " + text_of(force) + " N, allowed is finite",
                  scene, contact);
 }

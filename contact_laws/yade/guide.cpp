@@ -19,8 +19,8 @@ void GuidePlanes::check() const {
 void GuidePlanes::action() {
   begin(*scene);
   if (ids.size() != normals.size()) {
-    throw std::invalid_argument("GuidePlanes: " + std::to_string(ids.size()) + " ids, but " +
-                                std::to_string(normals.size()) + " normals");
+    refuse({"other_number", "GuidePlanes", std::to_string(ids.size()),
+            std::to_string(normals.size())});
   }
   // Read all forces before adding the first: after an addition, YADE requires another sum over
   // threads before it returns a force.

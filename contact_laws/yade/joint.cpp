@@ -174,8 +174,9 @@ void Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys::go(
                       : boost::make_shared<JointPhys>();
   fill_physics(*this, first, second,
                inverse_mass_of(*scene, contact->id1) + inverse_mass_of(*scene, contact->id2),
-               *physics,
-               [&](const std::string& sentence) { record_failure(sentence, *scene, *contact); });
+               *physics, [&](const std::string& sentence) {
+                 record_failure({"material_not_allowed"}, sentence, *scene, *contact);
+               });
   contact->phys = physics;
 }
 

@@ -12,6 +12,7 @@
 #include "joint.hpp"
 #include "object_list.hpp"
 #include "prismatic.hpp"
+#include "refusal.hpp"
 #include "registration.hpp"
 #include "shapes.hpp"
 #include "stable_step.hpp"
@@ -205,7 +206,10 @@ BOOST_PYTHON_MODULE(_native) {
       "before and after (the "
       "sentence around the name of a link, spring or body), time [s], stable_time_step [s] (None "
       "unless the step was too long) "
-      "and sentence. None: nothing of this plugin failed.");
+      "code, quantity, value, allowed (texts) and sentence. None: nothing of this plugin failed.");
+  py::def("take_refusal", &statejump::dem::take_refusal,
+          "The argument or scene that was rejected last, and forget it: a dict with code, key, "
+          "value, allowed and sentence, all texts. None: nothing was rejected.");
   py::def("stable_time_step", &statejump::dem::stable_time_step_of_scene,
           "Stable time step of the current scene [s], on the safe side: smallest of "
           "4 / (c + sqrt(c^2 + 4 k)) over the bodies, k and c twice the sums of stiffness and "

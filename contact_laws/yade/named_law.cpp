@@ -30,9 +30,7 @@ Law law_by_name(Law (*find)(const std::string&), const char* class_name, const c
     refuse(class_name, attribute, name, allowed);
   }
   if (const std::string problem = laws::law_problem<Law>(name); !problem.empty()) {
-    std::string text = class_name;
-    text.append(".").append(attribute).append(" = '").append(name).append("' cannot be used: ");
-    throw std::invalid_argument(text + problem);
+    refuse({"unusable_law", std::string(class_name) + "." + attribute, "'" + name + "'", problem});
   }
   return find(name);
 }
@@ -135,6 +133,7 @@ bool NamedJointLaw::step(const JointGeom& geometry, JointPhys& physics,
   switch (stepper::misfit(named_, geometry)) {
     case stepper::Misfit::bulging_wall:
       record_failure(
+          {"law_for_flat_walls", "normalLaw", normalLaw},
           (on_a_ball(scene, contact) ? pair_of(scene, contact, true) : "a wall that bulges") +
               " needs normalLaw " +
               laws::names_with<laws::NormalLaw>(laws::Trait::accepts_bulging_wall) + ", not '" +
@@ -143,6 +142,8 @@ bool NamedJointLaw::step(const JointGeom& geometry, JointPhys& physics,
       return true;
     case stepper::Misfit::no_axis:
       record_failure(
+          {"law_needs_axis", "normalLaw, tangentialVelocity",
+           normalLaw + ", " + tangentialVelocity},
           pair_of(scene, contact, std::isinf(geometry.bearingRadius) || on_a_ball(scene, contact)) +
               " needs normalLaw " +
               (geometry.bearingRadius < 0
@@ -169,8 +170,12 @@ bool NamedJointLaw::step(const JointGeom& geometry, JointPhys& physics,
   try {
     return stepper::joint_law_step(named_.law, geometry, physics, motion(state1), motion(state2),
                                    ContactHost{scene, contact, energies_});
+  } catch (const laws::DepthOutOfRange& left) {
+    record_failure(
+        {"law_left_range", left.law(), text_of(left.depth()), "below " + text_of(left.limit())},
+        left.what(), scene, contact);
   } catch (const std::exception& error) {
-    record_failure(error.what(), scene, contact);
+    record_failure({"law_failed", normalLaw}, error.what(), scene, contact);
   }
   return true;
 }

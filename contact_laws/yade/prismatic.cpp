@@ -24,19 +24,12 @@ const std::string prismatic_friction = "prismaticFriction";
 const std::string prismatic_damping = "prismaticDamping";
 
 [[noreturn, gnu::cold]] void fail(const yade::Scene& scene, const PrismaticJoint& joint,
-                                  const std::string& before, const std::string& after,
-                                  Real stable) {
+                                  const FailureDetail& detail, const std::string& before,
+                                  const std::string& after, Real stable) {
   // An invalid number of the joint or of its bodies is the cause and is reported instead.
   if (auto fault = fault_of_prismatic(scene, joint)) throw_failure(*std::move(fault));
   throw_failure({Failure::Part::prismatic_joint, joint.id1, joint.id2, before, after, scene.time,
-                 stable, when(scene)});
-}
-
-std::string text_of(Real value) {
-  std::ostringstream text;
-  text.precision(6);
-  text << value;
-  return text.str();
+                 stable, when(scene), detail});
 }
 
 }  // namespace
@@ -54,7 +47,7 @@ void PrismaticJoint::check() const {
 void PrismaticJoints::action() {
   begin(*scene);
   for (const auto& joint : joints) {
-    if (!joint) throw std::invalid_argument("PrismaticJoints.joints holds None");
+    if (!joint) refuse({"holds_none", "PrismaticJoints.joints"});
     act(*joint);
   }
 }
@@ -63,13 +56,12 @@ void PrismaticJoints::act(PrismaticJoint& joint) {
   const yade::State& one = *body_of(*scene, joint.id1, "PrismaticJoint.id1").state;
   const yade::State& two = *body_of(*scene, joint.id2, "PrismaticJoint.id2").state;
   if (joint.id1 == joint.id2) {
-    throw std::invalid_argument("PrismaticJoint.id2 = " + std::to_string(joint.id2) +
-                                " is not allowed: must be another body than id1");
+    refuse({"same_body", "PrismaticJoint.id2", std::to_string(joint.id2), "id1"});
   }
   constexpr Real no_step = std::numeric_limits<Real>::quiet_NaN();
   if (stepper::has_friction_without_stiffness(joint) ||
       stepper::has_stop_without_stiffness(joint)) {
-    fail(*scene, joint, "a stiffness is missing of ", "", no_step);
+    fail(*scene, joint, {"stiffness_missing"}, "a stiffness is missing of ", "", no_step);
   }
   const Real inverse = inverse_mass(one) + inverse_mass(two);
   const stepper::PrismaticStep step = stepper::prismatic_step(
@@ -77,11 +69,12 @@ void PrismaticJoints::act(PrismaticJoint& joint) {
       {one.se3.position - two.se3.position, one.vel - two.vel, inverse > 0 ? 1 / inverse : 0},
       scene->dt);
   if (!(scene->dt <= step.largest_step)) {
-    fail(*scene, joint, "the time step " + text_of(scene->dt) + " s is above the stable one of ",
-         ", " + text_of(step.largest_step) + " s", step.largest_step);
+    fail(*scene, joint, {"time_step_unstable", "O.dt", text_of(scene->dt)},
+         "the time step " + text_of(scene->dt, 6) + " s is above the stable one of ",
+         ", " + text_of(step.largest_step, 6) + " s", step.largest_step);
   }
   if (!stepper::is_finite_fast(step.force)) {
-    fail(*scene, joint, "the force is not finite of ", "", no_step);
+    fail(*scene, joint, {"not_finite", "force"}, "the force is not finite of ", "", no_step);
   }
   scene->forces.addForce(joint.id1, step.force);
   scene->forces.addForce(joint.id2, -step.force);

@@ -4,9 +4,9 @@
 
 #include <cmath>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 
+#include "refusal.hpp"
 #include "statejump/kernel/laws/law_info.hpp"
 #include "statejump/stepper/checks.hpp"
 
@@ -14,17 +14,15 @@ namespace statejump::dem {
 
 [[noreturn]] inline void refuse(const char* class_name, const char* attribute, double value,
                                 const char* allowed) {
-  std::ostringstream message;
-  message.precision(17);
-  message << class_name << "." << attribute << " = " << value << " is not allowed: must be "
-          << allowed;
-  throw std::invalid_argument(message.str());
+  std::ostringstream text;
+  text.precision(17);
+  text << value;
+  refuse({"not_allowed", std::string(class_name) + "." + attribute, text.str(), allowed});
 }
 
 [[noreturn]] inline void refuse(const char* class_name, const char* attribute,
                                 const std::string& value, const std::string& allowed) {
-  throw std::invalid_argument(std::string(class_name) + "." + attribute + " = '" + value +
-                              "' is not allowed: must be " + allowed);
+  refuse({"not_allowed", std::string(class_name) + "." + attribute, "'" + value + "'", allowed});
 }
 
 // @param unit with brackets, for example "[m]"

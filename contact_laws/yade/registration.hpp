@@ -20,6 +20,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "refusal.hpp"
 #include "registered.hpp"
 #ifndef STATEJUMP_REAL_YADE_HEADERS
 #include "statejump/yade_abi/serialization.hpp"
@@ -115,8 +116,10 @@ Type value_of(const char* class_name, const char* attribute, const boost::python
     PyErr_Clear();
   }
   const std::string text = boost::python::extract<std::string>(value.attr("__repr__")());
-  const std::string said = std::string(class_name) + "." + attribute + " = " + text +
-                           " is not allowed: must be " + what_it_takes<Type>();
+  const Refusal refusal{"wrong_type", std::string(class_name) + "." + attribute, text,
+                        what_it_takes<Type>()};
+  keep(refusal);
+  const std::string said = sentence(refusal);
   PyErr_SetString(PyExc_TypeError, said.c_str());
   boost::python::throw_error_already_set();
   throw std::logic_error(said);  // not reached
@@ -127,8 +130,7 @@ boost::shared_ptr<Class> construct(boost::python::tuple& arguments, boost::pytho
   auto instance = boost::make_shared<Class>();
   instance->pyHandleCustomCtorArgs(arguments, keywords);
   if (boost::python::len(arguments) > 0) {
-    throw std::invalid_argument(std::string(Class::class_name) +
-                                ": give attributes as keywords, name=value");
+    refuse({"positional", Class::class_name});
   }
   if (boost::python::len(keywords) > 0) {
     instance->pyUpdateAttrs(keywords);

@@ -33,8 +33,7 @@ void put(Real* place, std::initializer_list<Vector3r> vectors) {
 template <class Object>
 void require_objects(const std::vector<yade::shared_ptr<Object>>& list, const char* attribute) {
   if (std::any_of(list.begin(), list.end(), [](const auto& one) { return !one; })) {
-    throw std::invalid_argument(std::string(StateRecorder::class_name) + "." + attribute +
-                                " holds None");
+    refuse({"holds_none", std::string(StateRecorder::class_name) + "." + attribute});
   }
 }
 
@@ -43,8 +42,7 @@ void require_objects(const std::vector<yade::shared_ptr<Object>>& list, const ch
 void StateRecorder::check() {
   if (iterPeriod < 1) refuse(class_name, "iterPeriod", iterPeriod, "1 or above [-]");
   if (contacts.size() % 2 != 0) {
-    throw std::invalid_argument(std::string(class_name) +
-                                ".contacts holds an odd number of ids: two of each contact");
+    refuse({"odd_ids", std::string(class_name) + ".contacts"});
   }
   require_objects(links, "links");
   require_objects(springs, "springs");
@@ -52,9 +50,8 @@ void StateRecorder::check() {
   columns_.clear();
   for (std::size_t i = 0; i < contacts.size(); i += 2) {
     if (!columns_.emplace(key_of(contacts[i], contacts[i + 1]), i / 2).second) {
-      throw std::invalid_argument(std::string(class_name) + ".contacts names bodies " +
-                                  std::to_string(contacts[i]) + " and " +
-                                  std::to_string(contacts[i + 1]) + " twice");
+      refuse({"contact_twice", std::string(class_name) + ".contacts",
+              std::to_string(contacts[i]) + " and " + std::to_string(contacts[i + 1])});
     }
   }
   rows_.clear();  // discard samples: the number of columns has changed
@@ -119,9 +116,8 @@ void StateRecorder::add_contacts(const yade::Scene& of, std::size_t strangers) {
     const auto* geometry = dynamic_cast<const JointGeom*>(contact.geom.get());
     const auto* physics = dynamic_cast<const JointPhys*>(contact.phys.get());
     if (!geometry || !physics) {
-      throw std::invalid_argument("StateRecorder: the contact of bodies " +
-                                  std::to_string(contact.id1) + " and " +
-                                  std::to_string(contact.id2) + " has no JointGeom and JointPhys");
+      refuse({"no_joint_contact", class_name,
+              std::to_string(contact.id1) + " and " + std::to_string(contact.id2)});
     }
     Real* row = rows_.data() + first + contact_width * place->second;
     *row++ = 1;

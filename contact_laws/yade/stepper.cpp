@@ -164,7 +164,7 @@ bool JointStepper::follows_an_ordinary_step() {
 
 void JointStepper::action() {
   begin(*scene);
-  if (scene->isPeriodic) refuse_scene("the scene is periodic");
+  if (scene->isPeriodic) refuse({"periodic", "O.periodic"});
   const bool follows = follows_an_ordinary_step();
   const long ahead = follows ? steps_ahead(*scene, substeps) : 0;
   if (ahead > 0 || !follows) {

@@ -15,6 +15,7 @@
 #include "joint_exchange.hpp"
 #include "known_cast.hpp"
 #include "prismatic.hpp"
+#include "refusal.hpp"
 #include "shapes.hpp"
 #include "torsion.hpp"
 
@@ -188,13 +189,13 @@ bool JointArrays::gather_body(std::size_t id, stepper::Scene& arrays) {
   const yade::Body& body = *pointer;
   const yade::State& state = *body.state;
   const auto which = [id] { return "body " + std::to_string(id); };
-  if (body.clumpId >= 0) refuse_scene(which() + " belongs to a clump");
+  if (body.clumpId >= 0) refuse({"clump", which()});
   if (body.shape && !known_cast<const ThermalShape>(body.shape.get())) {
-    refuse_scene("it does not know the shape of " + which() + ", " + body.shape->getClassName());
+    refuse({"unknown_shape", which(), body.shape->getClassName()});
   }
   if ((body.flags & aspherical) != 0 && engines_.exact_rotation &&
       (state.blockedDOFs & stepper::all_rotations) == 0) {
-    refuse_scene(which() + " is aspherical and free to turn about all axes");
+    refuse({"aspherical", which()});
   }
   one.motion = motion(state);
   one.orientation = state.se3.orientation;
@@ -234,8 +235,7 @@ void JointArrays::gather_heaters(stepper::Scene& arrays) {
         heater.targets.push_back({common->second, expansion});
       }
       if (!strains_.emplace(&shape, common->second).second) {
-        refuse_scene("two ThermalExpansionEngines set the shape of body " +
-                     std::to_string(target.id));
+        refuse({"shape_heated_twice", "body " + std::to_string(target.id)});
       }
       heated_.emplace_back(&shape, common->second);
     }

@@ -9,6 +9,7 @@
 
 #include "guide.hpp"
 #include "prismatic.hpp"
+#include "refusal.hpp"
 #include "stepper.hpp"
 #include "torsion.hpp"
 
@@ -35,14 +36,15 @@ class Reader {
     for (const auto& engine : scene_.engines) {
       if (!engine->dead) read(engine);
     }
-    if (!has_newton_) refuse_scene("there is no NewtonIntegrator");
+    if (!has_newton_) refuse({"no_newton", "NewtonIntegrator"});
     return engines_;
   }
 
  private:
   void read(const yade::shared_ptr<yade::Engine>& engine) {
     if (engine.get() == &self_) return stand(Place::stepper, JointStepper::class_name);
-    if (dynamic_cast<const JointStepper*>(engine.get())) refuse_scene("there are two of them");
+    if (dynamic_cast<const JointStepper*>(engine.get()))
+      refuse({"two_steppers", JointStepper::class_name});
     if (auto* heater = dynamic_cast<ThermalExpansionEngine*>(engine.get())) {
       engines_.heaters.push_back(heater);
       return stand(Place::before, heater->class_name);
@@ -68,18 +70,16 @@ class Reader {
       case Known::collider:
         engines_.has_collider = true;
         if (!(py::extract<Real>(object.attr("verletDist"))() > 0)) {
-          refuse_scene(
-              "InsertionSortCollider.verletDist must be above 0 [m]: without it the collider looks "
-              "for contacts in every step");
+          refuse({"no_verlet_distance", "InsertionSortCollider.verletDist", "", "above 0 [m]"});
         }
         return stand(Place::before, "InsertionSortCollider");
       case Known::loop:
-        if (has_loop_) refuse_scene("there are two InteractionLoops");
+        if (has_loop_) refuse({"two_engines", "InteractionLoop"});
         has_loop_ = true;
         read_functors(object);
         return stand(Place::loop, "InteractionLoop");
       case Known::newton:
-        if (has_newton_) refuse_scene("there are two NewtonIntegrators");
+        if (has_newton_) refuse({"two_engines", "NewtonIntegrator"});
         has_newton_ = true;
         read_newton(object);
         return stand(Place::motion, "NewtonIntegrator");
@@ -88,7 +88,7 @@ class Reader {
       case Known::time_stepper:
         if (PyObject_HasAttrString(object.ptr(), "densityScaling") &&
             py::extract<bool>(object.attr("densityScaling"))()) {
-          refuse_scene(type_of(object) + ".densityScaling must be off");
+          refuse({"must_be_off", type_of(object) + ".densityScaling"});
         }
     }
   }
@@ -113,7 +113,7 @@ class Reader {
         return which;
       }
     }
-    refuse_scene("it does not know the engine " + type_of(object));
+    refuse({"unknown_engine", type_of(object)});
   }
 
   void stand(Place place, const std::string& name) {
@@ -122,11 +122,10 @@ class Reader {
     const bool behind_resetter = place != Place::stepper || last_ == Place::resetter;
     const bool stepper_is_there = place <= Place::stepper || seen_stepper_;
     if (!right || !behind_resetter || !stepper_is_there) {
-      refuse_scene(name +
-                   " stands in the wrong place, the order is ForceResetter, JointStepper, "
-                   "ThermalExpansionEngine and InsertionSortCollider, InteractionLoop, "
-                   "ThermalLinks, TorsionSprings, PrismaticJoints and GuidePlanes, StateRecorder, "
-                   "NewtonIntegrator");
+      refuse({"misplaced_engine", name, "",
+              "ForceResetter, JointStepper, ThermalExpansionEngine and InsertionSortCollider, "
+              "InteractionLoop, ThermalLinks, TorsionSprings, PrismaticJoints and GuidePlanes, "
+              "StateRecorder, NewtonIntegrator"});
     }
     last_ = place;
     any_ = true;
@@ -138,7 +137,7 @@ class Reader {
     const py::extract<Functor*> found(functor);
     if (!found.check()) return false;
     if (place) {
-      refuse_scene(std::string("the InteractionLoop holds two of ") + Functor::class_name);
+      refuse({"two_functors", Functor::class_name});
     }
     place = found();
     return true;
@@ -151,7 +150,7 @@ class Reader {
     for (py::ssize_t i = 0; i < py::len(functors); ++i) {
       const py::object functor(functors[i]);
       if (take_one(functor)) continue;
-      refuse_scene("it does not know " + type_of(functor) + " of the InteractionLoop");
+      refuse({"unknown_functor", type_of(functor)});
     }
   }
 
@@ -168,11 +167,11 @@ class Reader {
              take(one, engines_.bore_law);
     });
     if (engines_.hertz_mindlin && engines_.joint_law) {
-      refuse_scene("the InteractionLoop holds two laws for the same contacts");
+      refuse({"two_laws", "InteractionLoop"});
     }
-    if (py::len(loop.attr("callbacks")) > 0) refuse_scene("the InteractionLoop has callbacks");
+    if (py::len(loop.attr("callbacks")) > 0) refuse({"callbacks", "InteractionLoop.callbacks"});
     if (py::extract<bool>(loop.attr("loopOnSortedInteractions"))()) {
-      refuse_scene("InteractionLoop.loopOnSortedInteractions must be off");
+      refuse({"must_be_off", "InteractionLoop.loopOnSortedInteractions"});
     }
   }
 
@@ -184,11 +183,11 @@ class Reader {
     newton.dampGravity = flag("dampGravity");
     engines_.exact_rotation = flag("exactAsphericalRot");
     if (py::extract<int>(integrator.attr("mask"))() > 0) {
-      refuse_scene("NewtonIntegrator.mask must be -1: every body moves");
+      refuse({"mask", "NewtonIntegrator.mask"});
     }
     // YADE versions differ in whether numerical damping acts on gravity, and thus in its energy.
     if (scene_.trackEnergy && newton.damping != 0 && !newton.gravity.isZero(0)) {
-      refuse_scene("with O.trackEnergy and gravity NewtonIntegrator.damping must be 0");
+      refuse({"damped_gravity", "NewtonIntegrator.damping"});
     }
   }
 
@@ -201,10 +200,6 @@ class Reader {
 };
 
 }  // namespace
-
-void refuse_scene(const std::string& what) {
-  throw std::invalid_argument("JointStepper: " + what);
-}
 
 JointEngines joint_engines(const yade::Scene& scene, const yade::Engine& stepper) {
   try {

@@ -31,11 +31,8 @@ struct JointEngines {
   bool has_collider = false;
 };
 
-// Throws std::invalid_argument with "JointStepper: " and the object that it does not support.
-[[noreturn]] void refuse_scene(const std::string& what);
-
-// Reads the engines of a scene; YADE's own engines through Python. Throws std::invalid_argument for
-// an unsupported engine or order.
+// Reads the engines of a scene, those of YADE through Python. Throws std::invalid_argument for an
+// unknown engine or an unsupported order.
 JointEngines joint_engines(const yade::Scene& scene, const yade::Engine& stepper);
 
 }  // namespace statejump::dem

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "blocked_motion.hpp"
+#include "contact_parts.hpp"
 #include "failure.hpp"
 #include "faults.hpp"
 #include "ranges.hpp"
@@ -37,8 +38,15 @@ void throw_fault(const yade::Scene& scene, const ThermalLink& link) {
   after.precision(6);
   before << "the time step " << scene.dt << " s is above the stable one of ";
   after << ", " << stable << " s";
-  throw_failure({Failure::Part::link, link.id1, link.id2, before.str(), after.str(), scene.time,
-                 stable, when(scene)});
+  throw_failure({Failure::Part::link,
+                 link.id1,
+                 link.id2,
+                 before.str(),
+                 after.str(),
+                 scene.time,
+                 stable,
+                 when(scene),
+                 {"time_step_unstable", "O.dt", text_of(scene.dt)}});
 }
 
 // Throws because the ends coincide or their distance is not finite.
@@ -47,8 +55,15 @@ void throw_fault(const yade::Scene& scene, const ThermalLink& link) {
   throw_fault(scene, link);
   const char* const what =
       length == 0 ? "the two ends coincide of " : "the positions have no finite distance of ";
-  throw_failure({Failure::Part::link, link.id1, link.id2, what, "", scene.time,
-                 std::numeric_limits<Real>::quiet_NaN(), when(scene)});
+  throw_failure({Failure::Part::link,
+                 link.id1,
+                 link.id2,
+                 what,
+                 "",
+                 scene.time,
+                 std::numeric_limits<Real>::quiet_NaN(),
+                 when(scene),
+                 {length == 0 ? "ends_coincide" : "distance_not_finite"}});
 }
 
 // Throws: the stress-free length at this temperature is not positive or the force not finite.
@@ -57,22 +72,25 @@ void throw_fault(const yade::Scene& scene, const ThermalLink& link) {
   throw_fault(scene, link);
   std::ostringstream before;
   before.precision(9);
+  FailureDetail detail;
   if (step.stress_free_length > 0) {
+    detail = {"not_finite", "tension", text_of(step.tension), "finite"};
     before << "the tension is " << step.tension << " N, allowed is finite, of ";
   } else {
+    detail = {"no_length", "stress-free length", text_of(step.stress_free_length), "above 0"};
     before << "the stress-free length is " << step.stress_free_length
            << " m, allowed is above 0, with thermalExpansion " << link.thermalExpansion
            << " 1/K of ";
   }
   throw_failure({Failure::Part::link, link.id1, link.id2, before.str(), "", scene.time,
-                 std::numeric_limits<Real>::quiet_NaN(), when(scene)});
+                 std::numeric_limits<Real>::quiet_NaN(), when(scene), detail});
 }
 
 }  // namespace
 
 yade::Body& body_of(const yade::Scene& scene, int id, const char* who) {
   if (!scene.bodies->exists(id)) {
-    throw std::invalid_argument(std::string(who) + ": there is no body " + std::to_string(id));
+    refuse({"no_body", who, std::to_string(id)});
   }
   return *body_at(scene, static_cast<std::size_t>(id));
 }
@@ -97,7 +115,13 @@ void ThermalProgram::check() {
   program.cycles = cycles;
   program.table_times = tableTimes;
   program.table_temperature_changes = tableTemperatureChanges;
-  program.validate();
+  try {
+    program.validate();
+  } catch (const kernel::OutOfRange& refused) {
+    keep({"not_allowed", std::string(class_name) + "." + refused.name(), refused.value(),
+          refused.range(), refused.what()});
+    throw;
+  }
   program_ = program;
 }
 
@@ -116,8 +140,7 @@ void ThermalExpansionEngine::collect_targets() {
       targets_.push_back(
           {static_cast<std::size_t>(body.id), shape, material, !shapes.insert(shape).second});
     } else if (required) {
-      throw std::invalid_argument("ThermalExpansionEngine.ids: body " + std::to_string(body.id) +
-                                  " needs a ThermalShape and a ThermalFrictMat");
+      refuse({"no_thermal_body", "ThermalExpansionEngine.ids", std::to_string(body.id)});
     }
   };
   if (ids.empty()) {
@@ -149,7 +172,7 @@ const std::vector<ThermalExpansionEngine::Target>& ThermalExpansionEngine::targe
 
 void ThermalExpansionEngine::action() {
   begin(*scene);
-  if (!program) throw std::invalid_argument("ThermalExpansionEngine.program is missing");
+  if (!program) refuse({"missing", "ThermalExpansionEngine.program"});
   temperatureChange = program->temperature_change(scene->time);
   for (const Target& target : targets()) {
     if (target.is_shared) continue;
@@ -172,7 +195,7 @@ void ThermalLinks::action() {
   // costs as much as the rest of this engine.
   bool needs_moments = false;
   for (const auto& link : links) {
-    if (!link) throw std::invalid_argument("ThermalLinks.links holds None");
+    if (!link) refuse({"holds_none", "ThermalLinks.links"});
     needs_moments = needs_moments || link->tipTurnsWithLink;
   }
   // Read all moments before adding the first force: after an addition, YADE requires another sum.
@@ -187,7 +210,7 @@ void ThermalLinks::action() {
 }
 
 void ThermalLinks::act(ThermalLink& link, const Vector3r& moment) {
-  if (!link.program) throw std::invalid_argument("ThermalLink.program is missing");
+  if (!link.program) refuse({"missing", "ThermalLink.program"});
   const LinkEnds ends = ends_of(*scene, link);
   const Real inverse = ends.inverse_mass();
   const stepper::LinkStep step = stepper::link_step(
@@ -203,8 +226,7 @@ void ThermalLinks::act(ThermalLink& link, const Vector3r& moment) {
   if (link.tipTurnsWithLink) {
     yade::State& tip = ends.tip;
     if ((tip.blockedDOFs & all_rotations_blocked) != all_rotations_blocked) {
-      throw std::invalid_argument("ThermalLink.tipTurnsWithLink: block the rotations of body " +
-                                  std::to_string(link.id2) + " (blockedDOFs containing 'XYZ')");
+      refuse({"rotations_free", "ThermalLink.tipTurnsWithLink", std::to_string(link.id2)});
     }
     force_on_tip += stepper::rotate_tip(link, step, moment, tip.se3.orientation, tip.angVel);
   }

@@ -35,8 +35,15 @@ void require_planar(const yade::Scene& scene, const ThermalLink& link, const ste
                                       : " leaves the plane across the axis, component of its "
                                         "direction along it ")
         << span.direction.dot(axis) << ", allowed is at most " << stepper::largest_tilt;
-  throw_failure({Failure::Part::link, link.id1, link.id2, "TorsionSpring: ", after.str(),
-                 scene.time, std::numeric_limits<Real>::quiet_NaN(), when(scene)});
+  throw_failure({Failure::Part::link,
+                 link.id1,
+                 link.id2,
+                 "TorsionSpring: ",
+                 after.str(),
+                 scene.time,
+                 std::numeric_limits<Real>::quiet_NaN(),
+                 when(scene),
+                 {"leaves_plane"}});
 }
 
 }  // namespace
@@ -52,14 +59,14 @@ void TorsionSpring::check() const {
 void TorsionSprings::action() {
   begin(*scene);
   for (const auto& spring : springs) {
-    if (!spring) throw std::invalid_argument("TorsionSprings.springs holds None");
+    if (!spring) refuse({"holds_none", "TorsionSprings.springs"});
     act(*spring);
   }
 }
 
 void TorsionSprings::act(TorsionSpring& spring) {
-  if (!spring.link1) throw std::invalid_argument("TorsionSpring.link1 is missing");
-  if (!spring.link2) throw std::invalid_argument("TorsionSpring.link2 is missing");
+  if (!spring.link1) refuse({"missing", "TorsionSpring.link1"});
+  if (!spring.link2) refuse({"missing", "TorsionSpring.link2"});
   const LinkEnds first = ends_of(*scene, *spring.link1);
   const LinkEnds second = ends_of(*scene, *spring.link2);
   require_planar(*scene, *spring.link1, first.span, spring.axis);
@@ -78,16 +85,29 @@ void TorsionSprings::act(TorsionSpring& spring) {
       after.precision(6);
       before << "the time step " << scene->dt << " s is above the stable one of ";
       after << ", " << stable << " s";
-      throw_failure({Failure::Part::torsion_spring, spring.link1->id2, spring.link2->id2,
-                     before.str(), after.str(), scene->time, stable, when(*scene)});
+      throw_failure({Failure::Part::torsion_spring,
+                     spring.link1->id2,
+                     spring.link2->id2,
+                     before.str(),
+                     after.str(),
+                     scene->time,
+                     stable,
+                     when(*scene),
+                     {"time_step_unstable", "O.dt", text_of(scene->dt)}});
     }
   }
 
   if (!std::isfinite(spring.moment)) {
     throw_fault(*scene, spring);
-    throw_failure({Failure::Part::torsion_spring, spring.link1->id2, spring.link2->id2,
-                   "the moment is not finite of ", "", scene->time,
-                   std::numeric_limits<Real>::quiet_NaN(), when(*scene)});
+    throw_failure({Failure::Part::torsion_spring,
+                   spring.link1->id2,
+                   spring.link2->id2,
+                   "the moment is not finite of ",
+                   "",
+                   scene->time,
+                   std::numeric_limits<Real>::quiet_NaN(),
+                   when(*scene),
+                   {"not_finite", "moment"}});
   }
   const auto add_couple = [&](const ThermalLink& link, const LinkEnds& ends, Real moment) {
     const Vector3r force = stepper::couple(ends.span, spring.axis, moment);

@@ -10,6 +10,7 @@
 
 #include "bindings.hpp"
 #include "statejump/geometry/mesh_failure.hpp"
+#include "statejump/kernel/laws/normal.hpp"
 #include "statejump/kernel/require.hpp"
 
 namespace py = pybind11;
@@ -31,7 +32,7 @@ constexpr const char* doc =
     "nodes: names of the nodes that move most, of a mechanism or of buckling\n"
     "time_s, temperature_change_K: when\n"
     "cause, remedy: parts of the sentence\n"
-    "file: of a mesh\n"
+    "file: of a mesh; reason, details: why it is rejected, see mesh_reasons()\n"
     "numbers: further numbers, name with unit to value";
 
 /// Raises the failure with these attributes; other attributes keep the values of the class, None or
@@ -90,11 +91,26 @@ void raise(const kernel::OutOfRange& refused) {
         attributes);
 }
 
+void raise(const kernel::laws::DepthOutOfRange& left) {
+  py::dict attributes;
+  attributes["item"] = left.law();
+  attributes["key"] = "penetration_depth";
+  attributes["value"] = left.depth();
+  py::dict numbers;
+  numbers["limit_m"] = left.limit();
+  attributes["numbers"] = numbers;
+  raise(to_string(FailureKind::law_left_range), left.what(), attributes);
+}
+
 void raise(const geometry::MeshFailure& failure) {
   py::dict attributes;
   attributes["file"] = failure.file();
   attributes["cause"] = failure.cause();
   if (!failure.remedy().empty()) attributes["remedy"] = failure.remedy();
+  attributes["reason"] = failure.reason_name();
+  py::dict details;
+  for (const auto& [name, value] : failure.fields()) details[py::str(name)] = py::cast(value);
+  attributes["details"] = details;
   raise(geometry::to_string(failure.fault()), failure.what(), attributes);
 }
 
@@ -107,6 +123,8 @@ void translate(std::exception_ptr thrown) {
     raise(refused);
   } catch (const geometry::MeshFailure& failure) {
     raise(failure);
+  } catch (const kernel::laws::DepthOutOfRange& left) {
+    raise(left);
   }
 }
 
@@ -118,12 +136,13 @@ void bind_failure(py::module_& module) {
   attributes["kind"] = "";
   attributes["message"] = "";
   for (const char* name : {"item", "key", "value", "allowed", "joint", "joint_kind", "time_s",
-                           "temperature_change_K", "cause", "remedy", "file"}) {
+                           "temperature_change_K", "cause", "remedy", "file", "reason"}) {
     attributes[name] = py::none();
   }
   attributes["joints"] = py::tuple();
   attributes["nodes"] = py::tuple();
   attributes["numbers"] = py::dict();
+  attributes["details"] = py::dict();
   // An argument out of range is a ValueError, a failed run a RuntimeError.
   const py::tuple bases = py::make_tuple(py::reinterpret_borrow<py::object>(PyExc_ValueError),
                                          py::reinterpret_borrow<py::object>(PyExc_RuntimeError));

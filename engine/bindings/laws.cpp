@@ -32,8 +32,8 @@ Kind law_kind(const std::string& name) {
   if (name == "dissipation") return laws::DissipationLaw{};
   if (name == "friction") return laws::FrictionLaw{};
   if (name == "tangential_velocity") return laws::TangentialVelocityLaw{};
-  throw py::value_error("kind = '" + name +
-                        "', allowed is one of normal, dissipation, friction, tangential_velocity");
+  throw kernel::OutOfRange("kind", name,
+                           "one of normal, dissipation, friction, tangential_velocity");
 }
 
 std::vector<laws::LawInfo> infos(const std::string& kind) {

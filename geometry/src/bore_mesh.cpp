@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 #include "impl.hpp"
+#include "statejump/kernel/require.hpp"
 
 namespace statejump::geometry {
 
@@ -18,7 +18,7 @@ BoreMesh BoreMesh::read(const std::string& file, const BoreOptions& options) {
 }
 
 WallPoint BoreMesh::closest_point(const Eigen::Vector3d& query) const {
-  if (!query.allFinite()) throw std::invalid_argument("query is not finite");
+  require_finite(query, "query");
   const Impl& m = *impl_;
   const auto [foot, facet] =
       m.tree.closest_point_and_primitive(Impl::Kernel::Point_3(query.x(), query.y(), query.z()));
@@ -51,7 +51,7 @@ WallPoint BoreMesh::closest_point(const Eigen::Vector3d& query) const {
 }
 
 std::vector<double> BoreMesh::section_radii(double z, int count) const {
-  if (count < 1) throw std::invalid_argument("count of radii must be at least 1");
+  kernel::require(count >= 1, "count of radii", count, "at least 1");
   const Impl& m = *impl_;
   const Vector3 from = m.wall.centre + z * m.wall.axis;
   std::vector<double> radii(count, std::numeric_limits<double>::quiet_NaN());

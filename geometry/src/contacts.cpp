@@ -18,7 +18,7 @@ using kernel::require;
 
 void validate(const Vector3& centre, const char* centre_name, double radius,
               const char* radius_name, double maximum_gap) {
-  if (!centre.allFinite()) throw std::invalid_argument(std::string(centre_name) + " is not finite");
+  require_finite(centre, centre_name);
   require(radius > 0 && std::isfinite(radius), radius_name, radius, "(0, inf) m");
   require(maximum_gap >= 0 && std::isfinite(maximum_gap), "maximum_gap", maximum_gap, "[0, inf) m");
 }
@@ -199,11 +199,11 @@ std::vector<BoreContact> find_contacts(const BoreMesh::Impl& m, const Vector3& j
                                        double maximum_gap, const std::vector<Vector3>& previous,
                                        Survey* survey) {
   if (m.kind != SurfaceKind::bore)
-    throw std::invalid_argument("a journal needs a bore, but the mesh is a socket");
+    throw kernel::OutOfRange("kind of the mesh", "socket", "bore, which a journal needs");
   validate(journal_centre, "journal_centre", journal_radius, "journal_radius", maximum_gap);
   const double axis_length = journal_axis.norm();
-  if (!(axis_length > 0) || !std::isfinite(axis_length))
-    throw std::invalid_argument("journal_axis has no direction");
+  require(axis_length > 0 && std::isfinite(axis_length), "size of journal_axis", axis_length,
+          "finite, > 0");
   Vector3 axis = journal_axis / axis_length;
   double along = axis.dot(m.wall.axis);
   if (along < 0) {

@@ -286,12 +286,9 @@ void BoreMesh::Impl::refuse_coarse(const std::string& name) const {
     return std::isnan(radius) || (radius > 0 && radius < 5 * wall.radius);
   });
   if (usual <= allowed && error <= 0.5 * wall.radius && is_near) return;
-  char text[192];
-  std::snprintf(text, sizeof text,
-                "the facets are too coarse: they leave the surface between them open by %.3g m, "
-                "allowed is %.3g m, a fiftieth of the mean radius; a cylinder needs 16 around",
-                std::max({usual, error, is_near ? 0 : wall.radius}), allowed);
-  throw MeshFailure(name, MeshFault::too_coarse, text);
+  throw MeshFailure(
+      name, MeshReason::facets_too_coarse,
+      {{"open_m", std::max({usual, error, is_near ? 0 : wall.radius})}, {"allowed_m", allowed}});
 }
 
 void BoreMesh::Impl::make_hollow() {

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 31U;  // binary STL of 40 million facets
 
-[[noreturn]] void refuse(const std::string& file, const std::string& cause) {
-  throw MeshFailure(file, MeshFault::unreadable, cause);
+[[noreturn]] void refuse(const std::string& file, MeshReason reason) {
+  throw MeshFailure(file, reason);
 }
 
 /// Whole content of a file. Pipes, devices and other special files are not opened.
@@ -20,16 +20,16 @@ std::string content_of(const std::string& file) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-    refuse(file, "is no regular file");
+    refuse(file, MeshReason::not_a_file);
   std::ifstream stream(file, std::ios::binary);
   const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (!stream || error) refuse(file, "cannot be opened");
-  if (size > most_bytes) refuse(file, "has more than 2 GiB");
+  if (!stream || error) refuse(file, MeshReason::not_opened);
+  if (size > most_bytes) refuse(file, MeshReason::above_2_gib);
   std::string content(static_cast<std::size_t>(size), '\0');
   stream.read(content.data(), static_cast<std::streamsize>(content.size()));
-  if (stream.bad()) refuse(file, "cannot be read");
+  if (stream.bad()) refuse(file, MeshReason::read_failed);
   content.resize(static_cast<std::size_t>(stream.gcount()));
-  if (content.empty()) refuse(file, "the file is empty");
+  if (content.empty()) refuse(file, MeshReason::empty_file);
   return content;
 }
 
@@ -37,7 +37,7 @@ std::string content_of(const std::string& file) {
 
 Triangles read_triangles(const std::string& file) {
   const std::optional<MeshFormat> format = format_of(file);
-  if (!format) refuse(file, "a mesh file ends with .off, .stl, .ply or .obj");
+  if (!format) refuse(file, MeshReason::unknown_ending);
   return parse_triangles(*format, content_of(file), file);
 }
 

@@ -9,11 +9,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <unordered_map>
+#include <utility>
 
 #include "statejump/geometry/mesh_failure.hpp"
+#include "statejump/kernel/require.hpp"
 
 namespace statejump::geometry {
 namespace {
@@ -25,30 +26,35 @@ using SurfaceMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 /// Largest coordinate [m]; the squares of larger areas would overflow.
 constexpr double farthest = 1e60;
 
-std::string face_name(const Triangles& mesh, int face) {
-  const auto& corner = mesh.faces[face];
-  return "face " + std::to_string(face) + " (vertices " + std::to_string(corner[0]) + ", " +
-         std::to_string(corner[1]) + ", " + std::to_string(corner[2]) + ")";
+std::string listed(const std::array<int, 3>& numbers) {
+  return std::to_string(numbers[0]) + ", " + std::to_string(numbers[1]) + ", " +
+         std::to_string(numbers[2]);
 }
 
-[[noreturn]] void refuse(const std::string& name, const std::string& cause) {
-  throw MeshFailure(name, MeshFault::bad_faces, cause);
+/// A face with its corners and its position.
+MeshFields face_fields(const Triangles& mesh, int face) {
+  return {{"face", face},
+          {"corners", listed(mesh.faces[face])},
+          {"at_m", place(face_centre(mesh, face))}};
+}
+
+[[noreturn]] void refuse(const std::string& name, MeshReason reason, MeshFields fields = {}) {
+  throw MeshFailure(name, reason, std::move(fields));
 }
 
 void check_faces(const Triangles& mesh, const std::string& name) {
-  if (mesh.faces.empty()) refuse(name, "the mesh has no faces");
+  if (mesh.faces.empty()) refuse(name, MeshReason::no_faces);
   const int count = static_cast<int>(mesh.vertices.size());
   for (int i = 0; i < count; ++i)
     if (!mesh.vertices[i].allFinite())
-      refuse(name, "vertex " + std::to_string(i) + " is not finite");
+      refuse(name, MeshReason::vertex_not_finite, {{"vertex", i}});
     else if (mesh.vertices[i].cwiseAbs().maxCoeff() > farthest)
-      refuse(name, "vertex " + std::to_string(i) + " at " + place(mesh.vertices[i]) +
-                       " is too far away for any joint");
+      refuse(name, MeshReason::vertex_too_far, {{"vertex", i}, {"at_m", place(mesh.vertices[i])}});
   for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f) {
     for (const int corner : mesh.faces[f])
       if (corner < 0 || corner >= count)
-        refuse(name, "face " + std::to_string(f) + " has corner " + std::to_string(corner) +
-                         ", but there are only " + std::to_string(count) + " vertices");
+        refuse(name, MeshReason::no_such_corner,
+               {{"face", f}, {"corner", corner}, {"vertices", count}});
   }
 }
 
@@ -75,7 +81,7 @@ bool has_area(const Triangles& mesh, const std::array<int, 3>& face) {
 void check_areas(const Triangles& mesh, const std::string& name) {
   for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f)
     if (!has_area(mesh, mesh.faces[f]))
-      refuse(name, face_name(mesh, f) + " at " + place(face_centre(mesh, f)) + " has no area");
+      refuse(name, MeshReason::face_without_area, face_fields(mesh, f));
 }
 
 struct Edge {
@@ -101,11 +107,11 @@ Edges edges_of(const Triangles& mesh, const std::string& name) {
       Edge& edge = edges[edge_key(a, b)];
       const int side = edge.face[0] < 0 ? 0 : 1;
       if (edge.face[side] >= 0)
-        refuse(name, "the edge between vertices " + std::to_string(std::min(a, b)) + " and " +
-                         std::to_string(std::max(a, b)) + " at " +
-                         place(0.5 * (mesh.vertices[a] + mesh.vertices[b])) +
-                         " belongs to more than two faces (" + std::to_string(edge.face[0]) + ", " +
-                         std::to_string(edge.face[1]) + ", " + std::to_string(f) + ")");
+        refuse(name, MeshReason::edge_of_three_faces,
+               {{"vertex", std::min(a, b)},
+                {"other_vertex", std::max(a, b)},
+                {"at_m", place(0.5 * (mesh.vertices[a] + mesh.vertices[b]))},
+                {"faces", listed({edge.face[0], edge.face[1], f})}});
       edge.face[side] = f;
       edge.opposite[side] = k;
       edge.forward[side] = a < b;
@@ -200,8 +206,7 @@ void orient(Triangles& mesh, const std::string& name) {
   polygons.reserve(mesh.faces.size());
   for (const auto& face : mesh.faces)
     polygons.push_back({std::size_t(face[0]), std::size_t(face[1]), std::size_t(face[2])});
-  if (!pmp::orient_polygon_soup(points, polygons))
-    refuse(name, "the faces have no common orientation (a one-sided surface)");
+  if (!pmp::orient_polygon_soup(points, polygons)) refuse(name, MeshReason::one_sided);
   bool first_turned = false;
   for (std::size_t f = 0; f < polygons.size(); ++f) {
     std::array<int, 3> face{static_cast<int>(polygons[f][0]), static_cast<int>(polygons[f][1]),
@@ -217,11 +222,10 @@ void orient(Triangles& mesh, const std::string& name) {
 
 }  // namespace
 
-std::string place(const Vector3& point) {
-  char text[96];
-  std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g) m", point.x() + 0.0, point.y() + 0.0,
-                point.z() + 0.0);
-  return text;
+void require_finite(const Vector3& point, const std::string& name) {
+  for (int k = 0; k < 3; ++k)
+    if (!std::isfinite(point[k]))
+      throw kernel::OutOfRange("", name + "." + "xyz"[k], point[k], "finite [m]");
 }
 
 Neighbours check_topology(Triangles& mesh, const std::string& name) {
@@ -273,8 +277,8 @@ Neighbours check_topology(Triangles& mesh, const std::string& name) {
       }
     }
     if (reached != faces_at[v])
-      refuse(name, "at vertex " + std::to_string(v) + " at " + place(mesh.vertices[v]) +
-                       " two sheets meet that share no edge");
+      refuse(name, MeshReason::sheets_at_vertex,
+             {{"vertex", v}, {"at_m", place(mesh.vertices[v])}});
   }
 
   std::vector<int> part(face_count, -1);
@@ -293,8 +297,7 @@ Neighbours check_topology(Triangles& mesh, const std::string& name) {
   }
   if (reached != face_count) {
     const int other = static_cast<int>(std::find(part.begin(), part.end(), -1) - part.begin());
-    refuse(name, "the mesh has several parts: " + face_name(mesh, other) + " at " +
-                     place(face_centre(mesh, other)) + " is not connected to face 0");
+    refuse(name, MeshReason::several_parts, face_fields(mesh, other));
   }
   return neighbours;
 }
@@ -339,11 +342,11 @@ void check_self_intersection(const Triangles& mesh, const std::string& name) {
     const int j = static_cast<int>(b.idx());
     first = std::min(first, {std::min(i, j), std::max(i, j)});
   }
-  throw MeshFailure(
-      name, MeshFault::self_intersects,
-      "faces " + std::to_string(first.first) + " and " + std::to_string(first.second) + " at " +
-          place(face_centre(mesh, first.first)) + " intersect" +
-          (pairs.size() > 1 ? ", and " + std::to_string(pairs.size() - 1) + " more pairs" : ""));
+  MeshFields fields{{"face", first.first},
+                    {"other_face", first.second},
+                    {"at_m", place(face_centre(mesh, first.first))}};
+  if (pairs.size() > 1) fields.emplace_back("more_pairs", pairs.size() - 1);
+  throw MeshFailure(name, MeshReason::faces_intersect, std::move(fields));
 }
 
 Neighbours restricted(const Neighbours& neighbours, const std::vector<int>& faces, int face_count) {

@@ -12,8 +12,10 @@ namespace statejump::geometry {
 
 using Vector3 = Eigen::Vector3d;
 
-/// Text "(x, y, z) m" with six digits.
-std::string place(const Vector3& point);
+/// As a field of a failure.
+inline std::array<double, 3> place(const Vector3& point) {
+  return {point.x(), point.y(), point.z()};
+}
 
 /// Neighbours of each face: neighbours[f][k] shares the edge opposite to corner k; -1: border.
 using Neighbours = std::vector<std::array<int, 3>>;
@@ -35,6 +37,9 @@ void check_self_intersection(const Triangles& mesh, const std::string& name);
 
 /// Neighbours among the given faces only, as indices in `faces`; -1 for other neighbours.
 Neighbours restricted(const Neighbours& neighbours, const std::vector<int>& faces, int face_count);
+
+/// @throws kernel::OutOfRange with the first coordinate that is not finite
+void require_finite(const Vector3& point, const std::string& name);
 
 inline Vector3 cross(const Vector3& a, const Vector3& b) {
   return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(),

@@ -13,8 +13,6 @@ namespace {
 
 constexpr double pi = 3.141592653589793238462643;
 constexpr double cosine_45 = 0.70710678118654752440;
-constexpr const char* turn_it = "flip turns it";
-// cos 40 degrees: faces at a larger angle belong to different patches
 constexpr double crease = 0.76604444311897803520;
 
 /// Least-squares surface: a cylinder, or a sphere (its axis is only a reference direction).
@@ -195,10 +193,10 @@ bool surrounds(const std::vector<Face>& faces, const std::vector<int>& chosen, c
   return gap < 0.67 * pi;  // three facets around have gaps of 2 pi/3
 }
 
-std::string loop_place(const Triangles& mesh, const Loop& loop) {
+MeshFields loop_fields(const Triangles& mesh, const Loop& loop) {
   Vector3 sum = Vector3::Zero();
   for (const int v : loop) sum += mesh.vertices[v];
-  return std::to_string(loop.size()) + " edges around " + place(sum / double(loop.size()));
+  return {{"edges", loop.size()}, {"at_m", place(sum / double(loop.size()))}};
 }
 
 double loop_length(const Triangles& mesh, const Loop& loop) {
@@ -213,16 +211,13 @@ void check_borders(const Triangles& mesh, std::vector<Loop> loops, SurfaceKind k
   const std::size_t ends = kind == SurfaceKind::bore ? 2 : 1;
   if (loops.empty() || loops.size() == ends) return;
   if (loops.size() < ends)
-    throw MeshFailure(name, MeshFault::open,
-                      "the mesh has one open end, of " + loop_place(mesh, loops[0]) +
-                          ", but a bore has two, or none when it is a closed ring");
+    throw MeshFailure(name, MeshReason::one_open_end, loop_fields(mesh, loops[0]));
   std::sort(loops.begin(), loops.end(), [&](const Loop& a, const Loop& b) {
     return loop_length(mesh, a) > loop_length(mesh, b);
   });
-  throw MeshFailure(name, MeshFault::open,
-                    "the mesh has " + std::to_string(loops.size() - ends) +
-                        " hole(s) beside the open end(s), the largest of " +
-                        loop_place(mesh, loops[ends]));
+  MeshFields fields = loop_fields(mesh, loops[ends]);
+  fields.emplace_back("holes", loops.size() - ends);
+  throw MeshFailure(name, MeshReason::holes, std::move(fields));
 }
 
 double volume(const Triangles& mesh) {
@@ -232,12 +227,6 @@ double volume(const Triangles& mesh) {
     six += (mesh.vertices[f[0]] - origin)
                .dot(cross(mesh.vertices[f[1]] - origin, mesh.vertices[f[2]] - origin));
   return six / 6;
-}
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
 }
 
 }  // namespace
@@ -254,9 +243,7 @@ Wall find_wall(const Triangles& mesh, const Neighbours& neighbours, const BoreOp
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
   std::vector<int> chosen = all;
   if (loops.empty() && kind == SurfaceKind::bore) {
-    if (volume(mesh) < 0)
-      throw MeshFailure(name, MeshFault::inside_out,
-                        "the closed mesh is inside out: its normals point into the body", turn_it);
+    if (volume(mesh) < 0) throw MeshFailure(name, MeshReason::body_inside_out);
     chosen.clear();
     double largest = 0;
     for (const auto& patch : patches(faces, neighbours)) {
@@ -269,33 +256,25 @@ Wall find_wall(const Triangles& mesh, const Neighbours& neighbours, const BoreOp
       chosen = patch;
       largest = area;
     }
-    if (chosen.empty())
-      throw MeshFailure(name, MeshFault::no_bore,
-                        "the closed mesh has no bore: no smooth wall surrounds an axis");
+    if (chosen.empty()) throw MeshFailure(name, MeshReason::no_smooth_wall);
   }
 
   Round round = fit(mesh, faces, chosen, kind);
   const double facing = inward(faces, chosen, round, kind);
   if (facing < 0)
-    throw MeshFailure(name, MeshFault::inside_out,
-                      "the mesh is inside out: its normals point away from " + towards +
-                          ", as that of face " + std::to_string(chosen[0]) + " at " +
-                          place(faces[chosen[0]].centre),
-                      turn_it);
-  if (facing < 0.5 || (kind == SurfaceKind::bore && !surrounds(faces, chosen, round)))
     throw MeshFailure(
-        name, MeshFault::no_bore,
-        "the mesh is no " + std::string(kind == SurfaceKind::bore
-                                            ? "bore: its faces do not surround an axis"
-                                            : "socket: its faces do not face a centre"));
+        name, MeshReason::wall_inside_out,
+        {{"target", towards}, {"face", chosen[0]}, {"at_m", place(faces[chosen[0]].centre)}});
+  if (facing < 0.5 || (kind == SurfaceKind::bore && !surrounds(faces, chosen, round)))
+    throw MeshFailure(name, kind == SurfaceKind::bore ? MeshReason::surrounds_no_axis
+                                                      : MeshReason::faces_no_centre);
   // Remove ends and chamfers, then fit the axis to the remaining faces; twice.
   for (int pass = 0; pass < 2; ++pass) {
     std::vector<int> kept;
     for (const int f : chosen)
       if (faces[f].normal.dot(to_axis(round, faces[f].centre, kind).normalized()) > cosine_45)
         kept.push_back(f);
-    if (kept.size() < 3)
-      throw MeshFailure(name, MeshFault::no_bore, "too few faces point to " + towards);
+    if (kept.size() < 3) throw MeshFailure(name, MeshReason::too_few_faces, {{"target", towards}});
     round = fit(mesh, faces, kept, kind);
     if (pass == 1 || kept.size() == chosen.size()) {
       chosen = kept;
@@ -304,12 +283,10 @@ Wall find_wall(const Triangles& mesh, const Neighbours& neighbours, const BoreOp
   }
   if (!(round.radius >= options.smallest_radius && round.radius <= options.largest_radius)) {
     const bool is_large = round.radius > options.largest_radius;
-    throw MeshFailure(
-        name, is_large ? MeshFault::too_large : MeshFault::too_small,
-        "the mean radius is " + number(round.radius) + " m, allowed is " +
-            number(options.smallest_radius) + " to " + number(options.largest_radius) +
-            " m: " + (is_large ? "are the coordinates in millimetres?" : "is the scale right?"),
-        is_large ? "scale by 0.001" : "");
+    throw MeshFailure(name, is_large ? MeshReason::radius_too_large : MeshReason::radius_too_small,
+                      {{"mean_radius_m", round.radius},
+                       {"smallest_m", options.smallest_radius},
+                       {"largest_m", options.largest_radius}});
   }
 
   Wall wall;

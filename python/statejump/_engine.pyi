@@ -28,7 +28,9 @@ class EngineFailure(ValueError, RuntimeError):
     cause: str | None
     remedy: str | None
     file: str | None
+    reason: str | None
     numbers: dict[str, float]
+    details: dict[str, Any]
 
 class ThermalProgram(metaclass=_pybind11_type):
     def __init__(
@@ -476,6 +478,7 @@ class BoreMesh(metaclass=_pybind11_type):
     @property
     def prominence_m(self) -> float: ...
 
+def mesh_reasons() -> list[tuple[str, str, str, str]]: ...
 def bore_triangles(
     radius_m: float,
     length_m: float,

@@ -191,6 +191,7 @@ def table() -> str:
             lines += _rows("Runs in YADE", RUNS)
             lines += _as_json()
             lines += _codes()
+            lines += _reasons_of_meshes()
         finally:
             os.chdir(here)
     return "\n".join(lines)
@@ -239,6 +240,18 @@ def _codes() -> list[str]:
         if declared.further:
             sentence += f" (details: {', '.join(declared.further)})"
         lines.append(f"| `{code}` | {_cell(sentence if declared.text == '' else f'({declared.text})')} |")
+    return [*lines, ""]
+
+
+def _reasons_of_meshes() -> list[str]:
+    """Return why a mesh is rejected, with the sentence of each reason."""
+    from statejump import _engine
+
+    lines = ["## Meshes of bores\n\nThe detail `reason` says why a mesh has one of the codes `bore_…`. Names in braces "
+             "are further details; a part in brackets may be missing.\n\n| code | reason | sentence |\n|---|---|---|"]
+    for fault, reason, cause, remedy in _engine.mesh_reasons():
+        sentence = f"{cause}; {remedy}" if remedy else cause
+        lines.append(f"| `bore_{fault}` | `{reason}` | {_cell(sentence)} |")
     return [*lines, ""]
 
 

@@ -28,9 +28,7 @@ def quasi_static(case: UmbrellaCase) -> _engine.ElasticLoop:
     if loop.separated:
         where = loop.events[-1]["temperature_change_K"]
         raise FailedRun(
-            f"the quasi-static path ends at a temperature change of {where:.6g} K, where the contact force vanishes",
-            case=case.name, temperature_change_K=where,
-            remedy="load the joint with a larger torsion_spring.bias_rad",
+            code="contact_force_vanishes", case=case.name, temperature_change_K=where, where_K=where,
         )
     return loop
 

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from conftest import BUILT, REPOSITORY
+from failures import failure
 from statejump import _engine
 from statejump.laws import build
 
@@ -98,9 +99,9 @@ def test_traits_decide_what_a_case_may_ask(folder: Path, tmp_path: Path) -> None
     text = (REPOSITORY / "cases" / "umbrella_hold.toml").read_text()
     path = tmp_path / "creeping.toml"
     path.write_text(text.replace('friction_law = "mindlin"', 'friction_law = "smooth"'))
-    done = ended([BUILT.parent / "bin" / "statejump", "reduced", path], STATEJUMP_LAWS=str(folder))
+    done = ended([BUILT.parent / "bin" / "statejump", "--json", "reduced", path], STATEJUMP_LAWS=str(folder))
     assert done.returncode == 2
-    assert "must be 0 [rad]: this friction holds no static load" in done.stderr
+    assert failure("friction_without_static_load") == done.stderr
 
 
 def test_listed(folder: Path, tmp_path: Path) -> None:
@@ -182,34 +183,35 @@ def test_wrong_answers_name_law_joint_and_time(yade: str, monkeypatch: pytest.Mo
     assert f"wrong ({wrong_law}): {complaint} (contact of bodies 0 and 1, time 0 s" in done.stdout, done.stderr
 
 
-def mistake(statejump, *arguments: object, **environment: str) -> str:
-    outcome = statejump("laws", "build", *arguments, XDG_DATA_HOME="/nonexistent", **environment)
-    assert outcome.status == 2 and outcome.output == ""
-    assert outcome.errors.startswith("error: ") and outcome.errors.count("\n") == 1, outcome.errors
-    return outcome.errors[len("error: "):-1]
+def mistake(statejump, *arguments: object, **environment: str) -> dict[str, Any]:
+    outcome = statejump("--json", "laws", "build", *arguments, XDG_DATA_HOME="/nonexistent", **environment)
+    assert outcome.status == 2 and outcome.output == "" and outcome.errors.count("\n") == 1, outcome.errors
+    return outcome.failure
 
 
 def test_mistakes_of_a_header(statejump, tmp_path: Path) -> None:
     missing, wrong, none, kind = (tmp_path / f"{name}.hpp" for name in ("missing", "wrong", "none", "kind"))
-    assert mistake(statejump, missing) == f"{missing}: there is no such file"
+    assert mistake(statejump, missing) == failure("header_file_missing", file="missing.hpp")
     text = (TOYS / "twin.hpp").read_text()
     wrong.write_text(text.replace("return 1.5", "return one_and_a_half"))
-    sentence = mistake(statejump, wrong, "--folder", tmp_path / "laws")
-    assert re.match(r"wrong\.hpp does not compile: wrong\.hpp:16:\d+: error: 'one_and_a_half'", sentence), sentence
+    found = mistake(statejump, wrong, "--folder", tmp_path / "laws")
+    assert found == failure("law_does_not_compile", header="wrong.hpp")
+    assert re.match(r"wrong\.hpp:16:\d+: error: 'one_and_a_half'", found["cause"]), found
     none.write_text(text.replace("using UserLaw = Twin;", ""))
-    assert "none.hpp does not compile: " in mistake(statejump, none, "--folder", tmp_path / "laws")
+    assert mistake(statejump, none, "--folder", tmp_path / "laws") == failure("law_does_not_compile", header="none.hpp")
     kind.write_text(text.replace("double operator()", "double other"))
-    assert "UserLaw has the call operator of no kind of law" in mistake(statejump, kind, "--folder", tmp_path / "laws")
+    found = mistake(statejump, kind, "--folder", tmp_path / "laws")
+    assert found == failure("law_does_not_compile", header="kind.hpp") and "of no kind of law" in found["cause"]
     taken = tmp_path / "taken.hpp"
     taken.write_text(text.replace('"twin"', '"flores"'))
-    assert mistake(statejump, taken, "--folder", tmp_path / "laws") == (
-        f"{taken}: two laws have this name, that of the project and that of {taken}")
+    found = mistake(statejump, taken, "--folder", tmp_path / "laws")
+    assert found == failure("bad_law", file="taken.hpp") and found["message"].endswith(f" and that of {taken}")
     assert list((tmp_path / "laws").iterdir()) == []
 
 
 def test_no_compiler(statejump, tmp_path: Path) -> None:
-    sentence = mistake(statejump, TOYS / "twin.hpp", "--folder", tmp_path, CXX="no-such-compiler")
-    assert sentence == "no C++ compiler: $CXX = 'no-such-compiler' cannot be run"
+    found = mistake(statejump, TOYS / "twin.hpp", "--folder", tmp_path, CXX="no-such-compiler")
+    assert found == failure("compiler_not_run", compiler="no-such-compiler")
 
 
 def test_hash_is_that_of_the_build(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from conftest import BUILT, COMMAND, REPOSITORY, Outcome, sealed
-from failures import failing, failure
+from failures import Failure, failing, failure
 
 from statejump.core import units
 from statejump.core.comparison import models
@@ -236,22 +236,22 @@ def test_an_event_has_the_error_of_its_samples_and_the_reason_why_one_model_has_
 
 
 @pytest.mark.parametrize(
-    ("name", "content", "sentence"),
+    ("name", "content", "wanted"),
     [
-        ("missing.h5", None, "missing.h5: no such result file"),
-        ("text.h5", b"time_s\n0\n", "text.h5: not a result file: it does not begin with 'statejump HDF5'"),
-        ("empty", "folder", "empty: no result file: no *.h5 in this folder; 'statejump compare CASE' writes one"),
+        ("missing.h5", None, failure("result_file_not_found", file="missing.h5")),
+        ("text.h5", b"time_s\n0\n", failure("no_result_format", file="text.h5")),
+        ("empty", "folder", failure("result_file_missing", file="empty")),
     ],
 )
 def test_bad_runs(
-    statejump: Callable[..., Outcome], tmp_path: Path, name: str, content: bytes | str | None, sentence: str
+    statejump: Callable[..., Outcome], tmp_path: Path, name: str, content: bytes | str | None, wanted: Failure
 ) -> None:
     if content == "folder":
         (tmp_path / name).mkdir()
     elif isinstance(content, bytes):
         (tmp_path / name).write_bytes(content)
     done = statejump("report", name)
-    assert (done.status, done.errors) == (2, f"error: {sentence}\n")
+    assert (done.status, done.failure) == (2, wanted)
     assert not list(tmp_path.rglob("*.html"))
 
 

@@ -432,9 +432,9 @@ def test_bad_file_is_one_sentence(compared, tmp_path: Path, name: str) -> None:
 def test_commands_refuse_bad_files(compared, tmp_path: Path, command: str) -> None:
     (tmp_path / "bad.h5").write_text("no")
     more = [compared("table1") / "comparison.h5"] if command == "compare" else []
-    done = run(tmp_path, command, "bad.h5", *more)
+    done = run(tmp_path, "--json", command, "bad.h5", *more)
     assert done.returncode == 2
-    assert done.stderr == "error: bad.h5: not a result file: it does not begin with 'statejump HDF5'\n"
+    assert failure("no_result_format", file="bad.h5") == done.stderr
     assert [entry.name for entry in tmp_path.iterdir()] == ["bad.h5"]
 
 
@@ -546,29 +546,31 @@ def test_tolerance_decides_the_exit_status(compared, tmp_path: Path) -> None:
     first = edited_case(result, "tolerance", "event_temperature_K", 1e-6)
     write(replace(first, models={"reduced": result.models["reduced"]}), tmp_path / "a.h5")
     write(replace(result, models={"dem": result.models["dem"]}), tmp_path / "b.h5")
-    done = run(tmp_path, "compare", "a.h5", "b.h5")
+    done = run(tmp_path, "--json", "compare", "a.h5", "b.h5")
     assert done.returncode == 1
-    assert done.stderr.startswith("a.h5, b.h5: tolerance missed: ") and "first_slip_temperature_change" in done.stderr
+    assert failure("tolerance_missed", file="a.h5, b.h5") == done.stderr
+    assert "first_slip_temperature_change" in json.loads(done.stderr)["cause"].split(", ")
     assert "computed otherwise: tolerance.event_temperature_K = 1e-06 and 0.5" in done.stdout
 
 
 def test_other_cases_are_not_comparable(compared, tmp_path: Path) -> None:
     result = read(compared("table1") / "comparison.h5")
     write(edited_case(result, "joint", "clearance_plus_m", 2e-3), tmp_path / "wide.h5")
-    done = run(tmp_path, "compare", compared("table1") / "comparison.h5", "wide.h5")
+    done = run(tmp_path, "--json", "compare", compared("table1") / "comparison.h5", "wide.h5")
     assert done.returncode == 2
-    assert done.stderr == "error: not comparable: the cases differ: joint.clearance_plus_m = 0.001 and 0.002\n"
-    done = run(tmp_path, "compare", compared("table1") / "comparison.h5", compared("umbrella_damped") / "comparison.h5")
+    assert failure("cases_differ", key_that_differs="joint.clearance_plus_m = 0.001 and 0.002", more="") == done.stderr
+    done = run(tmp_path, "--json", "compare", compared("table1") / "comparison.h5",
+               compared("umbrella_damped") / "comparison.h5")
     assert done.returncode == 2
-    assert done.stderr == "error: not comparable: kinds spring_slider and umbrella\n"
+    assert failure("kinds_differ", first="spring_slider", second="umbrella") == done.stderr
     half = {name: replace(column, values=column.values / 2 if name == "time_s" else column.values)
             for name, column in result.models["dem"].history.items()}
     end = float(result.models["dem"].time_s[-1])
     with failing("durations_differ", first_s=end, second_s=end / 2):
         difference(result, replace(result, models={"dem": replace(result.models["dem"], history=half)}))
     for arguments in (["a.h5"], ["a.h5", "b.h5", "c.h5"]):
-        done = run(tmp_path, "compare", *arguments)
-        assert done.returncode == 2 and "takes a case file or two result files" in done.stderr
+        done = run(tmp_path, "--json", "compare", *arguments)
+        assert done.returncode == 2 and failure("wrong_number_of_files", files=len(arguments)) == done.stderr
     assert case_differences(result, result) == ([], [])
 
 

@@ -108,7 +108,7 @@ def test_damaged_answers_are_one_sentence(folder: Path, tmp_path: Path) -> None:
         del file["answers/node_jumps/node"]
         file["answers/node_jumps"]["node"] = ["A1"]
     sealed(path)
-    with pytest.raises(StatejumpError, match="bad.h5: damaged: ") as raised:
+    with failing("ANSWERS_CODE", file="bad.h5") as raised:
         read(path)
     assert "\n" not in str(raised.value)
 

@@ -318,8 +318,8 @@ def test_columns_that_are_refused(columns: dict[str, Any], why: Failure) -> None
 
 def test_a_number_of_numpy_is_told_as_what_it_holds() -> None:
     for given, told in ((np.float64(1.5), "1.5"), (np.bool_(True), "true"), (np.array([1.0, 2.0]), "[1.0, 2.0]")):
-        wrong = NotAllowed("turns", given, "must be a whole number")
-        assert str(wrong) == f"turns = {told} is not allowed: must be a whole number"
+        wrong = NotAllowed("turns", given, "why")
+        assert str(wrong).startswith(f"turns = {told} is ") and str(wrong).endswith(": why")
         assert json.loads(json.dumps(wrong.fields()))["value"] == given.tolist()
 
 
@@ -377,7 +377,7 @@ def test_values_are_set_by_path() -> None:
     set_value(Book, data, "thing.A.load_N", None)
     assert data["part"] == {"size_m": 2.0} and data["more"] == {"count": 4}
     assert [(one["mass_kg"], one["sort"]) for one in data["thing"]] == [(1.0, "far"), (7.0, "far")]
-    with pytest.warns(FutureWarning, match="^part.old_m is part.size_m now; the old place is still understood$"):
+    with pytest.warns(FutureWarning, match=r"^part.old_m\b.* part.size_m\b"):
         set_value(Book, data, "part.old_m", 3.0)
     assert data["part"] == {"size_m": 3.0}
     assert refused(set_value, Book, data, "part.zzzz", 1) == failure("misspelt_key", key="part.zzzz")
@@ -400,7 +400,7 @@ def test_values_are_read_by_path() -> None:
     assert value_of(made, "thing.*.on") is False
     assert refused(value_of, made, "thing.*.mass_kg") == failure("several_values", key="thing.*.mass_kg", path="thing.*.mass_kg")
     assert refused(value_of, made, "thing.Q.mass_kg") == failure("no_such_key", key="thing.Q.mass_kg", known="A, B.b")
-    with pytest.warns(FutureWarning, match="part.old_m is part.size_m now"):
+    with pytest.warns(FutureWarning, match=r"part.old_m\b.* part.size_m\b"):
         assert value_of(made, "part.old_m") == 1
 
 
@@ -413,7 +413,7 @@ def test_values_are_changed_without_the_case() -> None:
 
 def test_keys_that_moved() -> None:
     data = {"part": {"old_m": 1.0, "count": 2}, "thing": [dict(THING)]}
-    with pytest.warns(FutureWarning, match="^a.toml: part.old_m is part.size_m now; the old place is still understood$"):
+    with pytest.warns(FutureWarning, match=r"^a.toml: part.old_m\b.* part.size_m\b"):
         moved = with_keys_moved(Book, data, "a.toml")
     assert moved == {"part": {"count": 2, "size_m": 1.0}, "thing": [dict(THING)]} and "old_m" in data["part"]
     with pytest.warns(FutureWarning):

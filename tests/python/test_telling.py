@@ -64,21 +64,22 @@ def test_run_survives_its_environment(cases: Path, tmp_path: Path, environment: 
     done = shell("statejump reduced 'time 1-2 s.toml'; statejump laws --quiet", tmp_path, **environment)
     assert (done.returncode, done.stderr) == (0, ""), done.stderr
     assert "state jump: 2.38095" in done.stdout and written(tmp_path) == FILES
-    refused = shell("statejump reduced 'time 1-2 s ΔT.toml'", tmp_path, **environment)
-    assert refused.returncode == 2 and refused.stderr.count("\n") == 1 and "no such case file" in refused.stderr
+    refused = shell("statejump --json reduced 'time 1-2 s ΔT.toml'", tmp_path, **environment)
+    assert refused.returncode == 2 and refused.stderr.count("\n") == 1
+    assert failure("case_file_not_found") == refused.stderr
 
 
 def test_folder_that_was_deleted(cases: Path, tmp_path: Path) -> None:
-    done = shell(f"mkdir gone && cd gone && rmdir ../gone && statejump dem {cases}/table1.toml --results {tmp_path}", tmp_path)
+    done = shell(f"mkdir gone && cd gone && rmdir ../gone && statejump --json dem {cases}/table1.toml --results {tmp_path}", tmp_path)
     assert done.returncode == 2
-    assert done.stderr == "error: the folder where the command was started does not exist any more\n"
+    assert failure("working_folder_gone") == done.stderr
 
 
 def test_home_that_is_not_set(cases: Path, tmp_path: Path, fake_yade) -> None:
     """YADE does not start without; it gets its own temporary folder."""
     yade = fake_yade('test -d "$HOME" || exit 7\ntest "$HOME" = "$TMPDIR" || exit 8\nexit 9\n')
-    done = shell(f"unset HOME; statejump dem {cases}/table1.toml", tmp_path, STATEJUMP_YADE=yade)
-    assert "YADE ended with status 9" in done.stderr
+    done = shell(f"unset HOME; statejump --json dem {cases}/table1.toml", tmp_path, STATEJUMP_YADE=yade)
+    assert failure("yade_ended", status=9) == done.stderr
 
 
 @pytest.mark.parametrize("number, status", [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
@@ -151,7 +152,7 @@ def test_control_characters_do_not_reach_the_terminal(tmp_path: Path, capsys: py
     assert "\x1b[31m" not in said and "\x9b" not in said and "\x07" not in said and "\x00" not in said
     assert said.count("\\x1b[31mred") == 4
     done = subprocess.run([COMMAND, "reduced", "a\x1b[31m.toml"], capture_output=True, text=True, cwd=tmp_path)
-    assert done.stderr == "error: a\\x1b[31m.toml: no such case file\n"
+    assert done.stderr.startswith("error: a\\x1b[31m.toml: ") and done.stderr.count("\n") == 1
     done = subprocess.run([COMMAND, "--json", "reduced", "a\x9b\x1b[31m.toml"], capture_output=True, text=True, cwd=tmp_path)
     assert "\x9b" not in done.stderr and json.loads(done.stderr)["file"] == "a\x9b\x1b[31m.toml"
 

@@ -74,14 +74,13 @@ def test_masses_are_those_of_rods_or_of_the_dem() -> None:
     assert runs[0].summary["unknowns"] == 3
 
 
-@pytest.mark.parametrize(("key", "value", "allowed"), [
-    ("theta", 0.4, "0.5"), ("restitution", 1.2, "1"), ("steps_per_cycle", 5, "10"), ("masses", "heavy", "lumped"),
-    ("displacement_tolerance_m", 0, "above 0"),
+@pytest.mark.parametrize(("key", "value"), [
+    ("theta", 0.4), ("restitution", 1.2), ("steps_per_cycle", 5), ("masses", "heavy"), ("displacement_tolerance_m", 0),
 ])
-def test_keys_out_of_range_are_refused(statejump, tmp_path: Path, key: str, value: Any, allowed: str) -> None:
+def test_keys_out_of_range_are_refused(statejump, tmp_path: Path, key: str, value: Any) -> None:
     outcome = statejump("reduced", "--dynamic", case_file(tmp_path, chain(**{key: value})))
     assert outcome.status == 2
-    assert key in outcome.errors and allowed in outcome.errors and len(outcome.errors.splitlines()) == 1
+    assert (outcome.failure.key, outcome.failure.value) == (f"motion.{key}", value) and len(outcome.errors.splitlines()) == 1
     assert not (tmp_path / "results").exists()
 
 

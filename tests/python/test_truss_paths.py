@@ -27,10 +27,10 @@ def path(document: dict[str, Any], **options: Any) -> solve.TrussPath:
     return solve.path(parse_case(document).resolve(), **options)
 
 
-def failure(document: dict[str, Any]) -> str:
+def failed(document: dict[str, Any]) -> StatejumpError:
     with pytest.raises(StatejumpError) as caught:
         path(document)
-    return str(caught.value)
+    return caught.value
 
 
 def bays(count: int, diagonals: int, dimension: int) -> dict[str, Any]:
@@ -135,8 +135,9 @@ def frame_on_foot(side_N: float, clearance_m: float | None = None) -> dict[str, 
 
 
 def test_load_beyond_friction_names_the_joint_and_what_it_holds() -> None:
-    message = failure(frame_on_foot(96.0))
-    assert "slider 'foot' cannot hold the loads" in message and "25 % of them" in message
+    found = failed(frame_on_foot(96.0))
+    assert (found.code, found.joint) == ("overloaded", "foot")
+    assert found.numbers["load_fraction"] == pytest.approx(0.25, rel=1e-3)
 
 
 @pytest.mark.parametrize("clearance_m", [1e-5, 2e-3])

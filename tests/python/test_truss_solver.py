@@ -267,7 +267,7 @@ def test_mechanism_names_its_free_modes() -> None:
     document = generate.mast(2)
     del document["torsion_spring"]
     assert refused(document) == failure("held_mechanism")
-    assert "4 free modes: node '" in str(refused(document).cause)
+    assert refused(document).numbers["modes"] == 4 and refused(document).nodes
 
 
 def column(load_N: float, temperature_change_K: float = 0.0) -> dict[str, Any]:

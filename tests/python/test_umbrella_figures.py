@@ -15,6 +15,7 @@ import pytest
 from click.testing import CliRunner
 
 from conftest import results_in
+from failures import failure
 from statejump import _engine
 from studies.paper.commands import figures_command
 from statejump.core.errors import Interrupted, StatejumpError
@@ -358,10 +359,10 @@ def test_failures_are_one_sentence(
 ) -> None:
     outcome = invoke(cases / "table1.toml", tmp_path)
     assert isinstance(outcome.exception, StatejumpError)
-    assert str(outcome.exception) == (
-        f"{cases / 'table1.toml'}: case.kind = 'spring_slider' is not allowed: 'statejump figures' is for 'umbrella'"
-    )
+    assert outcome.exception == failure(
+        "command_not_for_kind", file="table1.toml", key="case.kind", value="spring_slider", command="figures")
     tiny.write_text(tiny.read_text().replace("start_spread_m = 1e-6", "start_spread_m = 8e-5"))
     outcome = invoke(tiny, tmp_path)
     assert isinstance(outcome.exception, StatejumpError)
-    assert "cannot vary joint.radial_clearance_m: ensemble.start_spread_m = 8e-05" in str(outcome.exception)
+    assert outcome.exception == failure(
+        "cannot_vary", varied="joint.radial_clearance_m", key="ensemble.start_spread_m", value=8e-5)

@@ -14,6 +14,7 @@ import pytest
 from click.testing import CliRunner
 
 from conftest import BUILT, REPOSITORY
+from failures import failure
 from statejump import _paths
 from studies.paper import commands, ensembles
 from statejump.core import yade_process
@@ -148,36 +149,41 @@ def test_energy_book_sees_what_is_missing(damped):
         assert abs(energy.residue_J({**columns, name: 0 * columns[name]})) > 100 * whole, name
 
 
+KIND = failure("command_not_for_kind", key="case.kind", value="spring_slider", kinds="'umbrella'")
 MISTAKES = {
-    "slow, other kind": (commands.slow_command, "table1", (), "is for 'umbrella'"),
-    "slow, not loaded": (commands.slow_command, "umbrella_damped", (), "start.mode = 'matched' is not allowed"),
+    "slow, other kind": (commands.slow_command, "table1", (), KIND),
+    "slow, not loaded": (commands.slow_command, "umbrella_damped", (),
+                         failure("not_allowed", key="start.mode", value="matched")),
     "slow, undamped": (commands.slow_command, "umbrella_bias", (("axial_damping_ratio = 0.1", "axial_damping_ratio = 0"),),
-                       "damping.axial_damping_ratio = 0.0 is not allowed: must be above 0: without damping"),
+                       failure("not_allowed", key="damping.axial_damping_ratio", value=0.0)),
     "slow, no memory": (commands.slow_command, "umbrella_bias",
                         (('friction_law = "mindlin"', 'friction_law = "ambrosio"'),),
-                        "needs friction that holds a static load, 'mindlin'"),
+                        failure("not_allowed", key="joint.friction_law", value="ambrosio")),
     "slow, force vanishes": (commands.slow_command, "umbrella_bias", (("bias_rad = 0.05", "bias_rad = -0.003"),),
-                             "the contact force vanishes"),
+                             failure("contact_force_vanishes")),
     "slow, line contact": (commands.slow_command, "umbrella_bias", (('"hertz_internal"', '"johnson"'),),
-                           "there is no quasi-static path: normal = 'johnson'"),
-    "hold, other kind": (commands.hold_command, "table1", (), "is for 'umbrella'"),
-    "hold, no spring": (commands.hold_command, "umbrella_damped", (), "with a biased torsion spring"),
+                           failure("out_of_range", argument="normal")),
+    "hold, other kind": (commands.hold_command, "table1", (), KIND),
+    "hold, no spring": (commands.hold_command, "umbrella_damped", (),
+                        failure("not_allowed", key="start.mode", value="matched")),
     "hold, no friction": (commands.hold_command, "umbrella_bias",
-                          (("friction_coefficient = 0.15", "friction_coefficient = 0"),), "nothing holds the joint"),
+                          (("friction_coefficient = 0.15", "friction_coefficient = 0"),),
+                          failure("not_allowed", key="joint.friction_coefficient", value=0.0)),
     "hold, no clearance to load": (commands.hold_command, "umbrella_bias", (("bias_rad = 0.05", "bias_rad = 0.001"),),
-                                   "the joint cannot be loaded"),
-    "energy, other kind": (commands.energy_command, "table1", (), "is for 'umbrella'"),
-    "energy, constant temperature": (commands.energy_command, "umbrella_hold", (), "there is no thermal work"),
+                                   failure("unloaded_joint")),
+    "energy, other kind": (commands.energy_command, "table1", (), KIND),
+    "energy, constant temperature": (commands.energy_command, "umbrella_hold", (),
+                                     failure("not_allowed", key="thermal.temperature_change_max_K", value=0)),
 }
 
 
 @pytest.mark.parametrize("name", MISTAKES)
 def test_mistake_is_one_sentence(name, edited, cases, tmp_path):
-    command, case, changes, sentence = MISTAKES[name]
+    command, case, changes, wanted = MISTAKES[name]
     path = edited(*changes, case=case) if changes else cases / f"{case}.toml"
     outcome = CliRunner().invoke(command, [str(path), "--results", str(tmp_path / "results")])
     assert isinstance(outcome.exception, StatejumpError), outcome.exception
-    assert sentence in str(outcome.exception) and "\n" not in str(outcome.exception)
+    assert outcome.exception == wanted and "\n" not in str(outcome.exception)
     assert not (tmp_path / "results").exists()
 
 
@@ -266,4 +272,4 @@ def test_studies_are_commands_where_they_are(statejump: Any, tmp_path: Path) -> 
 
 def test_studies_are_of_ribs(statejump: Any) -> None:
     refused = statejump("slow", "cases/table1.toml")
-    assert refused.status == 2 and "'statejump slow' is for 'umbrella'" in refused.errors
+    assert (refused.status, refused.failure) == (2, failure("command_not_for_kind", command="slow"))

@@ -42,26 +42,25 @@ def test_defaults_and_names(seen):
 
 
 @pytest.mark.parametrize(
-    ("attribute", "value", "allowed"),
+    ("attribute", "value"),
     [
-        ("normalLaw", "'jonson'", "one of hertz_paper, hertz_internal, johnson, esdu_78035, persson"),
-        ("dissipationLaw", "'jonson'", "one of none, lankarani_nikravesh, hunt_crossley, flores, exact_restitution"),
-        ("frictionLaw", "'jonson'", "one of none, ambrosio, mindlin, mindlin_deresiewicz"),
-        ("tangentialVelocity", "'jonson'", "one of material, paper"),
-        ("restitution", "0", "in (0, 1] [-]"),
-        ("restitution above 1", "1.0001", "in (0, 1] [-]"),
-        ("smallestImpactSpeed", "0", "above 0 [m/s]"),
-        ("contactLength", "nan", "above 0 [m]"),
-        ("v0", "-1.", "0 or above [m/s]"),
-        ("v1", "0", "above v0 [m/s]"),
+        ("normalLaw", "'jonson'"),
+        ("dissipationLaw", "'jonson'"),
+        ("frictionLaw", "'jonson'"),
+        ("tangentialVelocity", "'jonson'"),
+        ("restitution", "0"),
+        ("restitution above 1", "1.0001"),
+        ("smallestImpactSpeed", "0"),
+        ("contactLength", "nan"),
+        ("v0", "-1."),
+        ("v1", "0"),
     ],
 )
-def test_wrong_names_and_values_are_refused(seen, attribute, value, allowed):
+def test_wrong_names_and_values_are_refused(seen, attribute, value):
     name = attribute.split()[0]
     for kind, text in seen["refused"][attribute]:
         assert kind == "ValueError"
-        assert text.startswith(f"Law2_JointGeom_JointPhys_JointLaw.{name} = {value}")
-        assert text.endswith(f"is not allowed: must be {allowed}")
+        assert text.startswith(f"not_allowed Law2_JointGeom_JointPhys_JointLaw.{name} = {value}")
     assert seen["kept"][name] == seen["defaults"][name]
 
 
@@ -268,21 +267,18 @@ def test_contact_from_the_start_and_many_contacts(seen, run_script):
 
 
 @pytest.mark.parametrize(
-    ("case", "sentence"),
+    ("case", "fault"),
     [
-        ("johnson", "johnson: penetration_depth = 6e-05 m, allowed is below 5.41341133e-05 m"),
-        ("esdu_78035", "esdu_78035: penetration_depth = 0.00041 m, allowed is below 0.0004 m"),
-        ("persson", "persson: penetration_depth = 0.0051 m, allowed is below 0.005 m"),
-        ("slider johnson", "a Slider on a SlotFace needs normalLaw 'hertz_paper' or 'hertz_internal'"),
-        ("slider paper", "tangentialVelocity 'material', not 'hertz_internal' and 'paper'"),
+        ("johnson", "law_left_range johnson = 6e-05"),
+        ("esdu_78035", "law_left_range esdu_78035 = 0.00041"),
+        ("persson", "law_left_range persson = 0.0051"),
+        ("slider johnson", "law_needs_axis normalLaw, tangentialVelocity = johnson, material"),
+        ("slider paper", "law_needs_axis normalLaw, tangentialVelocity = hertz_internal, paper"),
     ],
 )
-def test_outside_of_a_law_the_run_stops_with_one_sentence(seen, case, sentence):
+def test_outside_of_a_law_the_run_stops(seen, case, fault):
     kind, text, iteration = seen["failing"][case]
-    assert kind == "RuntimeError" and sentence in text
-    assert text.endswith(
-        "(contact of bodies 0 and 1, time 0 s, temperature change 0 K)"
-    )
+    assert (kind, text) == ("RuntimeError", f"{fault} (contact 0 1)")
     assert iteration <= 1
 
 
@@ -293,8 +289,7 @@ def test_within_the_range_the_run_goes_on(seen):
 
 def test_run_into_the_end_of_the_range_stops_there(seen):
     kind, text, iteration, depth = seen["to_the_end"]
-    assert kind == "RuntimeError"
-    assert "johnson: penetration_depth = 5.41" in text and "time 3e-06 s" in text
+    assert kind == "RuntimeError" and text.startswith("law_left_range johnson = 5.41")
     assert iteration == 3
     # 5.4e-5 m and 0.05 m/s: beyond 4 dR / e^2 = 5.41341e-5 m after 3 steps of 1e-6 s.
     assert 4e-4 / e**2 < depth < 4e-4 / e**2 + 0.05e-6

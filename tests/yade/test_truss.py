@@ -38,12 +38,10 @@ def test_a_torsion_spring_turned_in_space_is_the_same(seen):
         assert other == pytest.approx(one, abs=200 * EPS)
 
 
-@pytest.mark.parametrize(("case", "sentence"), [
-    ("length", "GuidePlanes.normals = 2 is not allowed: must be of length 1"),
-    ("axis", "TorsionSpring.axis = 0.5 is not allowed: must be of length 1"),
-    ("count", "GuidePlanes: 1 ids, but 0 normals"),
-    ("body", "GuidePlanes.ids: there is no body 7"),
+@pytest.mark.parametrize(("case", "fault"), [
+    ("length", "not_allowed GuidePlanes.normals = 2"), ("axis", "not_allowed TorsionSpring.axis = 0.5"),
+    ("count", "other_number GuidePlanes = 1"), ("body", "no_body GuidePlanes.ids = 7"),
 ])
-def test_wrong_use_is_said(seen, case, sentence):
+def test_wrong_use_is_said(seen, case, fault):
     kind, text = seen["wrong"][case]
-    assert kind in ("ValueError", "RuntimeError") and sentence in text
+    assert kind in ("ValueError", "RuntimeError") and text == fault

@@ -16,13 +16,15 @@ def pair(one: Any, other: Any) -> frozenset[int]:
 class SceneFailure(RuntimeError):
     """A failure found by the script itself; the sentence contains neither time nor temperature.
 
+    :param code: code of the failure
     :param joint: name of the joint as result files have it
     :param remedy: remedy, "" if unknown
     :param time_s: time of the state
     """
 
-    def __init__(self, sentence: str, joint: str = "", remedy: str = "", *, time_s: float) -> None:
+    def __init__(self, sentence: str, joint: str = "", remedy: str = "", *, time_s: float, code: str) -> None:
         super().__init__(sentence)
+        self.code = code
         self.joint, self.remedy, self.time_s = joint, remedy, time_s
 
 
@@ -83,7 +85,7 @@ def described(
     :param stable_time_step: stable step [s] of the whole scene in its current state
     :param step_remedy: returns the key of the case file for a step of at most this many seconds
     """
-    joint, words, remedy, time_s = "", "", "", now_s
+    joint, words, remedy, time_s, part = "", "", "", now_s, ""
     if taken is None:
         cause = " ".join(str(error).split())
     else:
@@ -92,25 +94,31 @@ def described(
             cause = taken["before"] + taken["after"]
         elif taken["part"] == "body":
             body, = taken["bodies"]
-            cause = taken["before"] + names.bodies.get(body, f"body {body}") + taken["after"]
+            part = names.bodies.get(body, f"body {body}")
+            cause = taken["before"] + part + taken["after"]
             joint = names.joint_of(body)
         elif taken["part"] == "contact":
             cause = taken["before"] + taken["after"]
             joint, words = names.joints.get(pair(*taken["bodies"]), ("", "bodies {} and {}".format(*taken["bodies"])))
+            part = words
         else:
             bodies = pair(*taken["bodies"])
             is_link = taken["part"] == "link"
             unknown = f"the {taken['part'].replace('_', ' ')} of bodies {' and '.join(map(str, taken['bodies']))}"
             known = names.prismatic_joints if taken["part"] == "prismatic_joint" else names.torsion_springs
-            joint, named = ("", names.links.get(bodies, unknown)) if is_link else known.get(bodies, ("", unknown))
-            cause = taken["before"] + named + taken["after"]
+            joint, part = ("", names.links.get(bodies, unknown)) if is_link else known.get(bodies, ("", unknown))
+            cause = taken["before"] + part + taken["after"]
         if taken["stable_time_step"] is not None:
             # The limit of one contact or link exceeds that of all contacts and links of one body.
             whole = stable_time_step()
             remedy = step_remedy(min(taken["stable_time_step"], whole if isfinite(whole) and whole > 0 else inf))
     if isinstance(error, SceneFailure):
-        joint, remedy, time_s = error.joint, error.remedy, error.time_s
+        joint, remedy, time_s, part = error.joint, error.remedy, error.time_s, ""
     time_s = float(f"{time_s:.9g}")
     fields = {"time_s": time_s, "temperature_change_K": float(f"{temperature_change(time_s):.9g}"), "joint": joint,
-              "place": words, "cause": cause, "remedy": remedy}
+              "place": words, "cause": cause, "remedy": remedy, "part": part}
+    if isinstance(error, SceneFailure):
+        fields["reason"] = error.code
+    elif taken is not None:
+        fields |= {"reason": taken["code"], "quantity": taken["quantity"]}
     return {key: value for key, value in fields.items() if value != ""}

@@ -184,7 +184,7 @@ def sample(case: dict[str, Any], built: SpringSliderScene, states: States) -> li
     lost = floor["real"] == 0
     if lost.any():
         raise SceneFailure("the slider has left the floor of its slot: the contact is lost", "floor",
-                           time_s=states.times[lost.argmax()])
+                           time_s=states.times[lost.argmax()], code="contact_lost")
     at_stop = sum(stop["real"] for stop in stops) > 0
     pushed = -sum(stop["normalForce"][:, 0] for stop in stops)
     friction, slipping = -floor["shearForce"][:, 0], floor["slipping"]

@@ -225,7 +225,7 @@ def _strangers(case: dict[str, Any], built: TrussScene, states: States) -> Itera
     one, other = strangers[first].tolist()
     yield SceneFailure(
         f"{words[one]} and {words[other]} touch and are of different joints: the model has no such contact",
-        owner.get(one, owner.get(other, "")), time_s=states.times[first],
+        owner.get(one, owner.get(other, "")), time_s=states.times[first], code="foreign_contact",
     )
 
 

@@ -36,10 +36,11 @@ from .saved_files import explained as _explained  # noqa: E402
 
 _wrapper.Omega.load = _explained(_wrapper.Omega.load, _native.archive_version(), _native.built_for())
 
-stable_time_step, hertz_depth, take_failure = _native.stable_time_step, _native.hertz_depth, _native.take_failure
+stable_time_step, hertz_depth = _native.stable_time_step, _native.hertz_depth
+take_failure, take_refusal = _native.take_failure, _native.take_refusal
 bore_triangles, socket_triangles, law_names = _native.bore_triangles, _native.socket_triangles, _native.law_names
 __all__ = [
-    "slot", "spring", "stable_time_step", "hertz_depth", "take_failure", "bore_triangles", "socket_triangles",
+    "slot", "spring", "stable_time_step", "hertz_depth", "take_failure", "take_refusal", "bore_triangles", "socket_triangles",
     "law_names",
     *_native.class_names(),
 ]

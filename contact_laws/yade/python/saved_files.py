@@ -26,12 +26,24 @@ def archive_version(path: Path) -> int | None:
     return int.from_bytes(head[place + len(SIGNATURE):][:2], "little") if place >= 0 else None
 
 
+class ForeignFile(RuntimeError):
+    """A file that another YADE saved.
+
+    :param file: the file
+    :param version: version of its archive
+    """
+
+    def __init__(self, sentence: str, file: str, version: int) -> None:
+        super().__init__(sentence)
+        self.file, self.version = file, version
+
+
 def explained(load: Callable[..., None], own_version: int, built_for: str) -> Callable[..., None]:
     """Return YADE's O.load, which then says when it failed at a file that another YADE saved.
 
     :param own_version: version of the archives that this YADE writes
     :param built_for: which YADE that is
-    :raises RuntimeError: the sentence; everything else that YADE raises passes unchanged
+    :raises ForeignFile: the sentence; everything else that YADE raises passes unchanged
     """
     @functools.wraps(load, assigned=("__doc__",), updated=())
     def explained_load(self: Any, file: str, *arguments: Any, **named: Any) -> None:
@@ -41,9 +53,10 @@ def explained(load: Callable[..., None], own_version: int, built_for: str) -> Ca
             found = archive_version(Path(file))
             if found in (None, own_version):
                 raise
-            raise RuntimeError(
+            raise ForeignFile(
                 f"{file} was saved by another YADE than this one, {built_for} (archive version {found}, here "
-                f"{own_version}); YADE reads files of its own version alone: load it in the YADE that saved it"
+                f"{own_version}); YADE reads files of its own version alone: load it in the YADE that saved it",
+                file, found,
             ) from error
 
     return explained_load

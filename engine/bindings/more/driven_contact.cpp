@@ -32,7 +32,7 @@ laws::JointLaw law_among_defaults(const std::string& kind, const std::string& na
   } else if (kind == "friction") {
     law.friction = laws::friction_law(name);
   } else {
-    throw py::value_error("kind = '" + kind + "', allowed is one of normal, dissipation, friction");
+    throw kernel::OutOfRange("kind", kind, "one of normal, dissipation, friction");
   }
   return law;
 }

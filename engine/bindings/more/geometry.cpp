@@ -182,6 +182,19 @@ void bind_contacts(py::class_<BoreMesh>& mesh_class) {
 
 void bind_geometry(py::module_& module) {
   bind_generators(module);
+  module.def(
+      "mesh_reasons",
+      [] {
+        py::list rows;
+        for (int i = 0; i < mesh_reason_count; ++i) {
+          const auto reason = static_cast<MeshReason>(i);
+          const MeshReasonText& text = text_of(reason);
+          rows.append(
+              py::make_tuple(to_string(text.fault), text.name, cause_template(reason), text.remedy));
+        }
+        return rows;
+      },
+      "Why a mesh is rejected: fault, reason, template of the cause, remedy.");
   py::class_<BoreMesh> mesh_class = bind_mesh(module);
   bind_contacts(mesh_class);
   mesh_class

@@ -157,6 +157,9 @@ Failure failure(const std::domain_error& error, double time, double temperature_
   fields.time = time;
   fields.temperature_change = temperature_change;
   fields.cause = error.what();
+  if (const auto* left = dynamic_cast<const kernel::laws::DepthOutOfRange*>(&error)) {
+    fields.numbers = {{"penetration_depth_m", left->depth()}, {"limit_m", left->limit()}};
+  }
   return Failure(std::move(fields));
 }
 

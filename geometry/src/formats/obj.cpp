@@ -19,7 +19,7 @@ void read_obj(std::string_view content, Reading& reading) {
         std::int64_t index = 0;
         if (!to_number(word.substr(0, word.find('/')), index) || index == 0 || index > most ||
             index < -most)
-          reading.refuse_line(words.line(), "has a corner that is no index of a vertex");
+          reading.refuse_line(words.line(), MeshReason::corner_no_index);
         corners.push_back(index > 0 ? index - 1
                                     : static_cast<std::int64_t>(reading.points()) + index);
       }

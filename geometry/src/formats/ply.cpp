@@ -56,10 +56,10 @@ PlyHeader ply_header(std::string_view content, const Reading& reading) {
   PlyHeader header;
   bool has_format = false;
   std::size_t at = 0;
-  const auto bad_line = [&](int line) { reading.refuse_line(line, "is no line of a PLY header"); };
+  const auto bad_line = [&](int line) { reading.refuse_line(line, MeshReason::no_header_line); };
   for (int line = 1;; ++line) {
     const std::size_t end = content.find('\n', at);
-    if (end == std::string_view::npos) reading.refuse("its header has no end");
+    if (end == std::string_view::npos) reading.refuse(MeshReason::header_without_end);
     Words words(content.substr(at, end - at), '\0');
     at = end + 1;
     std::string_view word;
@@ -67,11 +67,11 @@ PlyHeader ply_header(std::string_view content, const Reading& reading) {
       if (words.in_line(word))
         for (const PlyTypeName& known : ply_types)
           if (word == known.name || word == known.other_name) return known.type;
-      reading.refuse_line(line, "has a property of no known type");
+      reading.refuse_line(line, MeshReason::unknown_property_type);
     };
     if (!words.in_line(word)) continue;
     if (line == 1) {
-      if (word != "ply") reading.refuse_line(line, "does not begin with ply");
+      if (word != "ply") reading.refuse_line(line, MeshReason::wrong_first_word, "ply");
     } else if (word == "comment" || word == "obj_info") {
       continue;
     } else if (word == "format") {
@@ -86,11 +86,10 @@ PlyHeader ply_header(std::string_view content, const Reading& reading) {
       element.name = word;
       if (!words.in_line(word) || !to_number(word, element.count)) bad_line(line);
       for (const PlyElement& other : header.elements)
-        if (other.name == element.name)
-          reading.refuse_line(line, "declares an element for the second time");
+        if (other.name == element.name) reading.refuse_line(line, MeshReason::element_twice);
       header.elements.push_back(std::move(element));
     } else if (word == "property") {
-      if (header.elements.empty()) reading.refuse_line(line, "has a property before any element");
+      if (header.elements.empty()) reading.refuse_line(line, MeshReason::property_before_element);
       PlyProperty property{};
       Words ahead = words;
       property.is_list = ahead.in_line(word) && word == "list";
@@ -104,7 +103,7 @@ PlyHeader ply_header(std::string_view content, const Reading& reading) {
       property.name = word;
       header.elements.back().properties.push_back(std::move(property));
     } else if (word == "end_header") {
-      if (!has_format) reading.refuse("its header names no format");
+      if (!has_format) reading.refuse(MeshReason::header_without_format);
       header.length = at;
       return header;
     } else {
@@ -128,7 +127,7 @@ class PlyBody {
       std::string_view word;
       double value = 0;
       if (!words_.next(word)) ends_early();
-      if (!to_number(word, value)) reading_->refuse("its data hold what is no number");
+      if (!to_number(word, value)) reading_->refuse(MeshReason::no_number);
       return value;
     }
     const std::size_t size = bytes_of(type);
@@ -160,7 +159,7 @@ class PlyBody {
     const double value = number(type);
     constexpr double largest = 4294967296.0;
     if (!(std::abs(value) < largest) || value != std::floor(value))
-      reading_->refuse("its data hold a count or an index that is no whole number");
+      reading_->refuse(MeshReason::no_whole_number);
     return static_cast<std::int64_t>(value);
   }
   bool has_more() {
@@ -170,7 +169,7 @@ class PlyBody {
   }
 
  private:
-  [[noreturn]] void ends_early() const { reading_->refuse("it ends before its last element"); }
+  [[noreturn]] void ends_early() const { reading_->refuse(MeshReason::ends_before_element); }
 
   std::string_view body_;
   Words words_;
@@ -189,17 +188,16 @@ void check_elements(const PlyHeader& header, std::string_view content, const Rea
     for (const PlyProperty& property : element.properties)
       least += header.ascii ? 2 : bytes_of(property.is_list ? property.count_type : property.type);
     if (least == 0 && element.count > 0)
-      reading.refuse("its element " + std::to_string(&element - header.elements.data()) +
-                     " has no properties");
+      reading.refuse(MeshReason::element_without_properties,
+                     {{"element", &element - header.elements.data()}});
     if (least > 0 && element.count > left / least)
-      reading.refuse("it declares " + std::to_string(element.count) +
-                     " items of an element, which do not fit into its " +
-                     std::to_string(content.size()) + " bytes");
+      reading.refuse(MeshReason::items_beyond_file,
+                     {{"items", element.count}, {"bytes", content.size()}});
     left -= element.count * least;
     has_points = has_points || element.name == "vertex";
     has_faces = has_faces || element.name == "face" || element.name == "tristrips";
   }
-  if (!has_points || !has_faces) reading.refuse("it lacks the element vertex or face");
+  if (!has_points || !has_faces) reading.refuse(MeshReason::element_missing);
 }
 
 /// Adds the triangles of consecutive strips. -1 ends a strip; every second triangle is reversed.
@@ -240,11 +238,12 @@ void read_ply(std::string_view content, Reading& reading) {
       coordinate[p] = place;
       if (place >= 0) found |= 1 << place;
     }
-    if (is_point && found != 7) reading.refuse("its vertices lack a coordinate");
+    if (is_point && found != 7) reading.refuse(MeshReason::coordinate_missing);
     for (std::size_t p = 0; is_point && p < coordinate.size(); ++p)
       if (coordinate[p] >= 0 && element.properties[p].type == PlyType::float32)
         reading.has_floats();
-    if (is_face && found != 8 && element.count > 0) reading.refuse("its faces lack vertex_indices");
+    if (is_face && found != 8 && element.count > 0)
+      reading.refuse(MeshReason::vertex_indices_missing);
     for (std::uint64_t i = 0; i < element.count; ++i) {
       Eigen::Vector3d point = Eigen::Vector3d::Zero();
       for (std::size_t p = 0; p < element.properties.size(); ++p) {
@@ -255,7 +254,7 @@ void read_ply(std::string_view content, Reading& reading) {
           continue;
         }
         const std::int64_t count = data.integer(property.count_type);
-        if (count < 0) reading.refuse("its data hold a list of negative length");
+        if (count < 0) reading.refuse(MeshReason::list_of_negative_length);
         const bool is_polygon = coordinate[p] == 3;
         corners.clear();
         for (std::int64_t k = 0; k < count; ++k) {
@@ -270,7 +269,7 @@ void read_ply(std::string_view content, Reading& reading) {
       if (is_point) reading.add_point(point);
     }
   }
-  if (data.has_more()) reading.refuse("it holds more than it declares");
+  if (data.has_more()) reading.refuse(MeshReason::more_than_declared);
 }
 
 }  // namespace statejump::geometry::formats

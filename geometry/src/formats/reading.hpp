@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../formats.hpp"
@@ -21,12 +22,15 @@ class Reading {
  public:
   Reading(MeshFormat format, const std::string& name) : format_(format), name_(name) {}
 
-  [[noreturn]] void refuse(const std::string& cause) const {
-    throw MeshFailure(name_, MeshFault::unreadable,
-                      std::string("not readable as ") + to_string(format_) + ": " + cause);
+  [[noreturn]] void refuse(MeshReason reason, MeshFields fields = {}) const {
+    fields.insert(fields.begin(), {"format", to_string(format_)});
+    throw MeshFailure(name_, reason, std::move(fields));
   }
-  [[noreturn]] void refuse_line(int line, const std::string& cause) const {
-    refuse("line " + std::to_string(line) + " " + cause);
+  [[noreturn]] void refuse_line(int line, MeshReason reason) const {
+    refuse(reason, {{"line", line}});
+  }
+  [[noreturn]] void refuse_line(int line, MeshReason reason, const char* word) const {
+    refuse(reason, {{"line", line}, {"word", word}});
   }
 
   void add_point(const Eigen::Vector3d& point) { points_.push_back(point); }
@@ -45,7 +49,8 @@ class Reading {
   std::size_t points() const { return points_.size(); }
 
   Triangles triangles() const {
-    if (fans_.empty()) refuse_faces(short_polygons_ > 0 ? no_triangle : "the mesh has no faces");
+    if (fans_.empty())
+      refuse_faces(short_polygons_ > 0 ? MeshReason::no_triangles : MeshReason::no_faces);
     Triangles result;
     result.removed = short_polygons_;
     const std::vector<int> number = weld(result.vertices);
@@ -53,9 +58,8 @@ class Reading {
     for (std::size_t f = 0; f < fans_.size(); ++f) {
       for (const std::int64_t corner : fans_[f])
         if (corner < 0 || corner >= count)
-          refuse_faces("face " + std::to_string(polygon_of_[f]) + " has corner " +
-                       std::to_string(corner) + ", but there are only " + std::to_string(count) +
-                       " vertices");
+          refuse_faces(MeshReason::no_such_corner,
+                       {{"face", polygon_of_[f]}, {"corner", corner}, {"vertices", count}});
       std::array<int, 3> face{};
       for (std::size_t k = 0; k < 3; ++k) face[k] = number[static_cast<std::size_t>(fans_[f][k])];
       // Leaves out facets with two equal corners, which exporters write; the surface is the same.
@@ -64,12 +68,11 @@ class Reading {
       else
         result.faces.push_back(face);
     }
-    if (result.faces.empty()) refuse_faces(no_triangle);
+    if (result.faces.empty()) refuse_faces(MeshReason::no_triangles);
     return result;
   }
 
  private:
-  static constexpr const char* no_triangle = "the mesh has no faces with three vertices";
   using Cells = std::multimap<std::array<double, 3>, int>;  ///< vertices by cell
 
   /// Merges equal vertices, and 32-bit float vertices that differ by rounding only.
@@ -77,7 +80,7 @@ class Reading {
   std::vector<int> weld(std::vector<Eigen::Vector3d>& vertices) const {
     double largest = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      if (!points_[i].allFinite()) refuse_faces("vertex " + std::to_string(i) + " is not finite");
+      if (!points_[i].allFinite()) refuse_faces(MeshReason::vertex_not_finite, {{"vertex", i}});
       largest = std::max(largest, points_[i].cwiseAbs().maxCoeff());
     }
     // Two units in the last place of the largest coordinate: each of two vertices is rounded once.
@@ -113,8 +116,8 @@ class Reading {
     }
     return found;
   }
-  [[noreturn]] void refuse_faces(const std::string& cause) const {
-    throw MeshFailure(name_, MeshFault::bad_faces, cause);
+  [[noreturn]] void refuse_faces(MeshReason reason, MeshFields fields = {}) const {
+    throw MeshFailure(name_, reason, std::move(fields));
   }
 
   MeshFormat format_;

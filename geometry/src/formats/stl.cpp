@@ -13,12 +13,13 @@ void read_stl_text(std::string_view content, Reading& reading) {
   int corners = -1;  // of the current facet; -1: outside a facet
   const auto follows = [&](const char* wanted) {
     if (!words.next(word) || !same_word(word, wanted))
-      reading.refuse_line(words.line(), std::string("lacks the word ") + wanted);
+      reading.refuse_line(words.line(), MeshReason::line_lacks_word, wanted);
   };
   while (words.next(word)) {
     const bool in_facet = corners >= 0;
     if (!in_solid) {
-      if (!same_word(word, "solid")) reading.refuse_line(words.line(), "is outside of a solid");
+      if (!same_word(word, "solid"))
+        reading.refuse_line(words.line(), MeshReason::line_outside_solid);
       words.skip_line();
       in_solid = true;
     } else if (!in_facet && same_word(word, "endsolid")) {
@@ -27,7 +28,7 @@ void read_stl_text(std::string_view content, Reading& reading) {
     } else if (!in_facet && same_word(word, "facet")) {
       follows("normal");
       for (int k = 0; k < 3; ++k)
-        if (!words.next(word)) reading.refuse("it ends inside a facet");
+        if (!words.next(word)) reading.refuse(MeshReason::ends_inside_facet);
       follows("outer");
       follows("loop");
       corners = 0;
@@ -40,10 +41,10 @@ void read_stl_text(std::string_view content, Reading& reading) {
       reading.add_polygon({last - 3, last - 2, last - 1});
       corners = -1;
     } else {
-      reading.refuse_line(words.line(), "is out of place");
+      reading.refuse_line(words.line(), MeshReason::line_out_of_place);
     }
   }
-  if (in_solid) reading.refuse("it ends before endsolid");
+  if (in_solid) reading.refuse(MeshReason::ends_before_endsolid);
 }
 
 constexpr std::size_t stl_header = 84;  // [byte]: 80 of text and 4 with the number of facets
@@ -80,10 +81,9 @@ void read_stl(std::string_view content, Reading& reading) {
     std::string_view word;
     if (Words(content, '\0').next(word) && same_word(word, "solid"))
       return read_stl_text(content, reading);
-    if (!long_enough) reading.refuse("it neither begins with solid nor has 84 bytes");
-    reading.refuse("it declares " + std::to_string(count) + " facets, which take " +
-                   std::to_string(expected) + " bytes, but it has " +
-                   std::to_string(content.size()));
+    if (!long_enough) reading.refuse(MeshReason::neither_text_nor_binary);
+    reading.refuse(MeshReason::facets_of_other_length,
+                   {{"facets", count}, {"needed_bytes", expected}, {"bytes", content.size()}});
   }
   for (const std::size_t start : facets) {
     const char* facet = content.data() + start;

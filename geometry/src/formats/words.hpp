@@ -98,7 +98,7 @@ inline Eigen::Vector3d coordinates(Words& words, const Reading& reading) {
   std::string_view word;
   for (int k = 0; k < 3; ++k)
     if (!words.in_line(word) || !to_number(word, point[k]))
-      reading.refuse_line(words.line(), "has no three coordinates");
+      reading.refuse_line(words.line(), MeshReason::line_without_coordinates);
   return point;
 }
 

@@ -212,7 +212,10 @@ def load(file: Path, unit_m: float = 1.0, flip: bool = False) -> _engine.BoreMes
         if failure.file:
             assert failure.cause is not None  # the engine gives both for a failure of a file
             what = failure.cause
-        raise NoBore(what, code=f"bore_{failure.kind}", fault=failure.kind, file=failure.file or None) from None
+        reason = {} if failure.reason is None else {"reason": failure.reason, **failure.details}
+        raise NoBore(
+            what, code=f"bore_{failure.kind}", fault=failure.kind, file=failure.file or None, **reason
+        ) from None
 
 
 def check_journal(key: str, radius_m: float | None) -> None:

@@ -27,6 +27,7 @@ class EngineFailed(FailedRun):
             remedy=remedy or failure.remedy, **more,
         )
         self.reason = str(failure.kind)
+        self.argument = failure.key
         self.sentence = str(failure.message) + (f"; {remedy}" if remedy else "")
         self.numbers: Mapping[str, float] = dict(failure.numbers)
 

@@ -139,7 +139,7 @@ CODES: dict[str, Code] = {
         cause="{cell} may be a decimal number or one of thousands",
         remedy="write decimal points",
     ),
-    "dem_failed": Code(what="the DEM run failed"),
+    "dem_failed": Code(what="the DEM run failed", further=("reason", "part", "quantity")),
     "dem_killed": Code(what="the DEM run was killed by signal {signal}; nothing was written"),
     "dem_without_result": Code(what="the DEM run left no complete result"),
     "expansion_coefficients": Code(
@@ -928,6 +928,12 @@ CODES: dict[str, Code] = {
     "shadow_times": Code(cause="must be pairs of times that rise, from 0 to {period_s:g} [s]"),
     "too_many_members": Code(what="has more than {most} members"),
     "wrong_number_of_members": Code(cause="must be 1 to {most} members, each with a name of its own"),
+    # Studies
+    "cannot_vary": Code(what="cannot vary {varied}"),
+    "contact_force_vanishes": Code(
+        what="the quasi-static path ends at a temperature change of {where_K:.6g} K, where the contact force vanishes",
+        remedy="load the joint with a larger torsion_spring.bias_rad",
+    ),
     # Failures of the engine, which gives the sentence
     "mechanism": Code(text="the truss has free modes though no joint slips"),
     "held_mechanism": Code(text="the truss has free modes as drawn, with every joint held"),

@@ -52,8 +52,8 @@ def check_display() -> None:
         raise _no_display("there is no display")
 
 
-def _no_display(cause: str) -> FailedRun:
-    return FailedRun(code="no_display", cause=cause)
+def _no_display(cause: str, display: str | None = None) -> FailedRun:
+    return FailedRun(code="no_display", cause=cause, **{} if display is None else {"value": display})
 
 
 def view(values: Mapping[str, Any], folder: Path) -> None:
@@ -65,6 +65,7 @@ def view(values: Mapping[str, Any], folder: Path) -> None:
     environment = dict(os.environ, PYTHONPATH=python_path(), STATEJUMP_VIEW="1")
     status = subprocess.run(command_of(values, folder / RUNNER, view=True), env=environment, check=False).returncode
     if status == NO_DISPLAY:
-        raise _no_display(f"YADE cannot connect to the display {os.environ.get('DISPLAY', '')!r}")
+        display = os.environ.get("DISPLAY", "")
+        raise _no_display(f"YADE cannot connect to the display {display!r}", display)
     if status != 0:
         raise FailedRun(code="yade_view_ended", status=status, case=values["case"]["name"])

@@ -208,10 +208,15 @@ class RunFailed(FailedRun):
 
     :param cause: the problem
     :param place: name of the joint in the sentence, for example ``slider S1``
+    :param reason: code of the failure in the plugin or the scene
+    :param part: name of the part that failed, as in the case
+    :param quantity: what is wrong with it
     """
 
-    def __init__(self, cause: str, *, place: str = "", **more: Any) -> None:
-        super().__init__(code="dem_failed", cause=cause, **more)
+    def __init__(
+        self, cause: str, *, place: str = "", reason: str = "", part: str = "", quantity: str = "", **more: Any
+    ) -> None:
+        super().__init__(code="dem_failed", cause=cause, reason=reason, part=part, quantity=quantity, **more)
         self.words = place
 
     def __str__(self) -> str:

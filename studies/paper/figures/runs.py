@@ -88,7 +88,7 @@ def variant_case(case: UmbrellaCase, key: str, value: float) -> UmbrellaCase:
         variant = with_values(case, {key: value})
         variant.check()
     except NotAllowed as refused:
-        raise StatejumpError(f"cannot vary {key}", file=case.origin.file, case=case.name, key=refused.key,
+        raise StatejumpError(code="cannot_vary", varied=key, file=case.origin.file, case=case.name, key=refused.key,
                              value=refused.value, allowed=refused.allowed, cause=str(refused)) from None
     return variant
 

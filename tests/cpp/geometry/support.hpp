@@ -5,9 +5,12 @@
 
 #include <cmath>
 #include <random>
+#include <sstream>
 #include <string>
 
+#include "../support/argument.hpp"
 #include "statejump/geometry/bore_mesh.hpp"
+#include "statejump/geometry/mesh_failure.hpp"
 
 namespace statejump::geometry::testing {
 
@@ -22,7 +25,38 @@ inline BoreShape round_bore() {
   return {bearing_radius, 10e-3};
 }
 
-/// Uniformly distributed numbers with a fixed seed, the same on every system.
+/// Reason and fields of a failure: "no_such_corner face=7 corner=99 vertices=36".
+inline std::string shown(const MeshFailure& failure) {
+  std::ostringstream text;
+  text << text_of(failure.reason()).name;
+  for (const auto& [name, value] : failure.fields()) {
+    text << ' ' << name << '=';
+    if (const auto* at = std::get_if<std::array<double, 3>>(&value)) {
+      text << (*at)[0] + 0.0 << ',' << (*at)[1] + 0.0 << ',' << (*at)[2] + 0.0;
+    } else {
+      std::visit(
+          [&](const auto& one) {
+            if constexpr (!std::is_same_v<std::decay_t<decltype(one)>, std::array<double, 3>>)
+              text << one;
+          },
+          value);
+    }
+  }
+  return text.str();
+}
+
+/// What is shown of the MeshFailure that `work` throws; empty if it throws none.
+template <class Work>
+std::string mesh_failure(Work&& work) {
+  try {
+    work();
+  } catch (const MeshFailure& failure) {
+    return shown(failure);
+  }
+  return {};
+}
+
+/// Uniform numbers with a fixed seed, the same on every system.
 class Random {
  public:
   double uniform(double low, double high) {

@@ -13,6 +13,7 @@
 #include "linkage/umbrella.hpp"
 #include "statejump/failure.hpp"
 #include "statejump/linkage/run.hpp"
+#include "support/argument.hpp"
 
 namespace statejump::joint_loop {
 namespace {
@@ -21,6 +22,8 @@ using linkage::alpha;
 using linkage::frame;
 using linkage::heating;
 using linkage::umbrella;
+using statejump::testing::Argument;
+using statejump::testing::refused_argument;
 
 using Eigen::Vector2d;
 
@@ -523,31 +526,28 @@ TEST(ElasticLoop, SlowDampedDynamicsCreepsAsMuchWithPartialSlip) {
   EXPECT_LT(std::abs(4.0 * error[1] - error[0]) / 3.0, 0.25 * std::abs(error[1]));
 }
 
-void expect_refused(const linkage::Linkage& model, const thermal::Program& program,
-                    double contact_angle, const std::string& text,
-                    const ElasticLoopOptions& options = {}) {
-  try {
-    elastic_loop(model, program, options, contact_angle);
-    FAIL() << "accepted, expected: " << text;
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
-  }
+/// The argument that a loop refuses.
+Argument refused(const linkage::Linkage& model, double contact_angle,
+                 const ElasticLoopOptions& options = {}) {
+  return refused_argument([&] { elastic_loop(model, heating(), options, contact_angle); });
 }
 
 TEST(ElasticLoop, RefusesWhatItCannotAnswer) {
-  expect_refused(umbrella(), heating(), 0.0, "torsion_stiffness = 0,");
-  expect_refused(biased(0.1, 0.0), heating(), 0.0, "torsion_free_angle");
-  expect_refused(biased(0.1), heating(), 0.2, "contact_angle = 0.2,");
-  expect_refused(biased(0.1), heating(), 0.0, "samples = 0,", {0, rigid});
+  EXPECT_EQ(refused(umbrella(), 0.0), Argument("torsion_stiffness", 0));
+  EXPECT_EQ(refused(biased(0.1, 0.0), 0.0), Argument("torsion_free_angle", 0));
+  EXPECT_EQ(refused(biased(0.1), 0.2), Argument("contact_angle", 0.2));
+  EXPECT_EQ(refused(biased(0.1), 0.0, {0, rigid}), Argument("samples", 0));
   linkage::Linkage model = biased(0.1);
   model.law.normal = kernel::laws::normal_law("persson");
-  expect_refused(model, heating(), 0.0, "normal = 'persson'");
+  EXPECT_EQ(refused(model, 0.0), Argument("normal", "persson"));
   model = biased(0.1);
   model.law.tangential_velocity = kernel::laws::tangential_velocity_law("paper");
-  expect_refused(model, heating(), 0.0, "tangential_velocity = 'paper'");
+  EXPECT_EQ(refused(model, 0.0), Argument("tangential_velocity", "paper"));
   model = biased(0.1);
   model.journal_thermal_expansion = 1e-3;  // 0.5 mm in 100 K
-  expect_refused(model, heating(), 0.0, "radial clearance = -");
+  const Argument closed = refused(model, 0.0);
+  EXPECT_EQ(closed.name, "radial clearance");
+  EXPECT_LT(closed.value, 0.0);
   // A spring that would crush the links must be rejected, not give a wrong number.
   model = biased(0.1);
   model.torsion_stiffness = 1e9;
@@ -561,9 +561,7 @@ TEST(ElasticLoop, RefusesWhatItCannotAnswer) {
     ASSERT_EQ(fields.numbers.size(), 2u);
     EXPECT_EQ(fields.numbers[0].first, "force_residual");
     EXPECT_EQ(fields.numbers[1].first, "closure_residual_m");
-    const std::string text = failure.what();
-    EXPECT_EQ(text.find("no equilibrium found at a temperature change of 0 K: residual "), 0u)
-        << text;
+    EXPECT_NE(fields.sought, "");
   }
 }
 

@@ -5,11 +5,15 @@
 #include <limits>
 #include <stdexcept>
 
+#include "../support/argument.hpp"
 #include "support.hpp"
 
 namespace statejump::kernel {
 namespace {
 
+using statejump::testing::Argument;
+using statejump::testing::no_argument;
+using statejump::testing::refused_argument;
 using testing::expect_vector_near;
 using testing::Random;
 
@@ -281,33 +285,28 @@ TEST(ContactLaw, CriticalTimeStepIsTheStabilityLimit) {
 }
 
 TEST(ContactLaw, ValidateNamesTheFieldAndItsRange) {
-  const auto message = [](const ContactParameters& parameters) -> std::string {
-    try {
-      validate(parameters);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+  const auto refused = [](const ContactParameters& parameters) {
+    return refused_argument([&] { validate(parameters); });
   };
   ContactParameters parameters = aluminium(0.3);
-  EXPECT_EQ(message(parameters), "");
+  EXPECT_EQ(refused(parameters), no_argument);
   parameters.friction_coefficient = -0.1;
-  EXPECT_EQ(message(parameters), "friction_coefficient = -0.1, allowed is [0, inf)");
+  EXPECT_EQ(refused(parameters), Argument("friction_coefficient", -0.1));
   parameters = aluminium(0.3);
   parameters.normal_damping_ratio = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(message(parameters), "normal_damping_ratio = nan, allowed is [0, inf)");
+  EXPECT_EQ(refused(parameters), Argument("normal_damping_ratio", NAN));
   parameters = aluminium(0.3);
   parameters.tangential_damping_ratio = -1.0;
-  EXPECT_EQ(message(parameters), "tangential_damping_ratio = -1, allowed is [0, inf)");
+  EXPECT_EQ(refused(parameters), Argument("tangential_damping_ratio", -1));
   parameters = aluminium(0.3);
   parameters.effective_mass = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(message(parameters), "effective_mass = inf, allowed is [0, inf) kg");
+  EXPECT_EQ(refused(parameters), Argument("effective_mass", HUGE_VAL));
   parameters = aluminium(0.3);
   parameters.elastic.effective_shear_modulus = 0.0;
-  EXPECT_EQ(message(parameters), "effective_shear_modulus = 0, allowed is (0, inf) Pa");
+  EXPECT_EQ(refused(parameters), Argument("effective_shear_modulus", 0));
   parameters = aluminium(0.3);
   parameters.elastic.effective_young_modulus = -1.0;
-  EXPECT_EQ(message(parameters), "effective_young_modulus = -1, allowed is (0, inf) Pa");
+  EXPECT_EQ(refused(parameters), Argument("effective_young_modulus", -1));
 }
 
 }  // namespace

@@ -85,17 +85,27 @@ std::string complaint(double depth) {
 TEST_F(UserLawTest, WrongAnswersAndExceptionsNameTheLaw) {
   EXPECT_EQ(complaint(5e-8), "moody (moody.so): returned force = nan");
   EXPECT_EQ(complaint(5e-7), "moody (moody.so): not today");
-  EXPECT_EQ(complaint(1e-3), "moody: penetration_depth = 0.001 m, allowed is below 0.0001 m");
-  EXPECT_EQ(complaint(nan), "moody: penetration_depth = nan m, allowed is below 0.0001 m");
+  for (const double depth : {1e-3, nan}) {
+    try {
+      evaluate(moody(), depth, joint, aluminium);
+      FAIL() << "accepted";
+    } catch (const DepthOutOfRange& refused) {
+      EXPECT_EQ(refused.law(), "moody");
+      EXPECT_TRUE(refused.depth() == depth || (std::isnan(refused.depth()) && std::isnan(depth)));
+      EXPECT_EQ(refused.limit(), 1e-4);
+      EXPECT_EQ(std::string(refused.what()).find("moody: penetration_depth = "), 0u);
+    }
+  }
 }
 
 TEST_F(UserLawTest, OneThatCannotBeUsedSaysWhy) {
   try {
     normal_law("stale");
     FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(),
-                 "normal_law = 'stale' cannot be used: stale.so was compiled long ago");
+  } catch (const UnusableLaw& refused) {
+    EXPECT_EQ(refused.name(), "stale");
+    EXPECT_EQ(refused.reason(), law_problem<NormalLaw>("stale"));
+    EXPECT_NE(refused.reason(), "");
   }
   EXPECT_EQ(law_problem<NormalLaw>("moody"), "");
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "statejump/rest_set/curve.hpp"
+#include "../support/argument.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,6 +16,8 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using statejump::testing::Argument;
+using statejump::testing::refused_argument;
 
 constexpr double pi = 3.14159265358979323846;
 constexpr double c = 1e-4;
@@ -267,46 +270,34 @@ TEST(JournalInProfile, ShiftedRoundBore) {
 }
 
 TEST(RestOnCurve, Refusals) {
-  const auto refusal = [](const std::function<void()>& call) -> std::string {
-    try {
-      call();
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "no refusal";
-  };
   const auto one = [](const Vector2d&) { return 1.0; };
   const auto flat = [](const Vector2d&) -> Vector2d { return {0.0, 0.0}; };
   const Vector2d low(-1, -1), high(1, 1);
-  EXPECT_EQ(refusal([&] { implicit_curves(one, flat, low, high, 10); }),
-            "number of curves gamma = 0 in the box = 0, allowed is at least 1: gamma must change "
-            "its sign between grid points");
-  EXPECT_EQ(refusal([&] { implicit_curves(one, flat, high, low, 10); }),
-            "high - low = -2, allowed is finite, > 0 m in x and y");
-  EXPECT_EQ(refusal([&] { implicit_curves(one, flat, low, high, 3); }),
-            "cells = 3, allowed is 4 to 4000");
-  EXPECT_EQ(refusal([&] {
+  EXPECT_EQ(refused_argument([&] { implicit_curves(one, flat, low, high, 10); }),
+            Argument("number of curves gamma = 0 in the box", 0));
+  EXPECT_EQ(refused_argument([&] { implicit_curves(one, flat, high, low, 10); }),
+            Argument("high - low", -2));
+  EXPECT_EQ(refused_argument([&] { implicit_curves(one, flat, low, high, 3); }),
+            Argument("cells", 3));
+  EXPECT_EQ(refused_argument([&] {
               implicit_curves([](const Vector2d& p) { return p.x(); }, flat, low, high, 11);
             }),
-            "size of the gradient of gamma on the curve = 0, allowed is finite, > 0");
-  EXPECT_EQ(refusal([&] { lobed_curve(c, 1.0, 3); }),
-            "amplitude = 1, allowed is above -1 and below 1");
-  EXPECT_EQ(refusal([&] { journal_in_profile([](double) { return 4e-3; }, 5e-3); }),
-            "rho(0.000000) = 0.004, allowed is above journal_radius [m]: the journal must fit at "
-            "the origin");
-  for (const auto& [radius, told] :
-       {std::pair{-1.0, "rho(0.000000) = -1, "}, std::pair{HUGE_VAL, "rho(0.000000) = inf, "}}) {
-    EXPECT_EQ(refusal([&, r = radius] { journal_in_profile([r](double) { return r; }, 5e-3); }),
-              std::string(told) + "allowed is finite, > 0 m");
+            Argument("size of the gradient of gamma on the curve", 0));
+  EXPECT_EQ(refused_argument([&] { lobed_curve(c, 1.0, 3); }), Argument("amplitude", 1));
+  EXPECT_EQ(refused_argument([&] { journal_in_profile([](double) { return 4e-3; }, 5e-3); }),
+            Argument("rho(0.000000)", 0.004));
+  for (const double radius : {-1.0, HUGE_VAL}) {
+    EXPECT_EQ(refused_argument([&] { journal_in_profile([&](double) { return radius; }, 5e-3); }),
+              Argument("rho(0.000000)", radius));
   }
   // The message names the angle at which it does not hold: a quarter turn.
   const auto dented = [](double theta) { return theta < 1.57 ? 5.1e-3 : 4e-3; };
-  EXPECT_EQ(refusal([&] { journal_in_profile(dented, 5e-3); }).find("rho(1.570796) = 0.004"), 0u);
-  EXPECT_EQ(refusal([&] {
+  EXPECT_EQ(refused_argument([&] { journal_in_profile(dented, 5e-3); }),
+            Argument("rho(1.570796)", 4e-3));
+  EXPECT_EQ(refused_argument([&] {
               rest_on_curves({lobed_curve(c, 0.1, 3)}, {{0, 0}}, 0.1);
             }),
-            "size of forces[0] = 0, allowed is finite, > 0 N: without a force every position is at "
-            "rest");
+            Argument("size of forces[0]", 0));
 }
 
 }  // namespace

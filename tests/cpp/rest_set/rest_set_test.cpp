@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "statejump/rest_set/rest_set.hpp"
+#include "../support/argument.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,21 +17,14 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using statejump::testing::Argument;
+using statejump::testing::refused_argument;
 
 constexpr double pi = 3.14159265358979323846;
 constexpr double c = 1e-4;
 
 Vector2d at(double angle, double size = 7.0) {
   return {size * std::cos(angle), size * std::sin(angle)};
-}
-
-std::string refusal(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "no refusal";
 }
 
 TEST(RestInSlot, SegmentOrStop) {
@@ -301,12 +295,11 @@ TEST(RestInBore, TwoForces) {
 }
 
 TEST(RestSets, Refusals) {
-  const std::string none =
-      "size of forces[1] = 0, allowed is finite, > 0 N: without a force every position is at rest";
-  EXPECT_EQ(refusal([] { rest_in_bearing(c, {at(0), {0, 0}}, 0.3); }), none);
-  EXPECT_EQ(refusal([] { rest_in_slot(c, {{1, 0, 0}, {0, 0, 0}}, 0.3); }), none);
-  EXPECT_EQ(refusal([] { rest_in_bore(c, c, {{1, 0, 0}, {0, 0, 0}}, 0.3); }), none);
-  EXPECT_EQ(refusal([] { rest_in_socket(c, {{1, 0, 0}, {0, 0, 0}}, 0.3); }), none);
+  const Argument none("size of forces[1]", 0);
+  EXPECT_EQ(refused_argument([] { rest_in_bearing(c, {at(0), {0, 0}}, 0.3); }), none);
+  EXPECT_EQ(refused_argument([] { rest_in_slot(c, {{1, 0, 0}, {0, 0, 0}}, 0.3); }), none);
+  EXPECT_EQ(refused_argument([] { rest_in_bore(c, c, {{1, 0, 0}, {0, 0, 0}}, 0.3); }), none);
+  EXPECT_EQ(refused_argument([] { rest_in_socket(c, {{1, 0, 0}, {0, 0, 0}}, 0.3); }), none);
   for (const std::function<void()>& call :
        std::vector<std::function<void()>>{[] {
                                             rest_in_slot(c, {{1, 0, 0}}, -0.1);
@@ -318,22 +311,21 @@ TEST(RestSets, Refusals) {
                                           [] {
                                             rest_in_bore(c, c, {{1, 0, 0}}, -0.1);
                                           }}) {
-    EXPECT_EQ(refusal(call), "mu = -0.1, allowed is finite, >= 0");
+    EXPECT_EQ(refused_argument(call), Argument("mu", -0.1));
   }
-  EXPECT_EQ(refusal([] {
+  EXPECT_EQ(refused_argument([] {
               rest_in_socket(0.0, {{1, 0, 0}}, 0.1);
             }),
-            "clearance = 0, allowed is finite, > 0 m");
-  EXPECT_EQ(refusal([] {
+            Argument("clearance", 0));
+  EXPECT_EQ(refused_argument([] {
               rest_in_bore(c, -1.0, {{1, 0, 0}}, 0.1);
             }),
-            "axial_play = -1, allowed is finite, > 0 m");
-  EXPECT_EQ(refusal([] { rest_in_bearing(c, {}, 0.1); }),
-            "number of forces = 0, allowed is at least 1");
-  EXPECT_EQ(refusal([] {
+            Argument("axial_play", -1));
+  EXPECT_EQ(refused_argument([] { rest_in_bearing(c, {}, 0.1); }), Argument("number of forces", 0));
+  EXPECT_EQ(refused_argument([] {
               rest_in_bearing(c, {{NAN, 0}}, 0.1);
-            }).substr(0, 18),
-            "size of forces[0] ");
+            }),
+            Argument("size of forces[0]", NAN));
 }
 
 }  // namespace

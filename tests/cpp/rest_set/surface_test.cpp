@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "statejump/rest_set/surface.hpp"
+#include "../support/argument.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,6 +16,8 @@ namespace statejump::rest_set {
 namespace {
 
 using Eigen::Vector3d;
+using statejump::testing::Argument;
+using statejump::testing::refused_argument;
 
 constexpr double pi = 3.14159265358979323846;
 constexpr double c = 1e-4;
@@ -268,34 +271,26 @@ TEST(RestOnMesh, WithoutFrictionALineHasALengthAndNoArea) {
 }
 
 TEST(RestOnMesh, Refusals) {
-  const auto refusal = [](const Mesh& mesh, const Vector3d& force) -> std::string {
-    try {
-      rest_on_mesh(mesh, {force}, 0.1);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "no refusal";
+  const auto refusal = [](const Mesh& mesh, const Vector3d& force) {
+    return refused_argument([&] { rest_on_mesh(mesh, {force}, 0.1); });
   };
   Mesh mesh = clearance_sphere(c, 0);
-  EXPECT_EQ(refusal(mesh, Vector3d::Zero()),
-            "size of forces[0] = 0, allowed is finite, > 0 N: without a force every position is at "
-            "rest");
+  EXPECT_EQ(refusal(mesh, Vector3d::Zero()), Argument("size of forces[0]", 0));
   mesh.normals.pop_back();
-  EXPECT_EQ(refusal(mesh, Vector3d::UnitX()),
-            "number of normals = 11, allowed is 0 or one per vertex");
+  EXPECT_EQ(refusal(mesh, Vector3d::UnitX()), Argument("number of normals", 11));
   mesh.normals.push_back(Vector3d::Zero());
-  EXPECT_EQ(refusal(mesh, Vector3d::UnitX()), "size of normals[11] = 0, allowed is finite, > 0");
+  EXPECT_EQ(refusal(mesh, Vector3d::UnitX()), Argument("size of normals[11]", 0));
   mesh.triangles[3][1] = 12;
-  EXPECT_EQ(refusal(mesh, Vector3d::UnitX()), "triangles[3] = 12, allowed is an index of a vertex");
+  EXPECT_EQ(refusal(mesh, Vector3d::UnitX()), Argument("triangles[3]", 12));
   mesh.triangles[0][2] = -1;
-  EXPECT_EQ(refusal(mesh, Vector3d::UnitX()), "triangles[0] = -1, allowed is an index of a vertex");
+  EXPECT_EQ(refusal(mesh, Vector3d::UnitX()), Argument("triangles[0]", -1));
   for (const std::size_t far : {0u, 11u}) {
     mesh = clearance_sphere(c, 0);
     mesh.vertices[far].y() = INFINITY;
     EXPECT_EQ(refusal(mesh, Vector3d::UnitX()),
-              "vertices[" + std::to_string(far) + "] = inf, allowed is finite [m]");
+              Argument("vertices[" + std::to_string(far) + "]", HUGE_VAL));
   }
-  EXPECT_EQ(refusal(Mesh{}, Vector3d::UnitX()), "number of triangles = 0, allowed is at least 1");
+  EXPECT_EQ(refusal(Mesh{}, Vector3d::UnitX()), Argument("number of triangles", 0));
 }
 
 }  // namespace

@@ -7,10 +7,14 @@
 #include <numbers>
 #include <utility>
 
+#include "support/argument.hpp"
 #include "table1.hpp"
 
 namespace statejump::spring_slider {
 namespace {
+
+using statejump::testing::Argument;
+using statejump::testing::refused_argument;
 
 TEST(SpringSlider, StiffnessAndJumpOfTable1) {
   EXPECT_NEAR(link_stiffness(table1(), 0.0), 1.26e6, close(1.26e6));
@@ -87,8 +91,9 @@ TEST(SpringSlider, RefusesWhatIsOutOfRange) {
   EXPECT_EQ(check(&SpringSlider::clearance_minus, infinity), "");
   EXPECT_EQ(check(&SpringSlider::clearance_plus, infinity), "");
   EXPECT_EQ(check(&SpringSlider::thermal_expansion, -1e-6), "");
-  EXPECT_EQ(check(&SpringSlider::friction_force, -1.0),
-            "friction_force = -1, allowed is >= 0 N and below young_modulus * cross_section_area");
+  SpringSlider negative = table1();
+  negative.friction_force = -1.0;
+  EXPECT_EQ(refused_argument([&] { negative.validate(); }), Argument("friction_force", -1));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../support/argument.hpp"
 #include "parts.hpp"
 #include "statejump/failure.hpp"
 #include "statejump/kernel/mindlin.hpp"
@@ -15,6 +16,8 @@
 namespace statejump::truss {
 namespace {
 
+using statejump::testing::Argument;
+using statejump::testing::refused_argument;
 using testing::node;
 using testing::rib_joint;
 using testing::triangle;
@@ -59,13 +62,8 @@ Model rib() {
   return model;
 }
 
-std::string message(const Model& model) {
-  try {
-    solve(model);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
+Argument refused(const Model& model) {
+  return refused_argument([&] { solve(model); });
 }
 
 TEST(Truss, BarJumpsByFrictionOverStiffness) {
@@ -414,29 +412,30 @@ TEST(Truss, RibOfExpandingJournalsClosesItsBalance) {
 }
 
 TEST(Truss, ItemsOutOfRangeAreNamed) {
+  const std::string clearance = "clearance at the program's worst temperature";
   Model model = bar();
   model.links[0].axial_stiffness = -1.0;
-  EXPECT_EQ(message(model), "link 'AB': axial_stiffness = -1, allowed is finite, > 0 N");
+  EXPECT_EQ(refused(model), Argument("axial_stiffness", -1, "link 'AB'"));
   model = bar();
   slider(model).first = 7;
-  EXPECT_NE(message(model).find("slider 'S': first node = 7"), std::string::npos);
+  EXPECT_EQ(refused(model), Argument("first node", 7, "slider 'S'"));
   model = bar();
   model.links[0].thermal_expansion = -0.02;
-  EXPECT_NE(message(model).find("link 'AB': thermal_expansion"), std::string::npos);
+  EXPECT_EQ(refused(model), Argument("thermal_expansion", -0.02, "link 'AB'"));
   model = rib();
   revolute(model).journal_link = 0;
-  EXPECT_NE(message(model).find("revolute 'joint': journal link"), std::string::npos);
+  EXPECT_EQ(refused(model), Argument("journal link", 0, "revolute 'joint'"));
   model = rib();
   revolute(model).bearing_thermal_expansion = -1e-3;
-  EXPECT_NE(message(model).find("clearance at the program's worst temperature"), std::string::npos);
+  EXPECT_EQ(refused(model).name, clearance);
+  EXPECT_LT(refused(model).value, 0.0);
   // A journal that exactly fills its bore; powers of two avoid rounding.
   model = rib();
   model.programs = {triangle(64.0)};
   revolute(model).journal_radius = 0.5;
   revolute(model).journal_thermal_expansion = std::ldexp(1.0, -16);
   revolute(model).radial_clearance = std::ldexp(1.0, -11);
-  EXPECT_NE(message(model).find("clearance at the program's worst temperature = 0"),
-            std::string::npos);
+  EXPECT_EQ(refused(model), Argument(clearance, 0, "revolute 'joint'"));
 }
 
 FailureFields failure(const Model& model) {
@@ -453,7 +452,6 @@ TEST(Truss, MechanismIsNamed) {
   Model model = rib();
   model.nodes[0].freedoms = 2;
   model.springs.clear();
-  EXPECT_NE(message(model).find("mechanism even with every joint held"), std::string::npos);
   const FailureFields fields = failure(model);
   EXPECT_EQ(fields.kind, FailureKind::held_mechanism);
   EXPECT_EQ(static_cast<std::size_t>(fields.mode_count), fields.modes.size());
@@ -593,8 +591,7 @@ TEST(Truss, ProgramsNeedNotLastEquallyLongToTheLastBit) {
     EXPECT_NEAR(path.states.back().displacement(0, 3), 0.0, 1e-16);
     EXPECT_EQ(path.states.back().temperature_change, 0.0);
   }
-  EXPECT_NE(message(two_programs(0.1, 3, 0.31, 1)).find("duration of a program = 0.31"),
-            std::string::npos);
+  EXPECT_EQ(refused(two_programs(0.1, 3, 0.31, 1)), Argument("duration of a program", 0.31));
 }
 
 TEST(Truss, CornersThatNearlyCoincideAreOne) {

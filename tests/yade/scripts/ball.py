@@ -100,7 +100,7 @@ def closed():
         for _ in range(4):
             O.step()
 
-    return sentence_of(run)
+    return fault_of(run)
 
 
 LAWS = ("hertz_mindlin", "by_name")

@@ -122,7 +122,7 @@ def too_close():
     body((0, 0, 0), tube(lobes=[(8, 1.6667e-6, 0)]), metal)
     bore_engines()
     O.dt = 1e-9
-    return sentence_of(lambda: [O.step() for _ in range(3)])
+    return fault_of(lambda: [O.step() for _ in range(3)])
 
 
 def bulge():
@@ -143,7 +143,7 @@ def bulge():
     return {
         "force": found.phys.normalForce.norm(), "modulus": found.phys.effectiveYoungModulus,
         "radius": found.geom.contacts[0].bearingRadius, "number": found.geom.numberOfContacts,
-        "johnson": sentence_of(lambda: (pressed(Law(normalLaw="johnson")), O.step())),
+        "johnson": fault_of(lambda: (pressed(Law(normalLaw="johnson")), O.step())),
     }
 
 
@@ -179,14 +179,14 @@ def refused():
     triangles = sj.bore_triangles(R2, LENGTH, 40, 4)
     broken = {**triangles, "triangles": [t for i, t in enumerate(triangles["triangles"]) if i != 100]}
     return {
-        "file": sentence_of(lambda: sj.MeshBore(file="/nowhere/bore.stl")),
-        "hole": sentence_of(lambda: sj.MeshBore(**broken)),
-        "unit": sentence_of(lambda: sj.MeshBore(**triangles, scale=1e3)),
-        "flip": sentence_of(lambda: sj.MeshBore(**triangles, flip=True)),
-        "scale": sentence_of(lambda: sj.MeshBore(scale=0)),
-        "paper": sentence_of(lambda: Law(tangentialVelocity="paper")),
-        "angle": sentence_of(lambda: sj.Ig2_Journal_MeshBore_BoreGeom(patchAngle=-1)),
-        "set": sentence_of(lambda: setattr(tube(40, 4), "scale", 2.0)),
+        "file": fault_of(lambda: sj.MeshBore(file="/nowhere/bore.stl")),
+        "hole": fault_of(lambda: sj.MeshBore(**broken)),
+        "unit": fault_of(lambda: sj.MeshBore(**triangles, scale=1e3)),
+        "flip": fault_of(lambda: sj.MeshBore(**triangles, flip=True)),
+        "scale": fault_of(lambda: sj.MeshBore(scale=0)),
+        "paper": fault_of(lambda: Law(tangentialVelocity="paper")),
+        "angle": fault_of(lambda: sj.Ig2_Journal_MeshBore_BoreGeom(patchAngle=-1)),
+        "set": fault_of(lambda: setattr(tube(40, 4), "scale", 2.0)),
     }
 
 

@@ -124,7 +124,7 @@ def erased(number):
 
 
 def error_of(build, steps=2000, substeps=100):
-    """Return class, text, step and time of what ends a run, both ways."""
+    """Return class, text, step and time of what ends a run, and its fault, both ways."""
     found = []
     for way in ("ordinary", "stepper"):
         build()
@@ -137,5 +137,5 @@ def error_of(build, steps=2000, substeps=100):
 
         kind, text = sentence_of(one_by_one)
         taken = sj.take_failure()
-        found.append([kind, text, O.iter, O.time, None if taken is None else taken["time"]])
+        found.append([kind, text, O.iter, O.time, None if taken is None else taken["time"], fault(taken)])
     return found

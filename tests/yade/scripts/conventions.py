@@ -3,7 +3,7 @@
 import statejump_yade as sj
 from yade import wrapper
 
-from parts import finish, sentence_of
+from parts import finish, fault_of
 
 
 def own_attributes(cls):
@@ -101,11 +101,11 @@ finish(
         ],
         "links": [len(links.links), links.links[0].id1],
         "unknown": {
-            name: sentence_of(lambda cls=getattr(sj, name): cls(noSuchAttribute=1))
+            name: fault_of(lambda cls=getattr(sj, name): cls(noSuchAttribute=1))
             for name in classes
         },
-        "positional": sentence_of(lambda: sj.Journal(0.005)),
-        "wrong_types": [sentence_of(call) for call in (
+        "positional": fault_of(lambda: sj.Journal(0.005)),
+        "wrong_types": [fault_of(call) for call in (
             lambda: sj.Journal(radius="large"),
             lambda: set_radius("large"),
             lambda: sj.ThermalProgram(cycles=1.5),
@@ -114,10 +114,10 @@ finish(
             lambda: sj.SlotFace(normal=(0, 1)),
             lambda: sj.ThermalLinks(links=[journal]),
         )],
-        "ranges": {name: sentence_of(call) for name, call in ranges.items()},
-        "by_assignment": {str(v): sentence_of(lambda v=v: set_radius(v)) for v in (-1.0, float("nan"))},
+        "ranges": {name: fault_of(call) for name, call in ranges.items()},
+        "by_assignment": {str(v): fault_of(lambda v=v: set_radius(v)) for v in (-1.0, float("nan"))},
         "kept": journal.radius,
-        "read_only": sentence_of(lambda: setattr(link, "axialForce", 1.0)),
+        "read_only": fault_of(lambda: setattr(link, "axialForce", 1.0)),
         "spring": [spring.id1, spring.id2, spring.youngModulus * spring.crossSectionArea / spring.stressFreeLength,
                    spring.stressFreeLength, spring.thermalExpansion, spring.dampingRatio],
         "slot": [b.shape.__class__.__name__ for b in sj.slot((0, 0, 0), 1, 1, 1, sj.ThermalFrictMat(), ceiling=True)],

@@ -228,7 +228,7 @@ def failing(names, slider=False, position=CLEARANCE + 6e-5):
         body((0, 0, 0), sj.Bearing(radius=R2), metal)
     engines(constant(10.0), law=Law(**names))
     O.dt = 1e-8
-    return [*sentence_of(lambda: one_by_one(10)), O.iter]
+    return [*fault_of(lambda: one_by_one(10)), O.iter]
 
 
 def steps_to_the_end():
@@ -240,7 +240,7 @@ def steps_to_the_end():
     body((0, 0, 0), sj.Bearing(radius=R2), metal)
     engines(law=Law(normalLaw="johnson"))
     O.dt = 1e-6
-    found = sentence_of(lambda: one_by_one(1000))
+    found = fault_of(lambda: one_by_one(1000))
     return [*found, O.iter, O.bodies[pin].state.pos[0] - CLEARANCE]
 
 
@@ -264,10 +264,10 @@ wrong = {
     "v1": 0.0,
 }
 refused = {
-    name: [sentence_of(lambda: Law(**{name: value})), sentence_of(lambda: assign(name, value))]
+    name: [fault_of(lambda: Law(**{name: value})), fault_of(lambda: assign(name, value))]
     for name, value in wrong.items()
 }
-refused["restitution above 1"] = [sentence_of(lambda: Law(restitution=1.0001))] * 2
+refused["restitution above 1"] = [fault_of(lambda: Law(restitution=1.0001))] * 2
 kept = {name: getattr(fresh, name) for name in wrong}
 accepted = [
     [kind, name, getattr(Law(**{kind: name}), kind)] for kind, names in laws.items() for name in names

@@ -47,12 +47,7 @@ def failing():
         body((0.05 * i, 0, 0), sj.Journal(radius=R2), metal)
     engines()
     O.dt = 1e-7
-    try:
-        for _ in range(10):
-            O.step()
-    except RuntimeError as error:
-        return str(error)
-    return "nothing"
+    return fault_of(lambda: [O.step() for _ in range(10)])
 
 
 finish({"many": [many(200) for _ in range(2)], "failing": failing(), "threads": O.numThreads})

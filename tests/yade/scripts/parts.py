@@ -164,6 +164,22 @@ def sentence_of(call) -> list[str]:
     return ["none", ""]
 
 
+def fault_of(call) -> list[str]:
+    """Return class and fault of the error that a call raises, or 'none' and ''; the text of an error that has no code."""
+    sj.take_failure(), sj.take_refusal()  # earlier ones
+    kind, text = sentence_of(call)
+    return [kind, fault(sj.take_failure() or sj.take_refusal()) or text]
+
+
+def fault(taken) -> str:
+    """Return a failure or refusal as 'CODE KEY = VALUE (PART BODIES)', without what it has not; '' for None."""
+    if not taken:
+        return ""
+    key, value = taken.get("quantity") or taken.get("key"), taken["value"]
+    part = " ".join(map(str, (taken["part"], *taken["bodies"]))) if "part" in taken else ""
+    return taken["code"] + (f" {key}" if key else "") + (f" = {value}" if value else "") + (f" ({part})" if part else "")
+
+
 def pressed(one: int, two: int, mover: int, distance) -> list[dict]:
     """Return what the contact of two bodies shows at three depths in three directions, one of the bodies in the
     origin; distance: of their centres, by depth [m]."""
@@ -182,7 +198,7 @@ def pressed(one: int, two: int, mover: int, distance) -> list[dict]:
 
 
 def refusal(first, second, offset, law) -> list[str]:
-    """Return class and text of the error when two shapes of one metal, the second at an offset, have this law."""
+    """Return class and fault of the error when two shapes of one metal, the second at an offset, have this law."""
     reset()
     metal = material()
     body(shape=first, made_of=metal)
@@ -194,7 +210,7 @@ def refusal(first, second, offset, law) -> list[str]:
         for _ in range(3):
             O.step()
 
-    return sentence_of(run)
+    return fault_of(run)
 
 
 class Balance:

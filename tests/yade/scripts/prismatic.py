@@ -71,14 +71,14 @@ def limit(factor):
     engines(prismatic_joints=[joint])
     true = 2 * sqrt(MASSES[0] / LAW["stiffnessAcross"])
     O.dt = factor * true
-    return {"error": sentence_of(O.step), "true": true, "promised": sj.stable_time_step()}
+    return {"error": fault_of(O.step), "true": true, "promised": sj.stable_time_step()}
 
 
 def wrong():
     found = {}
     for name, value in (("axis", (0, 0, 0.5)), ("stiffnessAcross", -1.0), ("frictionLimit", float("nan")),
                         ("clearancePlus", -1e-3), ("dampingRatio", -0.1), ("offset", (inf, 0, 0))):
-        found[name] = sentence_of(lambda name=name, value=value: sj.PrismaticJoint(**{name: value}))
+        found[name] = fault_of(lambda name=name, value=value: sj.PrismaticJoint(**{name: value}))
     for name, changed in {"body": dict(id2=7), "same": dict(id2=0), "friction": dict(frictionStiffness=0.0),
                           "stop": dict(stopStiffness=0.0)}.items():
         def run(changed=changed):
@@ -86,14 +86,14 @@ def wrong():
             joint.updateAttrs(changed)
             O.step()
 
-        found[name] = sentence_of(run)
+        found[name] = fault_of(run)
 
     def none():
         pair()
         O.engines[-2].joints = [None]
         O.step()
 
-    found["none"] = sentence_of(none)
+    found["none"] = fault_of(none)
     return found
 
 

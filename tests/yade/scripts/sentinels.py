@@ -35,7 +35,7 @@ def guided_only() -> list:
     kept = [e for e in O.engines if e.__class__.__name__ not in ("ThermalExpansionEngine", "ThermalLinks")]
     O.engines = [*kept[:-1], sj.GuidePlanes(ids=[pin], normals=[(0, 1, 0)]), kept[-1]]
     O.dt = 1e-3
-    found = sentence_of(lambda: O.step())
+    found = fault_of(lambda: O.step())
     return [*found, O.stopAtIter]
 
 
@@ -57,7 +57,7 @@ def ball_in_a_mesh() -> list:
         wrapper.NewtonIntegrator(damping=0),
     ]
     O.dt = 1e-8
-    return sentence_of(lambda: [O.step() for _ in range(5)])
+    return fault_of(lambda: [O.step() for _ in range(5)])
 
 
 finish({

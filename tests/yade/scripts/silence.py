@@ -66,7 +66,7 @@ def go(steps):
 
 
 def both(change, when="start", build=joint):
-    """Return what ends the scene, both ways: class, text, step, the part and bodies that the plugin names."""
+    """Return what ends the scene, both ways: class, text, step, and what the plugin reports: the fault with its bodies, its time."""
     found = []
     for stepper in (False, True):
         build()
@@ -84,7 +84,7 @@ def both(change, when="start", build=joint):
             O.engines = [*O.engines, wrapper.PyRunner(command="change()", iterPeriod=WITHIN, initRun=False, nDo=2)]
             ended = go(STEPS)
         taken = sj.take_failure()
-        found.append([*ended, O.iter, taken and taken["part"], taken and list(taken["bodies"])])
+        found.append([*ended, O.iter, fault(taken), taken and taken["time"]])
     return found
 
 
@@ -230,7 +230,7 @@ def setters():
         for attribute in attributes:
             before = getattr(target, attribute)
             for value in values:
-                said = sentence_of(lambda a=attribute, v=value: setattr(target, a, v))
+                said = fault_of(lambda a=attribute, v=value: setattr(target, a, v))
                 found[f"{name}.{attribute} = {value}"] = [*said, getattr(target, attribute) == before]
     return found
 

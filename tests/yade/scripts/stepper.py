@@ -251,7 +251,7 @@ def refused(change):
         for _ in range(300):
             O.step()
 
-    return sentence_of(run)[1]
+    return fault_of(run)[1]
 
 
 def engines_are(*engines):
@@ -268,11 +268,11 @@ def wrong():
     """One sentence for each way to use it wrongly."""
     found = {}
     for name, value in (("zero", 0), ("negative", -3), ("fraction", 1.5), ("text", "many")):
-        found["substeps " + name] = sentence_of(lambda value=value: sj.JointStepper(substeps=value))
+        found["substeps " + name] = fault_of(lambda value=value: sj.JointStepper(substeps=value))
     link = sj.ThermalLink(id1=0, id2=1, stressFreeLength=1)
     for name, wrong_value in (("iterPeriod", 0), ("contacts", [1, 2, 3]), ("contacts", [1, 2, 2, 1]), ("links", [link, None])):
-        found[f"{name} {len(found)}"] = sentence_of(lambda: sj.StateRecorder(**{name: wrong_value}))[1]
-    found["substeps set"] = sentence_of(lambda: setattr(sj.JointStepper(), "substeps", 2.5))
+        found[f"{name} {len(found)}"] = fault_of(lambda: sj.StateRecorder(**{name: wrong_value}))[1]
+    found["substeps set"] = fault_of(lambda: setattr(sj.JointStepper(), "substeps", 2.5))
     e = lambda: O.engines  # noqa: E731
     changes = {
         "sphere": add_sphere,

@@ -165,7 +165,7 @@ def latch_limit(factor):
     engines(links=links, springs=[spring])
     true = 2 * sqrt(2 * MASS * L2**2 / 50.0)
     O.dt = factor * true
-    return {"error": sentence_of(lambda: one_by_one(3)), "true": true, "promised": sj.stable_time_step()}
+    return {"error": fault_of(lambda: one_by_one(3)), "true": true, "promised": sj.stable_time_step()}
 
 
 def limit(factor):
@@ -175,14 +175,15 @@ def limit(factor):
     engines(links=links, springs=[spring])
     true = 2 * sqrt(2 * MASS * L2**2 / 50.0)
     O.dt = factor * true
-    largest, text = 0.0, ["none", ""]
-    try:
+    angles = [0.0]
+
+    def run():
         for _ in range(300):
             O.step()
-            largest = max(largest, abs(spring.angle - 1.2))
-    except Exception as error:
-        text = [type(error).__name__, str(error)]
-    return {"largest": largest, "error": text, "true": true, "promised": sj.stable_time_step()}
+            angles.append(abs(spring.angle - 1.2))
+
+    text = fault_of(run)
+    return {"largest": max(angles), "error": text, "true": true, "promised": sj.stable_time_step()}
 
 
 def decay(both_free, time_step):
@@ -223,7 +224,7 @@ def pin_limit(factor):
     engines(links=[link])
     true = 2 * MASS * 0.25 / 5.0
     O.dt = factor * true
-    text = sentence_of(lambda: one_by_one(300))
+    text = fault_of(lambda: one_by_one(300))
     return {"error": text, "speed": O.bodies[tip].state.vel.norm(), "true": true,
             "promised": sj.stable_time_step()}
 
@@ -236,7 +237,7 @@ def wrong(change):
         O.bodies.erase(tips[1])
     engines(links=[], springs=[None] if change.get("none") else [sj.TorsionSpring(**keywords)])
     O.dt = 1e-7
-    return sentence_of(lambda: one_by_one(3))
+    return fault_of(lambda: one_by_one(3))
 
 
 finish(

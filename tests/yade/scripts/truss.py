@@ -60,9 +60,9 @@ def wrong():
         O.step()
 
     return {
-        "length": sentence_of(lambda: sj.GuidePlanes(ids=[one], normals=[Vector3(0, 0, 2)])),
-        "axis": sentence_of(lambda: sj.TorsionSpring(axis=Vector3(0, 0, 0.5))),
-        **{name: sentence_of(lambda: run(make)) for name, make in engine},
+        "length": fault_of(lambda: sj.GuidePlanes(ids=[one], normals=[Vector3(0, 0, 2)])),
+        "axis": fault_of(lambda: sj.TorsionSpring(axis=Vector3(0, 0, 0.5))),
+        **{name: fault_of(lambda: run(make)) for name, make in engine},
     }
 
 

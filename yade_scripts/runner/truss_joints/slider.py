@@ -152,7 +152,7 @@ class Sliders(Joints):
         sample, which = np.unravel_index(lost.argmax(), lost.shape)
         name = self.rows[ground[which]]["names"]
         yield SceneFailure(f"slider {name!r} has left its floor: the contact is lost", name,
-                           time_s=states.times[sample])
+                           time_s=states.times[sample], code="contact_lost")
 
     def faces(self) -> dict[int, tuple[str, str]]:
         found = {}

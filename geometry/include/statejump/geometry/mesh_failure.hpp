@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <variant>
+#include <vector>
+
+#include "statejump/geometry/mesh_reason.hpp"
 
 namespace statejump::geometry {
 
@@ -46,32 +52,53 @@ inline const char* to_string(MeshFault fault) {
   return "unknown";
 }
 
-/// Error for a mesh that is no bore or socket, as fields. what() is "file: cause; remedy", or
-/// "file: cause? Then remedy" if the cause ends with a question.
+/// Texts of a reason, as templates: names in braces are fields of the failure.
+struct MeshReasonText {
+  const char* name;  ///< the enumerator's
+  MeshFault fault;
+  const char* cause;  ///< a part in brackets is left out if its field is missing
+  const char* remedy = "";
+  bool of_format = false;  ///< the cause follows "not readable as {format}: "
+};
+
+/// The texts of a reason; the only place with its wording.
+const MeshReasonText& text_of(MeshReason reason);
+
+/// The whole template of a cause.
+std::string cause_template(MeshReason reason);
+
+/// A position is in m.
+using MeshValue =
+    std::variant<std::int64_t, std::uint64_t, double, std::string, std::array<double, 3>>;
+
+/// Name and value of what the cause names.
+using MeshFields = std::vector<std::pair<std::string, MeshValue>>;
+
+/// The cause, with the fields in place of their names.
+std::string cause(MeshReason reason, const MeshFields& fields);
+
+/// A mesh that is no bore or socket, as fields; what() is "file: cause; remedy", where the cause
+/// asks a question "file: cause? Then remedy".
 class MeshFailure : public std::runtime_error {
  public:
-  MeshFailure(std::string file, MeshFault fault, std::string cause, std::string remedy = "")
-      : std::runtime_error(file + ": " + cause + joined(cause, remedy)),
-        file_(std::move(file)),
-        cause_(std::move(cause)),
-        remedy_(std::move(remedy)),
-        fault_(fault) {}
+  MeshFailure(std::string file, MeshReason reason, MeshFields fields = {});
 
   const std::string& file() const { return file_; }  ///< file, or the name of the mesh
   const std::string& cause() const { return cause_; }
   const std::string& remedy() const { return remedy_; }  ///< in terms of BoreOptions; may be empty
   MeshFault fault() const { return fault_; }
+  MeshReason reason() const { return reason_; }
+  const char* reason_name() const { return reason_name_; }
+  const MeshFields& fields() const { return fields_; }
 
  private:
-  static std::string joined(const std::string& cause, const std::string& remedy) {
-    if (remedy.empty()) return "";
-    return (cause.back() == '?' ? " Then " : "; ") + remedy;
-  }
-
   std::string file_;
   std::string cause_;
   std::string remedy_;
+  MeshFields fields_;
+  const char* reason_name_;
   MeshFault fault_;
+  MeshReason reason_;
 };
 
 }  // namespace statejump::geometry

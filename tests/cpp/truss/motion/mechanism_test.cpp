@@ -7,11 +7,14 @@
 #include <stdexcept>
 #include <vector>
 
+#include "../../support/argument.hpp"
 #include "scenes.hpp"
 
 namespace statejump::truss {
 namespace {
 
+using statejump::testing::Argument;
+using statejump::testing::refused_argument;
 using namespace scenes;
 using Eigen::Vector2d;
 
@@ -113,12 +116,8 @@ TEST(MotionMechanism, DrivesThatDoNotFitAreRefusedByName) {
   options.drives = {drive};  // of a link that does not exist
   Inertia inertia;
   inertia.node_mass = Vector2d(0.0, 1.0);
-  try {
-    simulate(model, inertia, options);
-    FAIL();
-  } catch (const std::invalid_argument& refused) {
-    EXPECT_NE(std::string(refused.what()).find("motor"), std::string::npos);
-  }
+  EXPECT_EQ(refused_argument([&] { simulate(model, inertia, options); }),
+            Argument("link", drive.link, "drive 'motor'"));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "statejump/kernel/hertz.hpp"
 #include "statejump/kernel/laws/parameters.hpp"
@@ -52,18 +53,43 @@ inline void validate(const NormalGeometry& geometry, const NormalMaterial& mater
   positive(material.effective_young_modulus, "effective_young_modulus", "(0, inf) Pa");
 }
 
+/// A penetration depth outside the range of a normal law, as fields.
+class DepthOutOfRange : public std::domain_error {
+ public:
+  /// @param law its name, @param depth [m], @param limit the smallest depth that is not allowed [m]
+  DepthOutOfRange(std::string law, double depth, double limit)
+      : std::domain_error(sentence(law, depth, limit)),
+        law_(std::move(law)),
+        depth_(depth),
+        limit_(limit) {}
+  const std::string& law() const { return law_; }
+  double depth() const { return depth_; }
+  double limit() const { return limit_; }
+
+ private:
+  static std::string sentence(const std::string& law, double depth, double limit) {
+    char numbers[112];
+    std::snprintf(numbers, sizeof numbers, ": penetration_depth = %.9g m, allowed is below %.9g m",
+                  depth, limit);
+    return law + numbers;
+  }
+  std::string law_;
+  double depth_, limit_;
+};
+
 namespace detail {
 
 constexpr double pi = 3.14159265358979323846;
 
+[[noreturn, gnu::cold, gnu::noinline]] inline void refuse_depth(double depth, double limit,
+                                                                const char* law) {
+  throw DepthOutOfRange(law, depth, limit);
+}
+
 /// Rejects a depth outside a law's range, NaN included.
-/// @throws std::domain_error that names law, value and limit
+/// @throws DepthOutOfRange
 inline void require_depth(double depth, double limit, const char* law) {
-  if (depth < limit) return;
-  char text[160];
-  std::snprintf(text, sizeof text, "%s: penetration_depth = %.9g m, allowed is below %.9g m", law,
-                depth, limit);
-  throw std::domain_error(text);
+  if (!(depth < limit)) refuse_depth(depth, limit, law);
 }
 
 inline NormalState from_hertz(const HertzState& state) {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -26,6 +27,20 @@ using DissipationLaw = std::variant<NoDissipation, LankaraniNikravesh, HuntCross
 using FrictionLaw = std::variant<NoFriction, AmbrosioFriction, MindlinFriction,
                                  MindlinDeresiewiczFriction, UserFrictionLaw>;
 using TangentialVelocityLaw = std::variant<MaterialVelocity, PaperVelocity, UserVelocityLaw>;
+
+/// A law from a shared object that cannot be used.
+class UnusableLaw : public std::invalid_argument {
+ public:
+  UnusableLaw(const std::string& key, std::string name, std::string reason)
+      : std::invalid_argument(key + " = '" + name + "' cannot be used: " + reason),
+        name_(std::move(name)),
+        reason_(std::move(reason)) {}
+  const std::string& name() const { return name_; }
+  const std::string& reason() const { return reason_; }
+
+ private:
+  std::string name_, reason_;
+};
 
 namespace detail {
 
@@ -74,9 +89,8 @@ struct Catalogue<std::variant<Types...>> {
   }
 
   static Variant find(const char* what, const std::string& name) {
-    std::string message = std::string(what) + " = '" + name + "'";
     if (const std::string wrong = problem(name); !wrong.empty()) {
-      throw std::invalid_argument(message + " cannot be used: " + wrong);
+      throw UnusableLaw(what, name, wrong);
     }
     Variant found;
     bool known = false;
@@ -89,13 +103,13 @@ struct Catalogue<std::variant<Types...>> {
       known = true;
     }
     if (known) return found;
-    message += ", allowed is one of ";
+    std::string allowed = "one of ";
     const char* separator = "";
     for (const std::string& each : names()) {
-      message.append(separator).append(each);
+      allowed.append(separator).append(each);
       separator = ", ";
     }
-    throw std::invalid_argument(message);
+    throw OutOfRange(what, name, allowed);
   }
 };
 
