@@ -9,11 +9,11 @@ from typing import Any
 
 import tomli_w
 
-from statejump.campaign.checked_outputs import checked
-from statejump.campaign.outputs import PATTERN
+from statejump.campaign.outputs import PATTERN, parts, values
 from statejump.campaign.plan import MONTECARLO, MOST_SAMPLES, SWEEP, Plan, plan_of
 from statejump.campaign.sampling import Values, Varied, number_of_points
 from statejump.campaign.vary import MonteCarloVary, SweepVary, check_apart, varied
+from statejump.campaign.work import sampled
 from statejump.core.case import Case
 from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, UnknownKey
 from statejump.core.run import MODELS
@@ -217,3 +217,18 @@ def points_of(vary: tuple[Varied, ...]) -> int:
     if points > MOST_SAMPLES:
         raise NotAllowed("[[vary]]", code="grid_too_large", points=points, most_samples=MOST_SAMPLES)
     return points
+
+
+def checked(given: Sequence[str], case: Case) -> tuple[str, ...]:
+    """Return the outputs, after computing them once for a run of the reduced model of the case itself.
+
+    :raises NotAllowed: one of them is invalid
+    """
+    names = tuple(given)
+    for place, name in enumerate(names):
+        parts(name)
+        if name in names[:place]:
+            raise NotAllowed("outputs", name, code="duplicate")
+    if names:
+        values(names, sampled(case, "reduced", names))
+    return names

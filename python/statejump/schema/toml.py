@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reader of TOML files; a fault is one sentence with its line."""
+"""Reader and writer of TOML files; a fault is one sentence with its line."""
 from __future__ import annotations
 
 import re
