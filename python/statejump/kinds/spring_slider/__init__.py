@@ -68,7 +68,7 @@ class SpringSlider(Kind[SpringSliderCase]):
     sheet = Later("statejump.kinds.spring_slider.figure:sheet")
     summary_lines = Later("statejump.kinds.spring_slider.summary:summary_lines")
     describe = Later("statejump.kinds.spring_slider.summary:describe")
-    charts = Later("statejump.kinds.spring_slider.charts:charts")
+    charts = Later("statejump.kinds.spring_slider.summary:charts")
     event_reason = Later("statejump.kinds.spring_slider.summary:event_reason")
 
 

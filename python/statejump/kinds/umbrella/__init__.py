@@ -73,7 +73,7 @@ class Umbrella(Kind):
     sheet = Later("statejump.kinds.umbrella.figure:sheet")
     summary_lines = Later("statejump.kinds.umbrella.summary:summary_lines")
     describe = Later("statejump.kinds.umbrella.summary:describe")
-    charts = Later("statejump.kinds.umbrella.charts:charts")
+    charts = Later("statejump.kinds.umbrella.summary:charts")
 
 
 KIND = Umbrella()
