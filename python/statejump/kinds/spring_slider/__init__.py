@@ -62,7 +62,7 @@ class SpringSlider(Kind[SpringSliderCase]):
     difference = Later("statejump.kinds.spring_slider.compare:difference")
     names = Later("statejump.kinds.spring_slider.result:names")
     scene = Later("statejump.kinds.spring_slider.result:scene")
-    outcomes = Later("statejump.kinds.spring_slider.outcomes:outcomes")
+    outcomes = Later("statejump.kinds.spring_slider.compare:outcomes")
     statics = Later("statejump.kinds.spring_slider.statics:statics")
     control = Later("statejump.kinds.spring_slider.control:answer")
     sheet = Later("statejump.kinds.spring_slider.figure:sheet")

@@ -68,7 +68,7 @@ class Umbrella(Kind):
     difference = Later("statejump.kinds.umbrella.compare:difference")
     names = Later("statejump.kinds.umbrella.result:names")
     scene = Later("statejump.kinds.umbrella.result:scene")
-    outcomes = Later("statejump.kinds.umbrella.outcomes:outcomes")
+    outcomes = Later("statejump.kinds.umbrella.compare:outcomes")
     laws = Later("statejump.kinds.umbrella.laws:joint")
     sheet = Later("statejump.kinds.umbrella.figure:sheet")
     summary_lines = Later("statejump.kinds.umbrella.summary:summary_lines")
