@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_DRAWN, _SAVED = Later("statejump.kinds.spring_slider.statics_figure:drawn"), Later("statejump.core.figures:save")
+_DRAWN, _SAVED = Later("statejump.kinds.spring_slider.figure:drawn"), Later("statejump.core.figures:save")
 
 
 @dataclass(frozen=True)
@@ -93,9 +93,6 @@ class RestSets:
 
     def _repr_html_(self) -> str:
         return str(self.frame().to_html(index=False))
-
-
-DENSE = 401  # number of temperatures of the picture
 
 
 def segment(case: SpringSliderCase, friction_force_N: float, temperature_change_K: float) -> Segment:

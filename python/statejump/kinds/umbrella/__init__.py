@@ -69,7 +69,7 @@ class Umbrella(Kind):
     names = Later("statejump.kinds.umbrella.result:names")
     scene = Later("statejump.kinds.umbrella.result:scene")
     outcomes = Later("statejump.kinds.umbrella.compare:outcomes")
-    laws = Later("statejump.kinds.umbrella.laws:joint")
+    laws = Later("statejump.kinds.umbrella.figure:joint")
     sheet = Later("statejump.kinds.umbrella.figure:sheet")
     summary_lines = Later("statejump.kinds.umbrella.summary:summary_lines")
     describe = Later("statejump.kinds.umbrella.summary:describe")
