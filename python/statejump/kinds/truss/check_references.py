@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -12,16 +12,17 @@ import numpy as np
 from statejump.core.errors import ABSENT, MissingKey, NotAllowed
 from statejump.kinds.truss import check_mechanism
 from statejump.kinds.truss.arrays import having, said
-from statejump.kinds.truss.check_constraints import check_constraints
+from statejump.kinds.truss.constraints import LEAST_COEFFICIENT
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.elements.protocol import listed_elements
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.references import Around, known_name, known_nodes, wrong_ends
+from statejump.kinds.truss.sections import TrussSections
 from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns, ItemIndex, by_name, each, where_wrong
 
 if TYPE_CHECKING:
-    from statejump.kinds.truss.sections import Link, TrussSections
+    from statejump.kinds.truss.sections import Link
 
 _WITH_TEMPERATURE = [joint for joint in JOINTS if joint.has_temperature]
 
@@ -136,3 +137,27 @@ def _alternatives(case: TrussSections) -> None:
     for element in ELEMENTS:
         for item in where_wrong(listed_elements(case, element), element.may_be_wrong_keys):
             element.check_keys(item)
+
+
+def check_constraints(case: TrussSections, nodes: Mapping[str, Any]) -> None:
+    """Raise NotAllowed for the first constraint with inconsistent terms."""
+    for item in case.constraint:
+        where = {"item": f"constraint {item.name!r}"}
+        if not item.nodes:
+            raise NotAllowed("nodes", item.nodes, code="no_nodes", **where)
+        for name in item.nodes:
+            known_name("nodes", item.nodes, name, nodes, "node", **where)
+        for key in ("directions", "coefficients"):
+            if len(getattr(item, key)) != len(item.nodes):
+                raise NotAllowed(key, getattr(item, key), code="constraint_length", terms=len(item.nodes), **where)
+        if case.truss.dimension == 2 and "z" in item.directions:
+            raise NotAllowed("directions", item.directions, code="planar_directions", **where)
+        terms = list(zip(item.nodes, item.directions))
+        for term in terms:
+            if terms.count(term) > 1:
+                raise NotAllowed("nodes", item.nodes, code="constraint_term_twice", node=term[0], direction=term[1],
+                                 **where)
+        largest = max(abs(value) for value in item.coefficients)
+        for value in item.coefficients:
+            if value == 0 or abs(value) < LEAST_COEFFICIENT * largest:
+                raise NotAllowed("coefficients", value, code="constraint_coefficient", **where)
