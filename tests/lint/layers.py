@@ -48,7 +48,7 @@ LAYERS: tuple[tuple[str, tuple[str, ...]], ...] = (
         "statejump.kinds.spring_slider.figure",
         "statejump.kinds.statics.figure", "statejump.kinds.statics.files", "statejump.kinds.statics.summary",
         "statejump.kinds.truss.answers.figure", "statejump.kinds.truss.answers.vtk",
-        "statejump.kinds.truss.answers.write", "statejump.kinds.truss.creak", "statejump.kinds.truss.draw",
+        "statejump.kinds.truss.answers.write", "statejump.kinds.truss.creak",
         "statejump.kinds.truss.draw_planar", "statejump.kinds.truss.draw_spatial", "statejump.kinds.truss.figure",
         "statejump.kinds.truss.page", "statejump.kinds.umbrella.figure",
     )),

@@ -65,7 +65,7 @@ class Truss(Kind[TrussCase]):
     summary_lines = Later("statejump.kinds.truss.summary:summary_lines")
     describe = Later("statejump.kinds.truss.summary:describe")
     page = Later("statejump.kinds.truss.page:page")
-    draw = Later("statejump.kinds.truss.draw:draw")
+    draw = Later("statejump.kinds.truss.figure:draw")
 
 
 KIND = Truss()
