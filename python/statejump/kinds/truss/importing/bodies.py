@@ -15,8 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from statejump.kinds.truss.importing.model import Deck, Equation, RigidBody
-from statejump.kinds.truss.importing.springs import ALONG
-from statejump.kinds.truss.importing.supports import SAME, basis_of, held_directions, is_held
+from statejump.kinds.truss.importing.supports import ALONG, SAME, basis_of, held_directions, is_held
 
 # Nodes nearer than this fraction of the size of the truss are at one position, because decks have eight digits.
 ONE_PLACE = 1e-9

@@ -7,7 +7,7 @@ import numpy as np
 from statejump.kinds.truss.importing.model import Bar, quoted
 from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.reader import Property, Reader
-from statejump.kinds.truss.importing.springs import add_spring
+from statejump.kinds.truss.importing.supports import add_spring
 
 SAME = 1e-6  # relative difference of equal offsets: cards have seven digits
 
