@@ -9,7 +9,7 @@ from statejump.core.reading import finite_number
 from statejump.kinds.truss.importing.bodies import settle_bodies
 from statejump.kinds.truss.importing.contract import IDLE, REFUSED
 from statejump.kinds.truss.importing.model import BENDING, Deck, Options
-from statejump.kinds.truss.importing.nastran import bodies, control, elements, loads, nodes, properties, singularities
+from statejump.kinds.truss.importing.nastran import bodies, control, elements, loads, nodes, properties
 from statejump.kinds.truss.importing.nastran.cards import BARE_EXPONENT, Card, split
 from statejump.kinds.truss.importing.nastran.reader import Reader
 from statejump.kinds.truss.importing.nastran.table import CARDS, PARAMS
@@ -61,7 +61,7 @@ def read(path: Path, options: Options | None = None) -> Deck:
     elements.finish_bars(reader)
     settle_bodies(deck)
     if chosen.autospc:
-        singularities.hold_singular(reader)
+        nodes.hold_singular(reader)
     if chosen.solution.startswith("106"):  # in this solution TREF belongs to the coefficient of expansion only
         for bar in deck.bars:
             bar.reference_temperature = None
