@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -17,12 +17,8 @@ from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey, Unread
 from statejump.core.hdf5 import objects
 from statejump.core.reading import is_file
 from statejump.core.table_files import SUFFIXES as TEXT_SUFFIXES, Table, numbers_of, open_table, quoted
+from statejump.core.thermal import Numbers
 from statejump.schema.toml import LARGEST_BYTES
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.float64]
 
 ZERO_CELSIUS_K = 273.15
 ENDINGS = {"_K": 0.0, "_degC": ZERO_CELSIUS_K}
@@ -80,7 +76,7 @@ def of_means(read: Read) -> Read:
                 0.5 * (read.values[:, first] + read.values[:, second]))
 
 
-def refuse(read: Read, wrong: NDArray[np.bool_], what: str) -> None:
+def refuse(read: Read, wrong: np.ndarray, what: str) -> None:
     """Raise Unreadable for the first invalid value."""
     if wrong.any():
         row, column = np.unravel_index(int(np.argmax(wrong)), wrong.shape)

@@ -3,14 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.float64]
 
 THIN = 0.05  # largest distance from a straight line, over the range, of a loop that looks like a line
 ROUNDING = 1e-9  # fraction of its range below which a loop counts as zero
@@ -23,12 +17,12 @@ class StraightPart:
     slope: float
     offset: float
 
-    def taken_off(self, x: Numbers, y: Numbers) -> Numbers:
+    def taken_off(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Return the remainder of values at x."""
         return np.asarray(y - (self.offset + self.slope * x))
 
 
-def straight_part(x: Numbers, y: Numbers) -> StraightPart | None:
+def straight_part(x: np.ndarray, y: np.ndarray) -> StraightPart | None:
     """Return the reversible part of a loop, a straight line (least squares); None: the loop is wide, or there is no
     loop."""
     size = float(np.ptp(y))
