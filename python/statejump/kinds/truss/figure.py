@@ -11,10 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D
 
+from statejump.core.charts import straight_part
 from statejump.core.errors import StatejumpError
 from statejump.core.figures import DEM, REDUCED, Panel, Sheet, style
 from statejump.core.run import Run
-from statejump.core.thin_loops import straight_part
 from statejump.core.units import scale_of, text
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.compare import jumps_m, reduced_name, scales_of
