@@ -3,7 +3,6 @@
 from statejump.kinds.truss.importing.model import Deck, Options
 from statejump.kinds.truss.importing.reading import checked, read
 from statejump.kinds.truss.importing.summary import hints, summary
-from statejump.kinds.truss.importing.to_case import case_document
-from statejump.kinds.truss.importing.units import SYSTEMS, Units
+from statejump.kinds.truss.importing.to_case import SYSTEMS, Units, case_document
 
 __all__ = ["SYSTEMS", "Deck", "Options", "Units", "case_document", "checked", "hints", "read", "summary"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,6 @@ from statejump.kinds.truss.importing.bodies import named_nodes
 from statejump.kinds.truss.importing.joints import matching, put_in
 from statejump.kinds.truss.importing.model import Bar, Deck, Equation, Spring
 from statejump.kinds.truss.importing.supports import supports
-from statejump.kinds.truss.importing.units import Units, in_units
 from statejump.kinds.truss.sections import MOST_DENSITY_KG_PER_M3, MOST_EXPANSION_PER_K
 
 # A smaller difference of coordinates, over the size of the truss, counts as zero, because decks have eight digits.
@@ -29,6 +29,39 @@ WEIGHTLESS_KG = 1e-15
 # Options that give all links a number that the deck lacks.
 OPTIONS = {"young_modulus_Pa": "--young-modulus", "cross_section_area_m2": "--area",
            "thermal_expansion_per_K": "--thermal-expansion"}
+
+
+@dataclass(frozen=True)
+class Units:
+    """The units of a deck.
+
+    :param length_m: of length [m]
+    :param force_N: of force [N]
+    :param mass_kg: of mass [kg]; None: force times seconds squared by length
+    """
+
+    length_m: float = 1.0
+    force_N: float = 1.0
+    mass_kg: float | None = None
+
+    @property
+    def mass(self) -> float:
+        """Unit of mass [kg]."""
+        return self.force_N / self.length_m if self.mass_kg is None else self.mass_kg
+
+    @property
+    def stress(self) -> float:
+        """Unit of stress [Pa]."""
+        return self.force_N / self.length_m**2
+
+
+POUND_FORCE_N = 4.4482216152605  # exact
+INCH_M = 0.0254  # exact
+# Usual ones first: among equally plausible ones, the first is chosen.
+SYSTEMS = {
+    "SI": Units(), "mm-N": Units(1e-3), "in-lbf": Units(INCH_M, POUND_FORCE_N), "mm-kg-s": Units(1e-3, 1e-3),
+    "mm-kN-t": Units(1e-3, 1e3, 1e3),
+}
 
 
 def case_document(
@@ -266,3 +299,8 @@ def _link(deck: Deck, bar: Bar, change: float, peak: float, units: Units,
     if peak and change != peak:
         made["temperature_fraction"] = change / peak
     return made
+
+
+def in_units(value: float, unit: float) -> float:
+    """Return a number of a deck in the units of cases, rounded to the digits of a deck: 50 mm2 are 5e-05 m2."""
+    return value if unit == 1 else float(f"{value * unit:.15g}")
