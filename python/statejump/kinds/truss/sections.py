@@ -18,7 +18,7 @@ from statejump.core.thermal import CaseThermal, MemberProgram, Numbers, Thermal,
 from statejump.kinds.truss.constraints import AXES, Constraint
 from statejump.kinds.truss.elements import ElementLists
 from statejump.kinds.truss.joints import JointLists
-from statejump.kinds.truss.joints.phrases import ALUMINIUM, USER
+from statejump.kinds.truss.joints.protocol import ALUMINIUM, USER
 from statejump.kinds.truss.mechanism import Drive
 from statejump.kinds.truss.resolved import FIXITY, STICKING
 from statejump.schema.fields import (

@@ -14,8 +14,7 @@ from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.elements.protocol import listed_elements
 from statejump.kinds.truss.joints import JOINTS
-from statejump.kinds.truss.joints.protocol import listed_joints
-from statejump.kinds.truss.joints.phrases import count, spread
+from statejump.kinds.truss.joints.protocol import count, listed_joints, spread
 from statejump.kinds.truss.motion import TrussMotion
 from statejump.kinds.truss.result import AT_END
 from statejump.kinds.truss.sections import Node

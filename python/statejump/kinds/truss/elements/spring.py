@@ -11,8 +11,7 @@ import numpy as np
 from statejump.core.errors import NotAllowed
 from statejump.kinds.truss.arrays import References, column, distances, given_or, pairs, said
 from statejump.kinds.truss.elements.protocol import BetweenNodes, EndsArrays, Lines, Switch
-from statejump.kinds.truss.joints.protocol import ItemColumn
-from statejump.kinds.truss.joints.phrases import USER, scaled
+from statejump.kinds.truss.joints.protocol import USER, ItemColumn, scaled
 from statejump.schema.fields import definition, parameter, switch, texts
 from statejump.schema.item_tables import ItemColumns, once
 from statejump.schema.items import Item

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from statejump.kinds.truss.elements.protocol import ElementType
-from statejump.kinds.truss.joints.protocol import Strokes, Symbol, Torsion
-from statejump.kinds.truss.joints.phrases import USER, scaled
+from statejump.kinds.truss.joints.protocol import USER, Strokes, Symbol, Torsion, scaled
 from statejump.kinds.truss.references import (
     Around, axis_of_rotation, known_links, turned_links, wrong_axes, wrong_ends,
 )

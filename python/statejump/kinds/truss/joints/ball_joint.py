@@ -11,9 +11,10 @@ import numpy as np
 
 from statejump.core.errors import NotAllowed
 from statejump.kinds.truss.arrays import References, having
-from statejump.kinds.truss.joints.protocol import BLACK, Contacts, ItemColumn, Sampled, Symbol
+from statejump.kinds.truss.joints.protocol import (
+    ALUMINIUM, BLACK, USER, Contacts, ItemColumn, Sampled, Symbol, count, scaled, spread,
+)
 from statejump.kinds.truss.joints.round_parts import RoundParts
-from statejump.kinds.truss.joints.phrases import ALUMINIUM, USER, count, scaled, spread
 from statejump.schema.fields import CHOICE, choice, definition, parameter, text
 from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item

@@ -15,9 +15,8 @@ from statejump import _engine
 from statejump.core.errors import NotAllowed
 from statejump.kinds.truss.arrays import none_of
 from statejump.kinds.truss.joints.along_axis import AlongAxis
-from statejump.kinds.truss.joints.protocol import ItemColumn, Strokes, Symbol
+from statejump.kinds.truss.joints.protocol import USER, ItemColumn, Strokes, Symbol, count, scaled, spread
 from statejump.kinds.truss.joints.slider import with_sliders
-from statejump.kinds.truss.joints.phrases import USER, count, scaled, spread
 from statejump.schema.fields import CHOICE, definition, numbers, parameter, texts, whole
 from statejump.schema.items import Item
 

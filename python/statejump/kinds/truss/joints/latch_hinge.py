@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from statejump.kinds.truss.arrays import GROUND, References, column
-from statejump.kinds.truss.joints.protocol import ItemColumn, JointType, Symbol, Torsion
-from statejump.kinds.truss.joints.phrases import USER, count, scaled, spread
+from statejump.kinds.truss.joints.protocol import USER, ItemColumn, JointType, Symbol, Torsion, count, scaled, spread
 from statejump.kinds.truss.references import (
     Around, axis_of_rotation, known_links, turned_links, wrong_axes, wrong_ends,
 )

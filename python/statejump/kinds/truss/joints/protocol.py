@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 import numpy as np
 
 from statejump.core.case import Case
+from statejump.core.units import text
 from statejump.kinds.truss.arrays import References, arrays_of
 from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
@@ -30,6 +31,8 @@ Strokes = tuple[tuple[tuple[float, float], ...], ...]  # in units of a symbol's 
 BLACK = "#000000"
 # Friction may double a contact's force for a moment, and Hertz's stiffness is proportional to its cube root.
 IMPACT = 2 ** (1 / 3)
+USER = "no default: the truss decides"
+ALUMINIUM = "choice, the paper is silent: aluminium"
 
 
 @dataclass(frozen=True)
@@ -308,3 +311,21 @@ def listed_joints(case: Case, joint: JointType[ItemType, Any]) -> list[ItemType]
     """Return the joints of a type that a case has."""
     found: list[ItemType] = getattr(case, joint.section)
     return found
+
+
+def count(items: Sequence[object], one: str) -> str:
+    """Return how many there are of something."""
+    return f"{len(items)} {one}{'' if len(items) == 1 else 's'}"
+
+
+def spread(values: Iterable[float], unit: str = "-", digits: int = 4) -> str:
+    """Return the common value of many items, or the range of their values."""
+    known = [float(value) for value in values]
+    low, high = min(known), max(known)
+    return text(low, unit, digits) if low == high else f"{text(low, unit, digits)} to {text(high, unit, digits)}"
+
+
+def scaled(values: np.ndarray, scale: float, unit: str) -> str:
+    """Return one value or the range of several, in a readable unit of the values times ``scale``."""
+    low, high = values.min() * scale, values.max() * scale
+    return f"{low:.4g} {unit}" if high - low <= 1e-9 * abs(high) else f"{low:.3g} to {high:.3g} {unit}"

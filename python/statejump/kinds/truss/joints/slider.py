@@ -16,9 +16,8 @@ from statejump.core.units import text
 from statejump.kinds.truss.arrays import GROUND, References, columns
 from statejump.kinds.truss.joints.along_axis import AlongAxis, Axes
 from statejump.kinds.truss.joints.protocol import (
-    IMPACT, ContactPart, Contacts, Drawn, ItemColumn, Sampled, Strokes, Symbol,
+    ALUMINIUM, IMPACT, USER, ContactPart, Contacts, Drawn, ItemColumn, Sampled, Strokes, Symbol, count, scaled, spread,
 )
-from statejump.kinds.truss.joints.phrases import ALUMINIUM, USER, count, scaled, spread
 from statejump.results import scene as drawing
 from statejump.schema.fields import CHOICE, definition, numbers, parameter, texts
 from statejump.schema.items import Item
