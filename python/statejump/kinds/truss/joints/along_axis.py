@@ -15,7 +15,7 @@ from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
 
 if TYPE_CHECKING:
-    from statejump.kinds.truss.joints.friction_loads import Loads
+    from statejump.kinds.truss.joints.protocol import Loads
     from statejump.kinds.truss.resolved import ResolvedTruss
 
 

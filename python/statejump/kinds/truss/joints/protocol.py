@@ -15,14 +15,14 @@ import numpy as np
 
 from statejump.core.case import Case
 from statejump.core.units import text
-from statejump.kinds.truss.arrays import References, arrays_of
+from statejump.kinds.truss.arrays import GROUND, References, arrays_of
+from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
 
 if TYPE_CHECKING:
-    from statejump.kinds.truss.joints.friction_loads import Loads
     from statejump.kinds.truss.references import Around
-    from statejump.kinds.truss.resolved import Course, ResolvedTruss
+    from statejump.kinds.truss.resolved import Course
 
 ItemType = TypeVar("ItemType", bound=Item)
 ArraysType = TypeVar("ArraysType")
@@ -329,3 +329,48 @@ def scaled(values: np.ndarray, scale: float, unit: str) -> str:
     """Return one value or the range of several, in a readable unit of the values times ``scale``."""
     low, high = values.min() * scale, values.max() * scale
     return f"{low:.4g} {unit}" if high - low <= 1e-9 * abs(high) else f"{low:.3g} to {high:.3g} {unit}"
+
+
+@dataclass(frozen=True)
+class Loads:
+    """Forces of one joint after the other.
+
+    :param force_N: (joints, nodes, 3), to which forces are added
+    :param place_m: (nodes, 3), positions of nodes in the state
+    """
+
+    truss: ResolvedTruss
+    force_N: np.ndarray
+    place_m: np.ndarray
+
+    def push(self, joint: int, node: int, force_N: np.ndarray) -> None:
+        """Add a force on a node; on GROUND none."""
+        if node != GROUND:
+            self.force_N[joint, node] += force_N
+
+    def turn(self, joint: int, link: int, moment_N_m: np.ndarray) -> None:
+        """Add a moment on a link; on GROUND none."""
+        if link == GROUND:
+            return
+        one, two = self.truss.links.nodes[link]
+        along = self.place_m[two] - self.place_m[one]
+        pair = np.cross(moment_N_m, along) / (along @ along)
+        self.force_N[joint, two] += pair
+        self.force_N[joint, one] -= pair
+
+    def rub(self, joint: int, nodes: tuple[int, int], links: tuple[int, int], friction_N: np.ndarray,
+            offset_m: np.ndarray, arm_m: float) -> None:
+        """Add the friction between a round part and a hollow one, with the moments on both about their own nodes.
+
+        :param nodes: of the hollow part and of the round one; ``links`` likewise
+        :param friction_N: on the round part
+        :param offset_m: of the round part's centre from the hollow one's
+        :param arm_m: from the round part's centre to the contact point
+        """
+        distance = float(np.linalg.norm(offset_m))
+        if distance == 0 or not friction_N.any():
+            return
+        for node, link, force, arm in ((nodes[0], links[0], -friction_N, arm_m + distance),
+                                       (nodes[1], links[1], friction_N, arm_m)):
+            self.push(joint, node, force)
+            self.turn(joint, link, np.cross(offset_m / distance * arm, force))
