@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterator, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -18,11 +18,8 @@ from statejump.kinds.truss.elements.protocol import listed_elements
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.references import Around, known_name, known_nodes, wrong_ends
-from statejump.kinds.truss.sections import TrussSections
+from statejump.kinds.truss.sections import Link, TrussSections
 from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns, ItemIndex, by_name, each, where_wrong
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.sections import Link
 
 _WITH_TEMPERATURE = [joint for joint in JOINTS if joint.has_temperature]
 

@@ -19,13 +19,12 @@ from statejump.kinds.truss.elements.protocol import listed_elements
 from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.references import vector, wrong_vectors
+from statejump.kinds.truss.resolved import ResolvedTruss
+from statejump.kinds.truss.sections import Node, TrussSections
 from statejump.schema.item_tables import ItemColumns, each, repeated_names, where_wrong
 
 if TYPE_CHECKING:
     import numpy as np
-
-    from statejump.kinds.truss.resolved import ResolvedTruss
-    from statejump.kinds.truss.sections import Node, TrussSections
 
 SECTIONS = ("node", "link", "program", "expansion", *(joint.section for joint in JOINTS),
             *(element.section for element in ELEMENTS), "constraint", "drive")

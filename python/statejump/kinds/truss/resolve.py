@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import inf
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from statejump.core.errors import NotAllowed
 from statejump.core.expansion import followed
+from statejump.core.thermal import MemberProgram
 from statejump.kinds.truss.arrays import (
     References, column, columns, distances, given_or, having, in_space, names, pairs, texts, unit, values, vectors,
 )
@@ -20,12 +20,8 @@ from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.mechanism import resolve_bodies, resolve_drives, weights_N
 from statejump.kinds.truss.resolved import Links, Nodes, ReflectorSurface, ResolvedTruss
-from statejump.kinds.truss.sections import TrussSections
+from statejump.kinds.truss.sections import TrussSections, TrussThermal
 from statejump.schema.item_tables import ItemColumns, ItemIndex, once
-
-if TYPE_CHECKING:
-    from statejump.core.thermal import MemberProgram
-    from statejump.kinds.truss.sections import TrussThermal
 
 
 def resolve(case: TrussSections) -> ResolvedTruss:

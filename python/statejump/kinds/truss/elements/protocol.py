@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, TypeVar, cast
+from typing import Any, ClassVar, Generic, Protocol, TypeVar, cast
 
 import numpy as np
 
@@ -18,11 +18,9 @@ from statejump.core.errors import StatejumpError
 from statejump.kinds.truss.arrays import References, arrays_of, distances
 from statejump.kinds.truss.joints.protocol import ItemColumn, Symbol, Torsion
 from statejump.kinds.truss.references import Around, known_nodes, wrong_ends
+from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.resolved import ResolvedTruss
 
 ItemType = TypeVar("ItemType", bound=Item)
 ArraysType = TypeVar("ArraysType")

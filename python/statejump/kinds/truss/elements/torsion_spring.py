@@ -5,21 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from statejump.kinds.truss.elements.protocol import ElementType
 from statejump.kinds.truss.joints.protocol import USER, Strokes, Symbol, Torsion, scaled
-from statejump.kinds.truss.references import (
-    Around, axis_of_rotation, known_links, turned_links, wrong_axes, wrong_ends,
-)
+from statejump.kinds.truss.references import Around, axis_of_rotation, known_links, turned_links, wrong_axes, wrong_ends
+from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.schema.fields import definition, numbers, parameter, texts
 from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.resolved import ResolvedTruss
 
 SPIRAL: Strokes = (tuple((0.28 * t * np.cos(5.2 * t), 0.28 * t * np.sin(5.2 * t)) for t in np.linspace(0.4, 3.6, 60)),)
 PINK = "#CC79A7"

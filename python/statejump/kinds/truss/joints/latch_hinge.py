@@ -5,22 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf, pi
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from statejump.kinds.truss.arrays import GROUND, References, column
-from statejump.kinds.truss.joints.protocol import USER, ItemColumn, JointType, Symbol, Torsion, count, scaled, spread
-from statejump.kinds.truss.references import (
-    Around, axis_of_rotation, known_links, turned_links, wrong_axes, wrong_ends,
+from statejump.kinds.truss.joints.protocol import (
+    USER, ItemColumn, JointType, Loads, Symbol, Torsion, count, scaled, spread,
 )
+from statejump.kinds.truss.references import Around, axis_of_rotation, known_links, turned_links, wrong_axes, wrong_ends
+from statejump.kinds.truss.resolved import Course, ResolvedTruss
 from statejump.schema.fields import definition, numbers, parameter, texts
 from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.joints.protocol import Loads
-    from statejump.kinds.truss.resolved import Course, ResolvedTruss
 
 
 @definition

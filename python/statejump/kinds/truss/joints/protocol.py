@@ -9,20 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
 from statejump.core.case import Case
 from statejump.core.units import text
 from statejump.kinds.truss.arrays import GROUND, References, arrays_of
-from statejump.kinds.truss.resolved import ResolvedTruss
+from statejump.kinds.truss.references import Around
+from statejump.kinds.truss.resolved import Course, ResolvedTruss
 from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.references import Around
-    from statejump.kinds.truss.resolved import Course
 
 ItemType = TypeVar("ItemType", bound=Item)
 ArraysType = TypeVar("ArraysType")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -16,12 +16,10 @@ from statejump.kinds.truss.joints.protocol import (
 )
 from statejump.kinds.truss.joints.round_parts import RoundParts
 from statejump.kinds.truss.references import axis_of_rotation, wrong_axes
+from statejump.kinds.truss.resolved import Course, ResolvedTruss
 from statejump.schema.fields import CHOICE, choice, definition, numbers, parameter, text
 from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.resolved import Course, ResolvedTruss
 
 
 @definition

@@ -4,22 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
 from statejump.core import physics
 from statejump.core.errors import MissingKey, NotAllowed
 from statejump.kinds.truss.arrays import GROUND
-from statejump.kinds.truss.joints.protocol import IMPACT, ContactPart, Contacts, Drawn, JointType, Sampled
+from statejump.kinds.truss.joints.protocol import IMPACT, ContactPart, Contacts, Drawn, JointType, Loads, Sampled
 from statejump.kinds.truss.references import Around, known_name
+from statejump.kinds.truss.resolved import Course, ResolvedTruss
 from statejump.results import scene as drawing
 from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns
 from statejump.schema.items import Item
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.joints.protocol import Loads
-    from statejump.kinds.truss.resolved import Course, ResolvedTruss
 
 ItemType = TypeVar("ItemType", bound=Item)
 ArraysType = TypeVar("ArraysType")
