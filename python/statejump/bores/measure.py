@@ -144,8 +144,6 @@ class Bore:
         """Return one row per section, from one end to the other, with units in the column names: position along the
         axis from the middle, radius and centre of the least-squares circle, roundness error, and for every harmonic its
         amplitude and the angle of its largest radius."""
-        pandas = libraries.pandas()
-
         rows = []
         for each in self.sections:
             row = {"z_m": each.z_m, "mean_radius_m": each.mean_radius_m, "offset_x_m": each.offset_m[0],
@@ -153,7 +151,7 @@ class Bore:
             for order, amplitude, phase in zip(HARMONICS, each.amplitude_m, each.phase_rad):
                 row |= {f"harmonic_{order}_amplitude_m": float(amplitude), f"harmonic_{order}_phase_rad": float(phase)}
             rows.append(row)
-        return pandas.DataFrame(rows)
+        return libraries.frame(rows)
 
     def plot(self, axes: tuple[Axes, Axes] | None = None) -> Figure:
         """Draw sections with magnified deviations, and the harmonics of the middle section.

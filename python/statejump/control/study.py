@@ -133,9 +133,7 @@ class Study:
 
     def frame(self) -> pandas.DataFrame:
         """Return the whole sweep as a table, with units in the column names."""
-        pandas = libraries.pandas()
-
-        return pandas.DataFrame(self.rows(), columns=self.columns())
+        return libraries.frame(self.rows(), columns=self.columns())
 
 
 def check_wanted(jump_below: float | None, unit: str) -> None:

@@ -186,14 +186,12 @@ class Identification:
 
     def frame(self, table: str = "parameters") -> pandas.DataFrame:
         """Return a table: ``parameters``, ``models``, or the ``rows`` of the fit."""
-        pandas = libraries.pandas()
-
         if table == "parameters":
-            return pandas.DataFrame(self._rows_of_parameters(), columns=PARAMETER_COLUMNS)
+            return libraries.frame(self._rows_of_parameters(), columns=PARAMETER_COLUMNS)
         if table == "models":
-            return pandas.DataFrame(self._rows_of_models(), columns=MODEL_COLUMNS)
+            return libraries.frame(self._rows_of_models(), columns=MODEL_COLUMNS)
         if table == "rows":
-            return pandas.DataFrame(self._columns())
+            return libraries.frame(self._columns())
         raise NotAllowed("table", table, code="no_table_of_fit")
 
     def _columns(self) -> dict[str, np.ndarray]:

@@ -58,10 +58,8 @@ class RestSets:
 
     def frame(self) -> pandas.DataFrame:
         """Return a row per temperature, units in the names of the columns."""
-        pandas = libraries.pandas()
-
         rows = [(*astuple(part), part.length_m) for part in self.segments]
-        return pandas.DataFrame(rows, columns=[*(field.name for field in fields(Segment)), "length_m"])
+        return libraries.frame(rows, columns=[*(field.name for field in fields(Segment)), "length_m"])
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the places of rest over the temperature; into given axes, or into a new figure."""

@@ -64,8 +64,6 @@ class Statics:
     def frame(self) -> pandas.DataFrame:
         """Return one row per part of every set, with units in the column names; an empty set has a row without numbers.
         ``set_diameter_m`` is that of the whole set: the largest jump."""
-        pandas = libraries.pandas()
-
         rows = []
         for name, found in self.named():
             whole = {"parts": len(found["parts"]), "set_diameter_m": found["diameter_m"]}
@@ -80,7 +78,7 @@ class Statics:
                 rows.append({"set": name, **whole})
         columns = ("set", "part", "length_m", "area_m2", "angle_rad", "diameter_m", "x_m", "y_m", "z_m", "parts",
                    "set_diameter_m")
-        return pandas.DataFrame(rows, columns=list(columns))
+        return libraries.frame(rows, columns=list(columns))
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the rest sets.

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from statejump.core import expansion, thermal
 from statejump.core.errors import NotAllowed, StatejumpError
@@ -22,9 +23,6 @@ from statejump.kinds.truss.references import vector, wrong_vectors
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.sections import Node, TrussSections
 from statejump.schema.item_tables import ItemColumns, each, repeated_names, where_wrong
-
-if TYPE_CHECKING:
-    import numpy as np
 
 SECTIONS = ("node", "link", "program", "expansion", *(joint.section for joint in JOINTS),
             *(element.section for element in ELEMENTS), "constraint", "drive")
