@@ -14,9 +14,7 @@ from statejump.kinds.truss import check_mechanism
 from statejump.kinds.truss.arrays import having, said
 from statejump.kinds.truss.constraints import LEAST_COEFFICIENT
 from statejump.kinds.truss.elements import ELEMENTS
-from statejump.kinds.truss.elements.protocol import listed_elements
 from statejump.kinds.truss.joints import JOINTS
-from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.references import Around, known_name, known_nodes, wrong_ends
 from statejump.kinds.truss.sections import Link, TrussSections
 from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns, ItemIndex, by_name, each, where_wrong
@@ -35,13 +33,9 @@ def check_references(case: TrussSections) -> None:
     _members(case)
     _alternatives(case)
     around = Around(node_places, link_places, _held(case), node_places.of(case.link, "nodes"))
-    for joint in JOINTS:
-        for item in where_wrong(listed_joints(case, joint), partial(joint.may_be_wrong_references, around=around)):
-            joint.check_references(item, nodes, links)
-    for element in ELEMENTS:
-        items = listed_elements(case, element)
-        for item in where_wrong(items, partial(element.may_be_wrong_references, around=around)):
-            element.check_references(item, nodes, links)
+    for kind in (*JOINTS, *ELEMENTS):
+        for item in where_wrong(kind.listed(case), partial(kind.may_be_wrong_references, around=around)):
+            kind.check_references(item, nodes, links)
     check_constraints(case, nodes)
     check_mechanism.check(case, links)
     if case.reflector is not None:
@@ -64,7 +58,7 @@ def _followers(case: TrussSections) -> Iterator[tuple[Any, dict[str, Any], bool]
     yield from ((link, {"item": f"link {link.name!r}"}, True)
                 for link in each(case.link, "name", "program", "temperature_fraction"))
     yield from ((item, joint.where(item.name), joint.expands(item)) for joint in _WITH_TEMPERATURE
-                for item in listed_joints(case, joint))
+                for item in joint.listed(case))
 
 
 def _programs(case: TrussSections) -> None:
@@ -72,7 +66,7 @@ def _programs(case: TrussSections) -> None:
     followers: Iterator[tuple[Any, Any]] = (
         (items, where) for items, where in (
             (case.link, lambda name: {"item": f"link {name!r}"}),
-            *((listed_joints(case, joint), joint.where) for joint in _WITH_TEMPERATURE)))
+            *((joint.listed(case), joint.where) for joint in _WITH_TEMPERATURE)))
     for items, where in followers:
         for item in where_wrong(items, lambda items: places.of(items, "program") == UNKNOWN):
             if item.program is not None:
@@ -132,7 +126,7 @@ def _alternatives(case: TrussSections) -> None:
             raise NotAllowed("mass_kg", link.mass_kg, code="conflicting_key", other="density_kg_per_m3",
                              item=f"link {link.name!r}")
     for element in ELEMENTS:
-        for item in where_wrong(listed_elements(case, element), element.may_be_wrong_keys):
+        for item in where_wrong(element.listed(case), element.may_be_wrong_keys):
             element.check_keys(item)
 
 

@@ -15,9 +15,7 @@ from statejump.kinds.truss.arrays import (
 )
 from statejump.kinds.truss.constraints import resolve_constraints
 from statejump.kinds.truss.elements import ELEMENTS
-from statejump.kinds.truss.elements.protocol import listed_elements
 from statejump.kinds.truss.joints import JOINTS
-from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.mechanism import resolve_bodies, resolve_drives, weights_N
 from statejump.kinds.truss.resolved import Links, Nodes, ReflectorSurface, ResolvedTruss
 from statejump.kinds.truss.sections import TrussSections, TrussThermal
@@ -56,8 +54,8 @@ def resolve(case: TrussSections) -> ResolvedTruss:
         )
     return ResolvedTruss(
         name=case.name, dimension=dimension, nodes=nodes, links=links, bodies=bodies,
-        joints={joint.section: joint.resolve(listed_joints(case, joint), known) for joint in JOINTS},
-        elements={element.section: element.resolve(listed_elements(case, element), known) for element in ELEMENTS},
+        joints={joint.section: joint.resolve(joint.listed(case), known) for joint in JOINTS},
+        elements={element.section: element.resolve(element.listed(case), known) for element in ELEMENTS},
         constraints=resolve_constraints(case.constraint, node_places), drives=resolve_drives(case.drive, known),
         programs=warmed.programs,
         program_names=warmed.program_names,
