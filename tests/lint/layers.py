@@ -29,7 +29,7 @@ LAYERS: tuple[tuple[str, tuple[str, ...]], ...] = (
         "statejump._version", "statejump.core", "statejump.schema",
         "statejump.results.scene", "statejump.results.events",  # vocabulary of kinds: what to draw, what happened
     )),
-    ("simulate", ("statejump.core.yade_process", "statejump.core.yade_process")),
+    ("simulate", ("statejump.core.yade_process",)),
     ("kinds", (
         "statejump.kinds", "statejump.laws", "statejump.fclib", "statejump.surface",
         "statejump.kinds.truss.answers.jumps", "statejump.kinds.truss.answers.reflector",  # outcomes need them

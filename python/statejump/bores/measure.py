@@ -239,10 +239,17 @@ def measure(mesh: _engine.BoreMesh, name: str, journal_radius_m: float | None = 
     return Bore(name, mesh, sections, journal_radius_m)
 
 
-def measured(
-    path: Path, *, unit_m: float = 1.0, journal_radius_m: float | None = None, flip: bool = False
+def bore(
+    path: str | Path, *, unit_m: float = 1.0, journal_radius_m: float | None = None, flip: bool = False
 ) -> Bore:
-    """Read a bore and measure it; see :func:`statejump.bores`."""
+    """Measure a bore: roundness, lobes, clearance to a journal.
+
+    :param path: OFF, STL, PLY or OBJ file of its wall
+    :param unit_m: length of one unit of the file [m]: 0.001 for millimetres
+    :param journal_radius_m: radius of the journal in the bore [m]
+    :param flip: reverse every face, for a file whose normals point into the material
+    :raises StatejumpError: the file is no bore; the sentence gives reason and position
+    """
     mesh = load(Path(path), unit_m, flip)
     try:
         return measure(mesh, str(path), journal_radius_m)

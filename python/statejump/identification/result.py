@@ -246,12 +246,29 @@ def _end(value: float) -> str:
     return f"{value:.6g}" if np.isfinite(value) else "none"
 
 
-def identified(
+def identify(
     source: str | Path | Mapping[str, Any], *, model: str | Sequence[str] = AUTO, start: str = "unknown",
     confidence: float = 0.95, target: str | None = None, normal_force_N: float | None = None,
     journal_radius_m: float | None = None, ignored: Sequence[str] = (),
 ) -> Identification:
-    """Identify a joint; see :func:`statejump.identify`."""
+    """Identify a joint from a measured loop.
+
+    Least squares find the parameters; noise of the force may be correlated. Profile likelihood gives the intervals, and
+    BIC selects the joint. Notes list the parameters that the loop does not determine.
+
+    :param source: a table, or columns: ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``, or
+        the same in other units, row by row as measured. A force is positive where it resists a positive displacement
+    :param model: a joint, several, or ``auto``: all of :data:`statejump.identification.models.MODELS`
+    :param start: friction before the first row: ``fresh``: zero; ``cycled``: the path was traversed before;
+        ``unknown``: it is a parameter
+    :param confidence: of the intervals, 0.5 to 0.999
+    :param target: item of a case that the joint becomes: ``spring_slider`` (default), ``slider``, ``revolute``,
+        ``umbrella`` (default of rotations), ``torsion_spring``, ``iwan_joint``
+    :param normal_force_N: normal force in the test [N]; converts friction to a coefficient
+    :param journal_radius_m: radius of the journal [m]; converts a moment of friction to a coefficient
+    :param ignored: names of columns of a table that are not used
+    :raises StatejumpError: the file is no loop, or the joint is unknown
+    """
     for key, given in (("normal_force_N", normal_force_N), ("journal_radius_m", journal_radius_m)):
         if given is not None and not 0 < given < float("inf"):
             raise NotAllowed(key, given, code="not_positive", unit="N" if key.endswith("_N") else "m")
