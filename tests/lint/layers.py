@@ -43,7 +43,7 @@ LAYERS: tuple[tuple[str, tuple[str, ...]], ...] = (
     )),
     ("present", (
         "statejump.core.figures", "statejump.core.html", "statejump.report",
-        "statejump.bores.picture", "statejump.bores.summary", "statejump.campaign.plots", "statejump.control.plot",
+        "statejump.bores.picture", "statejump.campaign.plots", "statejump.control.plot",
         "statejump.identification.picture", "statejump.laws.curves",
         "statejump.kinds.spring_slider.figure",
         "statejump.kinds.statics.figure", "statejump.kinds.statics.files", "statejump.kinds.statics.summary",

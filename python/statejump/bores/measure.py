@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ from statejump import _engine
 from statejump.core import libraries
 from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.core.later import Later
-from statejump.core.tables import Shown
+from statejump.core.tables import Shown, html_table, write_csv
 
 if TYPE_CHECKING:
     import pandas
@@ -21,11 +22,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _DRAWN, _SAVED = Later("statejump.bores.picture:drawn"), Later("statejump.core.figures:save")
-_SUMMARY_LINES, _HTML, _WRITTEN = (
-    Later(f"statejump.bores.summary:{name}") for name in ("summary_lines", "html", "write"))
 ANGLES = 1024  # samples around a section
 SECTIONS = 5  # along the bore
 HARMONICS = range(2, 13)
+HEADINGS = ("quantity", "value", "unit")
 MARGIN = 0.05  # margin between the end sections and the ends, as a fraction of the length
 
 
@@ -163,17 +163,51 @@ class Bore:
 
     def summary_lines(self) -> list[Shown | str]:
         """Return what a command prints of it."""
-        return _SUMMARY_LINES(self)
+        return [Shown(f"bore {self.name}", HEADINGS, self._rows(), left=("quantity", "unit"))]
+
+    def _rows(self) -> list[tuple[str, str, str]]:
+        """Return quantity, value and unit of every measurement."""
+        mesh, middle = self.mesh, self.middle
+        axis = ", ".join(f"{round(value, 6) + 0.0:.6f}" for value in mesh.axis)
+        centre = ", ".join(f"{value:.6g}" for value in mesh.centre_m)
+        dominating = self.dominating_harmonic
+        table = [
+            ("faces", f"{mesh.face_count}", ""),
+            ("faces of the wall", f"{mesh.wall_face_count}", ""),
+            ("vertices", f"{mesh.vertex_count}", ""),
+            ("body", "closed ring" if mesh.closed else "open tube", ""),
+            ("mean radius (least squares)", f"{mesh.mean_radius_m:.9g}", "m"),
+            ("length of the wall", f"{mesh.length_m:.6g}", "m"),
+            ("axis", axis, ""),
+            ("middle of the axis", centre, "m"),
+            ("smallest curvature (concave negative)", f"{mesh.smallest_curvature_per_m:.6g}", "1/m"),
+            ("largest curvature", f"{mesh.largest_curvature_per_m:.6g}", "1/m"),
+            ("estimated error of the smooth wall", f"{mesh.reconstruction_error_m:.3g}", "m"),
+            ("cylindricity, peak to valley", f"{self.cylindricity_m:.6g}", "m"),
+            ("lobes that dominate", "none" if dominating is None else f"{dominating}", "per turn"),
+        ]
+        if mesh.removed_face_count:
+            table.insert(1, ("faces left out, which have no area", f"{mesh.removed_face_count}", ""))
+        for each in self.sections:
+            table.append((f"roundness at z = {each.z_m:.4g} m, peak to valley", f"{each.roundness_error_m:.6g}", "m"))
+        for order, amplitude, phase in zip(HARMONICS, middle.amplitude_m, middle.phase_rad):
+            table.append((f"harmonic {order}, middle section: amplitude", f"{amplitude:.6g}", "m"))
+            table.append((f"harmonic {order}, middle section: phase", f"{np.degrees(phase):.3f}", "deg"))
+        if self.journal_radius_m is not None:
+            table.append(("journal radius", f"{self.journal_radius_m:.9g}", "m"))
+            table.append(("radial clearance, least squares", f"{self.clearance_m:.6g}", "m"))
+            table.append(("radial clearance, smallest, journal on the axis", f"{self.smallest_clearance_m:.6g}", "m"))
+        return table
 
     def write(self, folder: Path) -> list[Path]:
         """Write ``bore.csv`` and the picture into a folder; return the paths."""
-        return [_WRITTEN(self, folder), *_SAVED(_DRAWN(self), folder, "roundness")]
+        return [write_csv(folder / "bore.csv", HEADINGS, self._rows()), *_SAVED(_DRAWN(self), folder, "roundness")]
 
     def __repr__(self) -> str:
         return f"Bore({self.name!r}, mean radius {self.mesh.mean_radius_m:.6g} m, {self.mesh.face_count:,} faces)"
 
     def _repr_html_(self) -> str:
-        return _HTML(self)
+        return f"<h4>bore {escape(self.name)}</h4>{html_table(HEADINGS, self._rows())}"
 
 
 # Remedy for each kind of failure: the end of the sentence, and the setting that it names.

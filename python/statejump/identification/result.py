@@ -14,7 +14,7 @@ import numpy as np
 from statejump.core import libraries
 from statejump.core.errors import NotAllowed, Range, StatejumpError
 from statejump.core.later import Later
-from statejump.core.tables import Shown, write_columns, write_csv, write_text
+from statejump.core.tables import Shown, html_table, write_columns, write_csv, write_text
 from statejump.core.units import plain
 from statejump.identification import case_section
 from statejump.identification.fit import Fit, Fits, Interval, intervals
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _DRAWN, _SAVED = Later("statejump.identification.picture:drawn"), Later("statejump.core.figures:save")
-_TABLE = Later("statejump.core.html:table")
 AUTO = "auto"
 CONFIDENCE = Range(0.5, 0.999)
 # A difference of BIC below this is "not worth more than a bare mention" (Kass and Raftery, JASA 90, 1995).
@@ -238,8 +237,8 @@ class Identification:
 
     def _repr_html_(self) -> str:
         head, *parts = (part for part in self.summary_lines() if isinstance(part, Shown))
-        return "".join(f"<h4>{part.title}</h4>{_TABLE(part.header, part.rows)}" for part in (*parts, head)) + "".join(
-            f"<p>{note}</p>" for note in self.notes)
+        tables = [f"<h4>{part.title}</h4>{html_table(part.header, part.rows)}" for part in (*parts, head)]
+        return "".join(tables) + "".join(f"<p>{note}</p>" for note in self.notes)
 
 
 def _end(value: float) -> str:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from html import escape
 from typing import Any
 
-from statejump.core.html import table
-from statejump.core.tables import Shown
+from statejump.core.tables import Shown, html_table
 from statejump.core.units import text
 from statejump.kinds.statics.case import StaticsCase
 from statejump.kinds.statics.solve import Statics
@@ -77,4 +76,4 @@ def html(statics: Statics) -> str:
     """Return the table for a notebook."""
     said = "".join(f"<p>{escape(note)}</p>" for note in notes(statics))
     title = f"{statics.case.title}, friction coefficient {statics.friction_coefficient:g}"
-    return f"<h4>{escape(title)}</h4>{table(HEADINGS, rows(statics))}{said}"
+    return f"<h4>{escape(title)}</h4>{html_table(HEADINGS, rows(statics))}{said}"
