@@ -46,7 +46,7 @@ LAYERS: tuple[tuple[str, tuple[str, ...]], ...] = (
         "statejump.bores.picture", "statejump.campaign.plots", "statejump.control.plot",
         "statejump.identification.picture", "statejump.laws.curves",
         "statejump.kinds.spring_slider.figure",
-        "statejump.kinds.statics.figure", "statejump.kinds.statics.files", "statejump.kinds.statics.summary",
+        "statejump.kinds.statics.figure", "statejump.kinds.statics.files",
         "statejump.kinds.truss.answers.figure", "statejump.kinds.truss.answers.vtk",
         "statejump.kinds.truss.answers.write", "statejump.kinds.truss.creak",
         "statejump.kinds.truss.draw_planar", "statejump.kinds.truss.draw_spatial", "statejump.kinds.truss.figure",
