@@ -64,7 +64,7 @@ class SpringSlider(Kind[SpringSliderCase]):
     scene = Later("statejump.kinds.spring_slider.result:scene")
     outcomes = Later("statejump.kinds.spring_slider.compare:outcomes")
     statics = Later("statejump.kinds.spring_slider.statics:statics")
-    control = Later("statejump.kinds.spring_slider.control:answer")
+    control = Later("statejump.kinds.spring_slider.control:control")
     sheet = Later("statejump.kinds.spring_slider.figure:sheet")
     summary_lines = Later("statejump.kinds.spring_slider.summary:summary_lines")
     describe = Later("statejump.kinds.spring_slider.summary:describe")
