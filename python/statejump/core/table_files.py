@@ -348,6 +348,19 @@ def _encoding(path: Path) -> str:
         return "cp1252" if is_1252 and not is_utf8 else "utf-8-sig"
 
 
+def check_table(path: Path, key: str, missing: str) -> bool:
+    """Return whether a table is text, not HDF5.
+
+    :raises StatejumpError: its name ends with another suffix, or the file does not exist: code ``missing``
+    """
+    known = (*SUFFIXES, ".h5", ".hdf5")
+    if path.suffix.lower() not in known:
+        raise NotAllowed(key, path.name, code="suffix_unknown", suffixes=", ".join(known))
+    if not is_file(path):
+        raise Unreadable(code=missing, file=path)
+    return path.suffix.lower() in SUFFIXES
+
+
 @contextmanager
 def open_table(path: Path, largest_bytes: int | None = None, beside: str = "") -> Iterator[Table]:
     """Open a table.
