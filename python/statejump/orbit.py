@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from statejump.core.column_units import matched
-from statejump.core.errors import NotAllowed, Range, StatejumpError, Unreadable
+from statejump.core.errors import NotAllowed, Range, StatejumpError, Unreadable, located
 from statejump.core.reading import is_file
 from statejump.core.table_files import numbers_of, open_table
 from statejump.core.tables import write_columns
@@ -222,10 +222,8 @@ def read_members(path: str | Path) -> list[Member]:
     if not is_file(path):
         raise Unreadable(code="members_file_not_found", file=path)
     with open_table(path) as table:
-        try:
+        with located(file=path):
             columns = matched(table.header, COLUMNS)
-        except StatejumpError as refused:
-            raise refused.located(file=path) from None
         missing = [key for key in COLUMNS if key not in {column.key for column in columns}]
         if missing:
             raise Unreadable(code="missing_column", file=path, column=missing[0], needed=", ".join(COLUMNS))
@@ -243,7 +241,5 @@ def _member(path: Path, line: int, row: dict[str, Any]) -> Member:
     name = str(row["name"]).strip()
     if not name or not name.isprintable():
         raise Unreadable(code="member_name", file=path, line=line)
-    try:
+    with located(file=path):
         return Member(name, **{key: row[key] for key in SECTION})
-    except NotAllowed as refused:
-        raise refused.located(file=path) from None

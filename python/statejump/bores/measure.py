@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline
 
 from statejump import _engine
 from statejump.core import libraries
-from statejump.core.errors import NotAllowed, StatejumpError
+from statejump.core.errors import NotAllowed, StatejumpError, located
 from statejump.core.later import Later
 from statejump.core.tables import Shown, html_table, write_csv
 
@@ -285,7 +285,5 @@ def bore(
     :raises StatejumpError: the file is no bore; the sentence gives reason and position
     """
     mesh = load(Path(path), unit_m, flip)
-    try:
+    with located(file=path):
         return measure(mesh, str(path), journal_radius_m)
-    except StatejumpError as failure:
-        raise failure.located(file=path) from None

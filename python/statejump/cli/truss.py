@@ -19,7 +19,7 @@ from statejump.cli.truss_import import TABLES, import_command, new_files
 from statejump.cli.truss_surface import surface_command
 from statejump.control.capabilities import Creaking
 from statejump.core.case import Case
-from statejump.core.errors import NotWritten, StatejumpError
+from statejump.core.errors import NotWritten, located
 from statejump.core.results_folder import Results
 from statejump.core.thermal import SHAPES
 from statejump.core.units import split_unit
@@ -81,10 +81,8 @@ def _generator_command(kind: str, function: Callable[..., Case]) -> click.Comman
         beside = new_files(output, tables, force)
         if not os.path.isdir(output.parent):
             raise NotWritten(code="output_folder_missing", file=output, folder=output.parent)
-        try:
+        with located(file=output):
             case = function(n, name=folder_name(output.stem), **values)
-        except StatejumpError as refused:
-            raise refused.located(file=output) from None
         given = [
             _shown(key) + (f" {value}" if not isinstance(value, bool) else "") if value is not False
             else "--no-" + _shown(key)[2:]

@@ -19,7 +19,7 @@ import numpy as np
 
 from statejump.core import libraries
 from statejump.core.column_units import Column, matched
-from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey, Unreadable
+from statejump.core.errors import NotAllowed, UnknownKey, Unreadable, located
 from statejump.core.hdf5 import foreign
 from statejump.core.output import write_atomically
 from statejump.core.table_files import Place, Table, check_table, open_table, quoted
@@ -73,10 +73,8 @@ def read_items(path: Path, key: str, model: type[Section], words: Numbering) -> 
     :raises StatejumpError: one sentence with the file, and line or column
     """
     read = _text if check_table(path, key, "table_file_not_found") else _hdf5
-    try:
+    with located(file=path):
         return ItemTable(**read(path, model, words))
-    except StatejumpError as failure:
-        raise failure.located(file=path) from None
 
 
 def _keys(names: Sequence[str], model: type[Section]) -> list[tuple[Column, Rule]]:

@@ -22,7 +22,7 @@ from typing import Any, TextIO
 import numpy as np
 
 from statejump.core.column_units import NO_UNIT, Column, accepted, matched
-from statejump.core.errors import NotAllowed, StatejumpError, Unreadable, printable
+from statejump.core.errors import NotAllowed, Unreadable, located, printable
 from statejump.core.iso_times import is_iso, seconds
 from statejump.core.reading import check_size, finite_number, is_file, open_csv
 from statejump.core.units import split_unit
@@ -425,12 +425,10 @@ def read_known(
     """
     with open_table(path) as table:
         kept = [place for place, name in enumerate(table.header) if name not in ignored]
-        try:
+        with located(file=path):
             for name in sorted(set(ignored) - set(table.header)):
                 raise NotAllowed("ignored", name, code="unknown_ignored_column")
             columns = matched([table.header[place] for place in kept], known, words)
-        except StatejumpError as failure:
-            raise failure.located(file=path) from None
         lines, cells = _all(table)
         return {column.key: np.array(part) if column.key in texts else numbers_of(table, column, part, lines)
                 for column, part in zip(columns, (cells[place] for place in kept))}

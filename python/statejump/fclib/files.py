@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from statejump.core import libraries
-from statejump.core.errors import StatejumpError, Unreadable
+from statejump.core.errors import Unreadable, located
 from statejump.core.hdf5 import foreign, made
 from statejump.core.reading import is_file
 from statejump.fclib.problem import Problem, Solution, Stored
@@ -40,11 +40,8 @@ def read(path: str | Path) -> Problem:
     path = Path(path)
     if not is_file(path):
         raise Unreadable(code="file_not_found", file=path)
-    try:
-        with foreign(path) as found:
-            return _problem(found["/"])
-    except StatejumpError as error:
-        raise error.located(file=path) from None
+    with located(file=path), foreign(path) as found:
+        return _problem(found["/"])
 
 
 def _problem(file: h5py.File) -> Problem:

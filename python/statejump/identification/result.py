@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from statejump.core import libraries
-from statejump.core.errors import NotAllowed, Range, StatejumpError
+from statejump.core.errors import NotAllowed, Range, located
 from statejump.core.later import Later
 from statejump.core.tables import Shown, html_table, write_columns, write_csv, write_text
 from statejump.core.units import plain
@@ -283,7 +283,7 @@ def identify(
     loop = read_loop(source, start, ignored)
     chosen_target = target or ("umbrella" if loop.angular else "spring_slider")
     case_section.check(chosen_target, loop.angular)
-    try:
+    with located(file=source if isinstance(source, (str, Path)) else None):
         fits = Fits(loop)
         chosen = fits.ranked(names)[0].model.name
         _, found = intervals(fits, chosen, confidence)
@@ -293,8 +293,6 @@ def identify(
             if larger is not None:
                 limits[name] = (larger, intervals(fits, larger, confidence, [name])[1].of[name])
         candidates = fits.ranked(names)
-    except StatejumpError as failure:
-        raise failure.located(file=source if isinstance(source, (str, Path)) else None) from None
     best = next(each for each in candidates if each.model.name == chosen)
     return Identification(loop, tuple(candidates), best, found.of, found.because, limits, confidence, chosen_target,
                           normal_force_N, journal_radius_m)
