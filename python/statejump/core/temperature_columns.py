@@ -12,11 +12,11 @@ import numpy as np
 
 from statejump.core import libraries
 from statejump.core.column_units import Column, conversion, matched, splits
-from statejump.core.conversion import Conversion
 from statejump.core.errors import StatejumpError, UnknownKey, Unreadable
 from statejump.core.hdf5 import foreign
 from statejump.core.table_files import Table, check_table, numbers_of, open_table, quoted
 from statejump.core.thermal import Numbers
+from statejump.core.units import Conversion
 from statejump.schema.toml import LARGEST_BYTES
 
 ZERO_CELSIUS_K = 273.15
