@@ -22,21 +22,16 @@ from statejump import _paths
 from statejump._version import __version__
 
 if TYPE_CHECKING:
-    from statejump.api import (
-        bore as bore,
-        compare as compare,
-        identify as identify,
-        load as load,
-        montecarlo as montecarlo,
-        read as read,
-        statics as statics,
-        sweep as sweep,
-    )
+    from statejump.api import compare as compare, load as load, statics as statics
+    from statejump.bores.measure import bore as bore
+    from statejump.campaign.calls import montecarlo as montecarlo, sweep as sweep
     from statejump.core.case import Case as Case
     from statejump.core.comparison import Comparison as Comparison, Quantity as Quantity
     from statejump.core.errors import StatejumpError as StatejumpError
     from statejump.core.run import Column as Column, Event as Event, Run as Run
+    from statejump.identification.result import identify as identify
     from statejump.kinds.protocol import Kind as Kind
+    from statejump.results.read import read as read
 
 if sys.version_info[:2] != _paths.PYTHON_VERSION:
     raise ImportError(
@@ -45,8 +40,11 @@ if sys.version_info[:2] != _paths.PYTHON_VERSION:
 
 # Module of each public name.
 _PLACES = {
-    **dict.fromkeys(("bore", "compare", "identify", "load", "montecarlo", "read", "statics", "sweep"),
-                    "statejump.api"),
+    **dict.fromkeys(("compare", "load", "statics"), "statejump.api"),
+    "bore": "statejump.bores.measure",
+    **dict.fromkeys(("montecarlo", "sweep"), "statejump.campaign.calls"),
+    "identify": "statejump.identification.result",
+    "read": "statejump.results.read",
     "Case": "statejump.core.case",
     **dict.fromkeys(("Comparison", "Quantity"), "statejump.core.comparison"),
     "StatejumpError": "statejump.core.errors",

@@ -18,16 +18,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from statejump.core.column_units import matched
-from statejump.core.errors import NotAllowed, Range, StatejumpError, Unreadable
+from statejump.core.errors import NotAllowed, Range, StatejumpError, Unreadable, located
 from statejump.core.reading import is_file
 from statejump.core.table_files import numbers_of, open_table
 from statejump.core.tables import write_columns
+from statejump.core.thermal import Numbers
 from statejump.schema.rules import NUMBER, Rule
-
-Numbers = NDArray[np.float64]
 
 STEFAN_BOLTZMANN_W_PER_M2_K4 = 5.670374419e-8  # CODATA 2018, exact
 SOLAR_CONSTANT_W_PER_M2 = 1361.0  # Kopp and Lean, Geophys. Res. Lett. 38, L01706, 2011
@@ -136,7 +134,7 @@ def temperatures(
     return Temperatures(tuple(names), whole, np.concatenate([found[:-1]] * orbits + [found[-1:]]))
 
 
-def _needed(time_s: Numbers, values: Numbers, within: float, corners: NDArray[np.int64]) -> list[int]:
+def _needed(time_s: Numbers, values: Numbers, within: float, corners: np.ndarray) -> list[int]:
     """Return the rows (n) of values (n, m) that are needed. From each row it selects the farthest one for which linear
     interpolation is close enough to all rows between. Corners are kept."""
     kept, fixed = [0], set(corners.tolist())
@@ -224,10 +222,8 @@ def read_members(path: str | Path) -> list[Member]:
     if not is_file(path):
         raise Unreadable(code="members_file_not_found", file=path)
     with open_table(path) as table:
-        try:
+        with located(file=path):
             columns = matched(table.header, COLUMNS)
-        except StatejumpError as refused:
-            raise refused.located(file=path) from None
         missing = [key for key in COLUMNS if key not in {column.key for column in columns}]
         if missing:
             raise Unreadable(code="missing_column", file=path, column=missing[0], needed=", ".join(COLUMNS))
@@ -245,7 +241,5 @@ def _member(path: Path, line: int, row: dict[str, Any]) -> Member:
     name = str(row["name"]).strip()
     if not name or not name.isprintable():
         raise Unreadable(code="member_name", file=path, line=line)
-    try:
+    with located(file=path):
         return Member(name, **{key: row[key] for key in SECTION})
-    except NotAllowed as refused:
-        raise refused.located(file=path) from None

@@ -13,7 +13,7 @@ from statejump.kinds.umbrella import Umbrella
 class ControlledUmbrella(Umbrella):
     """The kind ``umbrella`` that answers ``statejump control``."""
 
-    control = Later("studies.rib_control.study:answer")
+    control = Later("studies.rib_control.study:control")
 
 
 KIND = ControlledUmbrella()

@@ -7,8 +7,6 @@ anything: :mod:`.ensemble`.
 """
 from __future__ import annotations
 
-from typing import Any
-
 from statejump.control.study import RUNS, DesignChoices, Study, check_wanted, refuse_choices, refuse_runs, with_notes
 from statejump.core.errors import NotAllowed
 from statejump.core.progress import OnProgress
@@ -16,6 +14,7 @@ from statejump.kinds.umbrella.case import UmbrellaCase
 from studies.rib_control import ensemble, loaded
 
 
+@with_notes
 def control(
     case: UmbrellaCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
     on_progress: OnProgress = lambda share: None, choices: DesignChoices = DesignChoices(),
@@ -35,8 +34,3 @@ def control(
     if runs is not None and runs < 2:
         raise NotAllowed("--runs", runs, code="below_minimum", least=2)
     return ensemble.study(case, jump_below, runs or RUNS, with_dem, on_progress)
-
-
-def answer(case: UmbrellaCase, **settings: Any) -> Study:
-    """Return what makes the state jump smaller, with notes on the temperature program."""
-    return with_notes(control, case, **settings)

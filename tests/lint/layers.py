@@ -29,7 +29,7 @@ LAYERS: tuple[tuple[str, tuple[str, ...]], ...] = (
         "statejump._version", "statejump.core", "statejump.schema",
         "statejump.results.scene", "statejump.results.events",  # vocabulary of kinds: what to draw, what happened
     )),
-    ("simulate", ("statejump.core.yade_process", "statejump.core.yade_input")),
+    ("simulate", ("statejump.core.yade_process",)),
     ("kinds", (
         "statejump.kinds", "statejump.laws", "statejump.fclib", "statejump.surface",
         "statejump.kinds.truss.answers.jumps", "statejump.kinds.truss.answers.reflector",  # outcomes need them
@@ -43,14 +43,14 @@ LAYERS: tuple[tuple[str, tuple[str, ...]], ...] = (
     )),
     ("present", (
         "statejump.core.figures", "statejump.core.html", "statejump.report",
-        "statejump.bores.picture", "statejump.bores.summary", "statejump.campaign.plots", "statejump.control.plot",
+        "statejump.bores.picture", "statejump.campaign.plots", "statejump.control.plot",
         "statejump.identification.picture", "statejump.laws.curves",
-        "statejump.kinds.spring_slider.figure", "statejump.kinds.spring_slider.statics_figure",
-        "statejump.kinds.statics.figure", "statejump.kinds.statics.files", "statejump.kinds.statics.summary",
+        "statejump.kinds.spring_slider.figure",
+        "statejump.kinds.statics.figure", "statejump.kinds.statics.files",
         "statejump.kinds.truss.answers.figure", "statejump.kinds.truss.answers.vtk",
-        "statejump.kinds.truss.answers.write", "statejump.kinds.truss.creak", "statejump.kinds.truss.draw",
+        "statejump.kinds.truss.answers.write", "statejump.kinds.truss.creak",
         "statejump.kinds.truss.draw_planar", "statejump.kinds.truss.draw_spatial", "statejump.kinds.truss.figure",
-        "statejump.kinds.truss.page", "statejump.kinds.umbrella.figure", "statejump.kinds.umbrella.laws",
+        "statejump.kinds.truss.page", "statejump.kinds.umbrella.figure",
     )),
     ("api", ("statejump", "statejump.api", "statejump.truss")),
     ("cli", ("statejump.cli",)),

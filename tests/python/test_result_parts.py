@@ -16,7 +16,7 @@ import pytest
 from conftest import REPOSITORY, sealed
 from failures import failure
 
-from statejump.core.thin_loops import straight_part
+from statejump.core.charts import straight_part
 
 MADE = {  # file: the command that makes it
     "table1/reduced.h5": ("reduced", "table1.toml"),

@@ -31,7 +31,7 @@ def free(cases: Path):
 
 
 def study_of(case: Case, jump_below: float | None = None, runs: int | None = None) -> Study:
-    return rib_study.answer(case, jump_below=jump_below, runs=runs)
+    return rib_study.control(case, jump_below=jump_below, runs=runs)
 
 
 # ---------------------------------------------------------------- loaded umbrella
@@ -202,7 +202,7 @@ def test_bad_settings_get_one_sentence(cases: Path, case, settings, wanted) -> N
 
 def test_a_node_to_choose_is_refused(loaded) -> None:
     with failing("one_jump_only", key="--node", value="A"):
-        rib_study.answer(loaded, choices=DesignChoices("A"))
+        rib_study.control(loaded, choices=DesignChoices("A"))
 
 
 def test_the_command_takes_the_rib_as_a_kind_of_ones_own(statejump_process, cases: Path, tmp_path: Path) -> None:

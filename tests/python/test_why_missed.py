@@ -12,7 +12,7 @@ import statejump as sj
 from statejump import _engine
 from statejump.core.units import text
 from statejump.core.why_missed import heated_too_fast, kink, rounded_up
-from statejump.kinds.spring_slider.why_missed import natural_period_s
+from statejump.kinds.spring_slider.compare import natural_period_s
 from statejump.kinds.truss.joints.slider import SLIDER
 from statejump.kinds.truss.solve import solve
 from statejump.kinds.truss.why_missed import slowest_natural_period_s

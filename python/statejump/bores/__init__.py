@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measured bores, given as triangle meshes. The function ``statejump.bore`` is in :mod:`statejump.api`."""
+"""Measured bores, given as triangle meshes."""
 from __future__ import annotations
 
-from statejump.bores.measure import Bore, measured
+from statejump.bores.measure import Bore, bore
 
-__all__ = ["Bore", "measured"]
+__all__ = ["Bore", "bore"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,9 +12,9 @@ from scipy.interpolate import CubicSpline
 
 from statejump import _engine
 from statejump.core import libraries
-from statejump.core.errors import NotAllowed, StatejumpError
+from statejump.core.errors import NotAllowed, StatejumpError, located
 from statejump.core.later import Later
-from statejump.core.tables import Shown
+from statejump.core.tables import Shown, html_table, write_csv
 
 if TYPE_CHECKING:
     import pandas
@@ -21,11 +22,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _DRAWN, _SAVED = Later("statejump.bores.picture:drawn"), Later("statejump.core.figures:save")
-_SUMMARY_LINES, _HTML, _WRITTEN = (
-    Later(f"statejump.bores.summary:{name}") for name in ("summary_lines", "html", "write"))
 ANGLES = 1024  # samples around a section
 SECTIONS = 5  # along the bore
 HARMONICS = range(2, 13)
+HEADINGS = ("quantity", "value", "unit")
 MARGIN = 0.05  # margin between the end sections and the ends, as a fraction of the length
 
 
@@ -144,8 +144,6 @@ class Bore:
         """Return one row per section, from one end to the other, with units in the column names: position along the
         axis from the middle, radius and centre of the least-squares circle, roundness error, and for every harmonic its
         amplitude and the angle of its largest radius."""
-        pandas = libraries.pandas()
-
         rows = []
         for each in self.sections:
             row = {"z_m": each.z_m, "mean_radius_m": each.mean_radius_m, "offset_x_m": each.offset_m[0],
@@ -153,7 +151,7 @@ class Bore:
             for order, amplitude, phase in zip(HARMONICS, each.amplitude_m, each.phase_rad):
                 row |= {f"harmonic_{order}_amplitude_m": float(amplitude), f"harmonic_{order}_phase_rad": float(phase)}
             rows.append(row)
-        return pandas.DataFrame(rows)
+        return libraries.frame(rows)
 
     def plot(self, axes: tuple[Axes, Axes] | None = None) -> Figure:
         """Draw sections with magnified deviations, and the harmonics of the middle section.
@@ -165,17 +163,51 @@ class Bore:
 
     def summary_lines(self) -> list[Shown | str]:
         """Return what a command prints of it."""
-        return _SUMMARY_LINES(self)
+        return [Shown(f"bore {self.name}", HEADINGS, self._rows(), left=("quantity", "unit"))]
+
+    def _rows(self) -> list[tuple[str, str, str]]:
+        """Return quantity, value and unit of every measurement."""
+        mesh, middle = self.mesh, self.middle
+        axis = ", ".join(f"{round(value, 6) + 0.0:.6f}" for value in mesh.axis)
+        centre = ", ".join(f"{value:.6g}" for value in mesh.centre_m)
+        dominating = self.dominating_harmonic
+        table = [
+            ("faces", f"{mesh.face_count}", ""),
+            ("faces of the wall", f"{mesh.wall_face_count}", ""),
+            ("vertices", f"{mesh.vertex_count}", ""),
+            ("body", "closed ring" if mesh.closed else "open tube", ""),
+            ("mean radius (least squares)", f"{mesh.mean_radius_m:.9g}", "m"),
+            ("length of the wall", f"{mesh.length_m:.6g}", "m"),
+            ("axis", axis, ""),
+            ("middle of the axis", centre, "m"),
+            ("smallest curvature (concave negative)", f"{mesh.smallest_curvature_per_m:.6g}", "1/m"),
+            ("largest curvature", f"{mesh.largest_curvature_per_m:.6g}", "1/m"),
+            ("estimated error of the smooth wall", f"{mesh.reconstruction_error_m:.3g}", "m"),
+            ("cylindricity, peak to valley", f"{self.cylindricity_m:.6g}", "m"),
+            ("lobes that dominate", "none" if dominating is None else f"{dominating}", "per turn"),
+        ]
+        if mesh.removed_face_count:
+            table.insert(1, ("faces left out, which have no area", f"{mesh.removed_face_count}", ""))
+        for each in self.sections:
+            table.append((f"roundness at z = {each.z_m:.4g} m, peak to valley", f"{each.roundness_error_m:.6g}", "m"))
+        for order, amplitude, phase in zip(HARMONICS, middle.amplitude_m, middle.phase_rad):
+            table.append((f"harmonic {order}, middle section: amplitude", f"{amplitude:.6g}", "m"))
+            table.append((f"harmonic {order}, middle section: phase", f"{np.degrees(phase):.3f}", "deg"))
+        if self.journal_radius_m is not None:
+            table.append(("journal radius", f"{self.journal_radius_m:.9g}", "m"))
+            table.append(("radial clearance, least squares", f"{self.clearance_m:.6g}", "m"))
+            table.append(("radial clearance, smallest, journal on the axis", f"{self.smallest_clearance_m:.6g}", "m"))
+        return table
 
     def write(self, folder: Path) -> list[Path]:
         """Write ``bore.csv`` and the picture into a folder; return the paths."""
-        return [_WRITTEN(self, folder), *_SAVED(_DRAWN(self), folder, "roundness")]
+        return [write_csv(folder / "bore.csv", HEADINGS, self._rows()), *_SAVED(_DRAWN(self), folder, "roundness")]
 
     def __repr__(self) -> str:
         return f"Bore({self.name!r}, mean radius {self.mesh.mean_radius_m:.6g} m, {self.mesh.face_count:,} faces)"
 
     def _repr_html_(self) -> str:
-        return _HTML(self)
+        return f"<h4>bore {escape(self.name)}</h4>{html_table(HEADINGS, self._rows())}"
 
 
 # Remedy for each kind of failure: the end of the sentence, and the setting that it names.
@@ -244,12 +276,17 @@ def measure(mesh: _engine.BoreMesh, name: str, journal_radius_m: float | None = 
     return Bore(name, mesh, sections, journal_radius_m)
 
 
-def measured(
-    path: Path, *, unit_m: float = 1.0, journal_radius_m: float | None = None, flip: bool = False
+def bore(
+    path: str | Path, *, unit_m: float = 1.0, journal_radius_m: float | None = None, flip: bool = False
 ) -> Bore:
-    """Read a bore and measure it; see :func:`statejump.bores`."""
+    """Measure a bore: roundness, lobes, clearance to a journal.
+
+    :param path: OFF, STL, PLY or OBJ file of its wall
+    :param unit_m: length of one unit of the file [m]: 0.001 for millimetres
+    :param journal_radius_m: radius of the journal in the bore [m]
+    :param flip: reverse every face, for a file whose normals point into the material
+    :raises StatejumpError: the file is no bore; the sentence gives reason and position
+    """
     mesh = load(Path(path), unit_m, flip)
-    try:
+    with located(file=path):
         return measure(mesh, str(path), journal_radius_m)
-    except StatejumpError as failure:
-        raise failure.located(file=path) from None

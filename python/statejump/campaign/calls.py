@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Campaigns from Python, see :func:`statejump.sweep` and :func:`statejump.montecarlo`."""
+"""Campaigns from Python: ``statejump.sweep`` and ``statejump.montecarlo``."""
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -20,7 +20,17 @@ def sweep(
     case: Case, values: Mapping[str, float | Sequence[float] | Mapping[str, Any]], *, model: str = "reduced",
     workers: int | None = None, progress: Progress = False, outputs: Sequence[str] = (),
 ) -> Campaign:
-    """Run a case on a grid of its parameters; see :func:`statejump.sweep`."""
+    """Run a case on a grid of its parameters.
+
+    :param values: values by key. Keys are ``section.key``, ``section.item.key`` of one item of a list,
+        ``section.*.key`` or ``section.joint*.key`` of all matching items. A value is a list, or the fields of a
+        ``[[vary]]`` table: ``{"start": 0.1, "stop": 1, "count": 10, "spacing": "log"}``
+    :param model: ``reduced`` or ``dem``
+    :param workers: number of processes; None: one for each core, or no separate process if the grid is small
+    :param outputs: further outputs to record of every run, for example ``jump:displacement_m[P].x``: end, jump, max,
+        min or range of any column of a run at one item; see :mod:`statejump.campaign.outputs`
+    :raises StatejumpError: a key is unknown, or the kind of case has no outcomes
+    """
     tables: dict[str, dict[str, Any]] = {
         key: {"key": key, **plain(wanted)} if isinstance(wanted, Mapping) else {"key": key, "values": _values(wanted)}
         for key, wanted in values.items()
@@ -32,7 +42,17 @@ def montecarlo(
     case: Case, distributions: Mapping[str, Mapping[str, Any]], *, samples: int = 1000, seed: int = 1,
     model: str = "reduced", workers: int | None = None, progress: Progress = False, outputs: Sequence[str] = (),
 ) -> Campaign:
-    """Run a case whose parameters are random; see :func:`statejump.montecarlo`."""
+    """Run a case with random parameters.
+
+    :param distributions: for each key the fields of a ``[[vary]]`` table, for example ``{"distribution": "normal",
+        "relative": 0.1}``
+    :param samples: number of samples
+    :param seed: of the random numbers: the same seed gives the same samples
+    :param model: ``reduced`` or ``dem``
+    :param workers: as for :func:`sweep`
+    :param outputs: as for :func:`sweep`
+    :raises StatejumpError: a key or distribution is unknown
+    """
     for key, wanted in distributions.items():
         if not isinstance(wanted, Mapping):
             raise NotAllowed(f"distributions[{key!r}]", wanted, code="distribution_not_dict")

@@ -9,13 +9,13 @@ from typing import Any
 
 import tomli_w
 
-from statejump.campaign.checked_outputs import checked
-from statejump.campaign.outputs import PATTERN
+from statejump.campaign.outputs import PATTERN, parts, values
 from statejump.campaign.plan import MONTECARLO, MOST_SAMPLES, SWEEP, Plan, plan_of
 from statejump.campaign.sampling import Values, Varied, number_of_points
 from statejump.campaign.vary import MonteCarloVary, SweepVary, check_apart, varied
+from statejump.campaign.work import sampled
 from statejump.core.case import Case
-from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, UnknownKey
+from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, UnknownKey, located
 from statejump.core.run import MODELS
 from statejump.kinds import of, require
 from statejump.kinds.loading import load_case
@@ -80,10 +80,8 @@ def load_campaign(path: Path, command: str) -> Plan:
     :raises StatejumpError: one failure: file, key, value, what is allowed
     """
     text_read, data = read_toml(path, "campaign")
-    try:
+    with located(file=path):
         return _campaign(path, text_read, data, command)
-    except StatejumpError as failure:
-        raise failure.located(file=path) from None
 
 
 def _campaign(path: Path, text_read: str, data: Mapping[str, Any], command: str) -> Plan:
@@ -152,13 +150,11 @@ def vary_tables(path: Path) -> list[tuple[str, Mapping[str, Any]]]:
     :raises StatejumpError: the file does not exist, has other sections, or has no such table
     """
     _, data = read_toml(path, "distributions")
-    try:
+    with located(file=path):
         _check_sections(data, ("vary",))
         tables_given = data.get("vary")
         if not isinstance(tables_given, list) or not all(isinstance(table, Mapping) for table in tables_given):
             raise MissingKey("vary", code="campaign_without_vary", section="[[vary]]")
-    except StatejumpError as failure:
-        raise failure.located(file=path) from None
     return [(f"{path.name}: vary[{number}]", table) for number, table in enumerate(tables_given, start=1)]
 
 
@@ -217,3 +213,18 @@ def points_of(vary: tuple[Varied, ...]) -> int:
     if points > MOST_SAMPLES:
         raise NotAllowed("[[vary]]", code="grid_too_large", points=points, most_samples=MOST_SAMPLES)
     return points
+
+
+def checked(given: Sequence[str], case: Case) -> tuple[str, ...]:
+    """Return the outputs, after computing them once for a run of the reduced model of the case itself.
+
+    :raises NotAllowed: one of them is invalid
+    """
+    names = tuple(given)
+    for place, name in enumerate(names):
+        parts(name)
+        if name in names[:place]:
+            raise NotAllowed("outputs", name, code="duplicate")
+    if names:
+        values(names, sampled(case, "reduced", names))
+    return names

@@ -9,10 +9,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TypeVar
 
-from statejump.campaign.batches import Batches
 from statejump.campaign.cluster import open_client, restarts_workers
 from statejump.campaign.plan import Recipe
-from statejump.campaign.work import Batch, Sample, batch_of, run_samples
+from statejump.campaign.work import Batch, Batches, Sample, batch_of, run_samples
 from statejump.core.errors import StatejumpError
 
 from distributed import Client, Future, KilledWorker, wait  # noqa: E402, after cluster set it up

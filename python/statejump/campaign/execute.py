@@ -7,10 +7,9 @@ import os
 import time
 from dataclasses import dataclass, field
 
-from statejump.campaign.batches import Batches
 from statejump.campaign.journal import Kept
 from statejump.campaign.plan import Plan
-from statejump.campaign.work import Batch, run_samples
+from statejump.campaign.work import Batch, Batches, run_samples
 from statejump.core.progress import OnProgress
 
 # Time for which samples are run in this process before workers are started: about the start time of workers.

@@ -17,7 +17,7 @@ from statejump.campaign.tables import Table, make_table, write_csv, write_hdf5
 from statejump.core.errors import Interrupted
 from statejump.core.later import Later
 from statejump.core.progress import OnProgress
-from statejump.core.tables import Shown, write_json
+from statejump.core.tables import Shown, html_table, write_json
 from statejump.core.yade_process import find_yade
 
 if TYPE_CHECKING:
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from statejump.core.case import Case
 
 _FIGURES, _SAVED = Later("statejump.campaign.plots:figures"), Later("statejump.core.figures:save")
-_TABLE = Later("statejump.core.html:table")
 
 
 @dataclass(frozen=True)
@@ -141,7 +140,7 @@ class Campaign:
             f"<p>failed: {entry['samples']:,} sample(s): {escape(entry['sentence'])}</p>" for entry in found["failures"]
         )
         title = f"{self.plan.title}: {len(self):,} samples"
-        return f"<h4>{escape(title)}</h4>{_TABLE(('outcome', *COLUMNS.values()), rows)}{failures}"
+        return f"<h4>{escape(title)}</h4>{html_table(('outcome', *COLUMNS.values()), rows)}{failures}"
 
 
 def run(plan: Plan, workers: int | None, on_progress: OnProgress) -> Campaign:

@@ -44,10 +44,8 @@ class Table:
 
     def frame(self) -> pandas.DataFrame:
         """Return a row per sample: varied keys, outcomes, error."""
-        pandas = libraries.pandas()
-
         columns: dict[str, np.ndarray | list[str]] = {**self.parameters, **self.outcomes, "error": self.error}
-        frame = pandas.DataFrame(columns)
+        frame = libraries.frame(columns)
         frame.index.name = "sample"
         return frame
 

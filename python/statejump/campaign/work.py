@@ -19,6 +19,9 @@ from statejump.kinds import KINDS, has, of, register, require
 from statejump.kinds.loading import parse_case
 from statejump.kinds.protocol import DemModel, QuickModel, ReducedModel
 
+BATCH_S = 0.5  # duration of a task [s]: long against the millisecond that Dask needs for it
+MOST_IN_BATCH = 20_000
+
 
 @dataclass(frozen=True)
 class Sample:
@@ -105,3 +108,35 @@ def run_samples(recipe: Recipe, indices: Sequence[int]) -> tuple[float, Batch]:
             register(place)
     done = batch_of([run_sample(recipe, index) for index in indices], len(recipe.outcomes))
     return time.perf_counter() - started, done
+
+
+class Batches:
+    """Distributes the missing samples in batches of about BATCH_S, and learns their size.
+
+    :param missing: numbers of the samples
+    :param model: samples of the DEM are run one by one
+    :param queued: tasks per worker
+    """
+
+    def __init__(self, missing: list[int], model: str, queued: int) -> None:
+        self.missing, self.given, self.size, self.queued = missing, 0, 1, queued
+        self.one_by_one = model == "dem"
+
+    @property
+    def left(self) -> int:
+        """Samples that are not handed out."""
+        return len(self.missing) - self.given
+
+    def next(self, workers: int) -> list[int]:
+        """Return the next batch; empty at the end."""
+        # The last batches are smaller, so that all workers end at the same time.
+        size = 1 if self.one_by_one else max(1, min(self.size, -(-self.left // (self.queued * workers))))
+        batch = self.missing[self.given : self.given + size]
+        self.given += len(batch)
+        return batch
+
+    def learn(self, count: int, seconds: float) -> None:
+        """Update the batch size, to at most four times the timed one: the first sample of a worker is not
+        representative."""
+        fitting = int(BATCH_S / max(seconds / count, 1e-9))
+        self.size = max(1, min(fitting, 4 * count, MOST_IN_BATCH))

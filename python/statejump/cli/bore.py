@@ -6,7 +6,8 @@ from pathlib import Path
 
 import click
 
-from statejump.bores.measure import NoBore, check_journal, measured
+from statejump.bores import measure
+from statejump.bores.measure import NoBore, check_journal
 from statejump.cli.terminal import QUIET, RESULTS, make_console, print_shown
 from statejump.core.errors import NotAllowed
 from statejump.core.results_folder import Results
@@ -36,7 +37,7 @@ def bore_command(
     console = make_console(quiet)
     check_journal("--journal-radius", journal_radius)
     try:
-        bore = measured(file, unit_m=scale, journal_radius_m=journal_radius, flip=flip)
+        bore = measure.bore(file, unit_m=scale, journal_radius_m=journal_radius, flip=flip)
     except NotAllowed as refused:
         refused.key = "--journal-radius"
         raise

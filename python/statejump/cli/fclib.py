@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
@@ -13,11 +12,9 @@ from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, u
 from statejump.core.errors import NotAllowed
 from statejump.core.output import check_suffix, check_target
 from statejump.core.results_folder import Results
+from statejump.fclib import Merit
 from statejump.kinds import require
 from statejump.kinds.protocol import ContactProblems
-
-if TYPE_CHECKING:
-    from statejump.fclib import Merit
 
 
 @click.group("fclib", cls=Suggesting)

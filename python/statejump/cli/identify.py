@@ -10,7 +10,7 @@ import click
 from statejump.cli.terminal import QUIET, RESULTS, make_console, print_shown
 from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey
 from statejump.core.results_folder import Results
-from statejump.identification import identified
+from statejump.identification import identify
 
 # The arguments of the library, as options of the command.
 OPTIONS = {"model": "--model", "start": "--start", "confidence": "--confidence", "target": "--for",
@@ -54,8 +54,8 @@ def identify_command(
     console = make_console(quiet)
     with results.folder(f"identify_{loop_file.stem}") as folder:
         try:
-            found = identified(loop_file, model=model, start=start, confidence=confidence, target=target,
-                               normal_force_N=normal_force, journal_radius_m=journal_radius, ignored=ignored)
+            found = identify(loop_file, model=model, start=start, confidence=confidence, target=target,
+                             normal_force_N=normal_force, journal_radius_m=journal_radius, ignored=ignored)
         except StatejumpError as refused:
             if isinstance(refused, NotAllowed) and refused.key in OPTIONS:
                 refused.key = OPTIONS[refused.key]

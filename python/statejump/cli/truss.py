@@ -12,22 +12,21 @@ from typing import Any
 
 import click
 
-from statejump.core.case import Case
-from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, print_shown, progress
 from statejump.cli.suggesting import Suggesting
+from statejump.cli.terminal import CASE, QUIET, RESULTS, loaded, make_console, print_shown, progress
 from statejump.cli.truss_answers import answers_command
-from statejump.cli.truss_files import TABLES, new_files
-from statejump.cli.truss_import import import_command
+from statejump.cli.truss_import import TABLES, import_command, new_files
 from statejump.cli.truss_surface import surface_command
 from statejump.control.capabilities import Creaking
-from statejump.core.errors import NotWritten, StatejumpError
+from statejump.core.case import Case
+from statejump.core.errors import NotWritten, located
 from statejump.core.results_folder import Results
 from statejump.core.thermal import SHAPES
 from statejump.core.units import split_unit
 from statejump.kinds import require
+from statejump.kinds.truss.generate.document import write
 from statejump.kinds.truss.joints.revolute import Revolute
 from statejump.kinds.truss.sections import TrussReduced
-from statejump.kinds.truss.generate.document import write
 from statejump.report.capabilities import CaseDrawing
 from statejump.schema.fields import fields_of, rule_of
 from statejump.schema.json_schema import head_line
@@ -82,10 +81,8 @@ def _generator_command(kind: str, function: Callable[..., Case]) -> click.Comman
         beside = new_files(output, tables, force)
         if not os.path.isdir(output.parent):
             raise NotWritten(code="output_folder_missing", file=output, folder=output.parent)
-        try:
+        with located(file=output):
             case = function(n, name=folder_name(output.stem), **values)
-        except StatejumpError as refused:
-            raise refused.located(file=output) from None
         given = [
             _shown(key) + (f" {value}" if not isinstance(value, bool) else "") if value is not False
             else "--no-" + _shown(key)[2:]

@@ -5,20 +5,27 @@ from __future__ import annotations
 import os
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import click
 
 from statejump.cli.terminal import QUIET, make_console, print_table
-from statejump.cli.truss_files import TABLES, new_files
 from statejump.core.errors import NotAllowed, StatejumpError, printable
+from statejump.core.output import check_suffix, check_target
 from statejump.kinds.loading import parse_case
-from statejump.kinds.truss.generate.document import write
+from statejump.kinds.truss.generate.document import table_path, write
 from statejump.kinds.truss.importing import SYSTEMS, Options, Units, case_document, checked, hints, read, summary
+from statejump.kinds.truss.sections import sections_in_files
 from statejump.schema.json_schema import head_line
 from statejump.schema.rules import folder_name
 
 # Keys whose number is out of range if the units of a deck are not SI.
 UNIT_KEYS = ("cross_section_area_m2", "young_modulus_Pa", "density_kg_per_m3", "position_m", "mass_kg")
+# Of the option --tables.
+TABLES: dict[str, Any] = {
+    "is_flag": True,
+    "help": "Write nodes, links, joints and springs into CSV files beside the case file, one row an item.",
+}
 
 
 def _joint(text: str) -> dict[str, str]:
@@ -169,3 +176,19 @@ def import_command(
     console.print(f"{output}: nodes {len(document['node'])}, links {len(document['link'])}, joints "
                   f"{len(document.get('slider', ())) + len(document.get('revolute', ()))}, "
                   f"{'planar' if case['truss.dimension'] == 2 else 'spatial'}")
+
+
+def new_files(output: Path, tables: bool, force: bool) -> tuple[str, ...]:
+    """Return the lists that go into files beside the case.
+
+    :param tables: whether there are such files
+    :param force: whether files may be overwritten
+    :raises StatejumpError: a file exists already, or cannot be written
+    """
+    check_suffix("--output", output, ".toml")
+    beside = sections_in_files() if tables else ()
+    for path in (output, *(table_path(output, section) for section in beside)):
+        if os.path.exists(path) and not force:
+            raise StatejumpError(code="exists_already", file=path)
+    check_target(output)
+    return beside

@@ -11,6 +11,7 @@ import numpy as np
 from statejump import surface
 from statejump.campaign.outputs import unit
 from statejump.cli.terminal import QUIET, RESULTS, CaseFile, loaded, make_console, print_shown, undivided
+from statejump.core.case import Case
 from statejump.core.errors import MissingKey, NotAllowed, StatejumpError
 from statejump.core.results_folder import Results
 from statejump.core.table_files import SUFFIXES, read_columns
@@ -18,13 +19,10 @@ from statejump.core.tables import Shown, write_columns, write_csv
 from statejump.core.units import plain
 from statejump.kinds import require
 from statejump.kinds.protocol import ReducedModel
-from statejump.surface import repeatability, summary
+from statejump.surface import Design, repeatability, summary
 
 if TYPE_CHECKING:
     from rich.console import Console
-
-    from statejump.core.case import Case
-    from statejump.surface import Design
 
 # The arguments of the library, as options of the command.
 OPTIONS = {"axis": "--axis", "focal_length_m": "--focal-length", "direction": "--direction", "terms": "--zernike",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import wraps
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -133,9 +134,7 @@ class Study:
 
     def frame(self) -> pandas.DataFrame:
         """Return the whole sweep as a table, with units in the column names."""
-        pandas = libraries.pandas()
-
-        return pandas.DataFrame(self.rows(), columns=self.columns())
+        return libraries.frame(self.rows(), columns=self.columns())
 
 
 def check_wanted(jump_below: float | None, unit: str) -> None:
@@ -259,9 +258,13 @@ def write(case_name: str, study: Study, folder: Path) -> list[Path]:
     return [table, summary]
 
 
-def with_notes(study: Callable[..., Study], case: Case, **settings: Any) -> Study:
-    """Return a study of a case that has a state jump, with notes on its temperature program."""
-    case.need_jump("'statejump control'")
-    found = study(case, **settings)
-    found.remarks += case.thermal_notes
-    return found
+def with_notes(study: Callable[..., Study]) -> Callable[..., Study]:
+    """Make a study refuse cases without a state jump, and add notes on the temperature program."""
+    @wraps(study)
+    def noted(case: Case, *given: Any, **settings: Any) -> Study:
+        case.need_jump("'statejump control'")
+        found = study(case, *given, **settings)
+        found.remarks += case.thermal_notes
+        return found
+
+    return noted

@@ -11,16 +11,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from statejump.core import thermal as programs
 from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.core.later import Later
-from statejump.core.thermal import CaseThermal, Ending
+from statejump.core.thermal import CaseThermal, Ending, Numbers
 from statejump.schema.fields import CHOICE, Section, definition, evolved, fields_of, section, text
 from statejump.schema.item_tables import with_rows
 from statejump.schema.paths import set_value, value_of
 from statejump.schema.rules import FOLDER_NAME
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from statejump import _engine
     from statejump.core.run import Run
     from statejump.core.temperature_files import Histories
@@ -276,7 +273,7 @@ class Case(Section):
         """Return the temperature program as the engine's."""
         return programs.program(self.thermal, self.period_s)
 
-    def returns_s(self) -> NDArray[np.float64]:
+    def returns_s(self) -> Numbers:
         """Return the times [s] at which all items have their first temperature again."""
         return programs.returns_s([self.thermal], self.period_s)
 

@@ -11,7 +11,7 @@ from statejump.core.errors import NotAllowed
 from statejump.core.output import check_suffix, check_target, write_atomically
 from statejump.core.tables import write_columns
 from statejump.core.temperature_files import Histories
-from statejump.schema.toml_text import to_toml
+from statejump.schema.toml import to_toml
 
 OF_MEMBERS = ("members", "table_time_s", "table_temperature_change_K")  # keys that members_file replaces
 

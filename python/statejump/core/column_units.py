@@ -12,9 +12,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 
-from statejump.core.conversion import SAME, Conversion
 from statejump.core.errors import StatejumpError, UnknownKey
-from statejump.core.units import split_unit
+from statejump.core.units import SAME, Conversion, split_unit
 
 # Accepted spellings that an error message lists, by unit of a key.
 EXAMPLES = {"m": ("mm", "in"), "N": ("kN", "lbf"), "s": ("min", "h"), "K": ("°C",), "rad": ("deg", "mrad"),

@@ -153,9 +153,7 @@ class Comparison:
 
     def frame(self) -> pandas.DataFrame:
         """Return a row per compared quantity."""
-        pandas = libraries.pandas()
-
-        return pandas.DataFrame(table(self.rows))
+        return libraries.frame(table(self.rows))
 
     def plot(self, axes: Axes | Sequence[Axes] | None = None) -> Figure:
         """Draw the models in one figure; see :meth:`statejump.Run.plot`."""

@@ -8,7 +8,8 @@ the code and the fields; nothing parses a sentence.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from copy import copy
 from dataclasses import dataclass
 from math import isfinite
@@ -229,6 +230,15 @@ class StatejumpError(Exception):
             "cause": self.cause or None, "remedy": self.remedy or None, "exit_status": self.exit_status,
         }
         return {name: known[name] for name in FIELDS if known[name] is not None}
+
+
+@contextmanager
+def located(*, file: object = None, case: str | None = None) -> Iterator[None]:
+    """Set the file or case of errors within, where it is unknown."""
+    try:
+        yield
+    except StatejumpError as failure:
+        raise failure.located(file=file, case=case) from None
 
 
 def _remade(kind: type[StatejumpError], state: dict[str, Any]) -> StatejumpError:

@@ -7,18 +7,11 @@ coefficient and a piecewise linear temperature program. They get α₀, the larg
 """
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from statejump.core.errors import NotAllowed
-from statejump.core.thermal import LARGEST_CHANGE_K, MemberProgram, Thermal, rows
+from statejump.core.thermal import LARGEST_CHANGE_K, MemberProgram, Numbers, Thermal, rows
 from statejump.schema.fields import Section, definition, numbers
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.float64]
 
 # A linear piece has at most this error of the strain, as a fraction of its range: a tenth of the smallest default
 # tolerance of `compare` (that of the energy balance).

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from matplotlib import rc_context
@@ -19,13 +19,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from statejump.core.case import Case
 from statejump.core.output import write_bytes
+from statejump.core.run import Run
 from statejump.kinds import require
 from statejump.report.capabilities import RunSheet
-
-if TYPE_CHECKING:
-    from statejump.core.case import Case
-    from statejump.core.run import Run
 
 # Okabe-Ito colours that also differ in lightness: a thick light line under a thin dark dashed one.
 REDUCED: dict[str, Any] = dict(color="#E69F00", linewidth=4.0, solid_capstyle="round", label="reduced model (exact)")

@@ -86,6 +86,23 @@ def opened(path: Path) -> Iterator[h5py.File]:
         raise Unreadable(code="read_failed", cause=" ".join(str(error).split()), file=path) from None
 
 
+@contextmanager
+def foreign(path: Path) -> Iterator[dict[str, h5py.Group | h5py.Dataset]]:
+    """Yield the objects of an HDF5 file of another program by path, see :func:`objects`; ``/`` is the file.
+
+    :raises Unreadable: it is no HDF5 file, or a requested part cannot be read
+    """
+    h5py = libraries.h5py()
+
+    try:
+        if not h5py.is_hdf5(path):
+            raise Unreadable(code="not_hdf5", file=path)
+        with h5py.File(path, "r") as file:
+            yield {"/": file, **objects(file, path)}
+    except (OSError, RuntimeError, MemoryError) as error:
+        raise Unreadable(code="read_failed", cause=" ".join(str(error).split()), file=path) from None
+
+
 def _check(stream: IO[bytes], path: Path) -> None:
     """Raise Unreadable unless the checksum fits."""
     block = stream.read(HEAD_BYTES)

@@ -2,25 +2,18 @@
 """HTML of cases, runs and comparisons for notebooks."""
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
 from html import escape
 
 from statejump.core.case import Case
 from statejump.core.comparison import Comparison, sides
 from statejump.core.errors import StatejumpError
 from statejump.core.run import MODELS, Run
+from statejump.core.tables import html_table
 from statejump.core.units import text, unit_of
 from statejump.kinds import has, require
 from statejump.report.capabilities import CaseText
 
 MOST_EVENTS = 12
-
-
-def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """Return a table as HTML."""
-    head = "".join(f"<th>{escape(cell)}</th>" for cell in header)
-    body = "".join("<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in row) + "</tr>" for row in rows)
-    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
 def _title(run: Run) -> str:
@@ -44,10 +37,10 @@ def run_html(run: Run) -> str:
         for event in run.events[:MOST_EVENTS]
     ]
     parts = [f"<h4>{escape(_title(run))}: {escape(MODELS.get(run.model, run.model))}, {len(run):,} samples</h4>",
-             table(("quantity", "value"), rows)]
+             html_table(("quantity", "value"), rows)]
     if events:
         more = len(run.events) - len(events)
-        parts += [table(("event", "joint", "ΔT", "time"), events), f"<p>and {more:,} more</p>" if more else ""]
+        parts += [html_table(("event", "joint", "ΔT", "time"), events), f"<p>and {more:,} more</p>" if more else ""]
     parts += [f"<p>warning: {escape(warning)}</p>" for warning in run.warnings]
     if not run.complete:
         parts.append("<p>warning: the run was interrupted, this is what there is of it</p>")
@@ -64,4 +57,4 @@ def comparison_html(comparison: Comparison) -> str:
     ]
     verdict = "passed" if comparison.passed else "a tolerance is missed"
     head = ("quantity", *(side.replace("_", " ") for side in known), "difference", "tolerance", "")
-    return f"<h4>{escape(comparison.case.title)}: {verdict}</h4>{table(head, rows)}"
+    return f"<h4>{escape(comparison.case.title)}: {verdict}</h4>{html_table(head, rows)}"

@@ -19,18 +19,16 @@ import numpy as np
 
 from statejump.core import libraries
 from statejump.core.column_units import Column, matched
-from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey, Unreadable
-from statejump.core.hdf5 import objects
+from statejump.core.errors import NotAllowed, UnknownKey, Unreadable, located
+from statejump.core.hdf5 import foreign
 from statejump.core.output import write_atomically
-from statejump.core.reading import is_file
-from statejump.core.table_files import SUFFIXES as TEXT_SUFFIXES, Place, Table, open_table, quoted
+from statejump.core.table_files import Place, Table, check_table, open_table, quoted
 from statejump.schema.fields import TABLES_BESIDE, Section, fields_of, rule_of, section_of, tables_of
 from statejump.schema.item_tables import ItemTable, once
 from statejump.schema.rules import NUMBER, NUMBERS, SWITCH, TEXT, TEXTS, WHOLE, Rule, suggestion
 from statejump.schema.texts import Numbering, Texts
 from statejump.schema.toml import LARGEST_BYTES
 
-SUFFIXES = (*TEXT_SUFFIXES, ".h5", ".hdf5")
 MOST_IN_LIST = 16  # largest number of entries of a cell or row: items list ends, directions and components
 TEXTS_AT_ONCE = 1 << 14  # block of a data set: as objects they take ten times the memory of the file
 SWITCHES = {"true": True, "false": False}
@@ -74,15 +72,9 @@ def read_items(path: Path, key: str, model: type[Section], words: Numbering) -> 
     :param words: texts of the files that were read before; those of this file are added
     :raises StatejumpError: one sentence with the file, and line or column
     """
-    if path.suffix.lower() not in SUFFIXES:
-        raise NotAllowed(key, path.name, code="suffix_unknown", suffixes=", ".join(SUFFIXES))
-    if not is_file(path):
-        raise Unreadable(code="table_file_not_found", file=path)
-    in_text = path.suffix.lower() in TEXT_SUFFIXES
-    try:
-        return ItemTable(**_text(path, model, words)) if in_text else ItemTable(**_hdf5(path, model, words))
-    except StatejumpError as failure:
-        raise failure.located(file=path) from None
+    read = _text if check_table(path, key, "table_file_not_found") else _hdf5
+    with located(file=path):
+        return ItemTable(**read(path, model, words))
 
 
 def _keys(names: Sequence[str], model: type[Section]) -> list[tuple[Column, Rule]]:
@@ -171,17 +163,10 @@ def _lists(table: Table, split: Sequence[Sequence[str]], width: int, place: Plac
 
 
 def _hdf5(path: Path, model: type[Section], words: Numbering) -> dict[str, np.ndarray | Texts]:
-    h5py = libraries.h5py()
-
-    try:
-        if not h5py.is_hdf5(path):
-            raise Unreadable(code="not_hdf5", file=path)
-        with h5py.File(path, "r") as file:
-            found = {name.removeprefix("/"): part for name, part in objects(file, path).items() if name != "/"}
-            return {column.key: _of_data_set(path, column, rule, found[column.name], words)
-                    for column, rule in _keys(list(found), model)}
-    except (OSError, RuntimeError, MemoryError) as error:
-        raise Unreadable(code="read_failed", cause=" ".join(str(error).split()), file=path) from None
+    with foreign(path) as file:
+        found = {name.removeprefix("/"): part for name, part in file.items() if name != "/"}
+        return {column.key: _of_data_set(path, column, rule, found[column.name], words)
+                for column, rule in _keys(list(found), model)}
 
 
 def _of_data_set(path: Path, column: Column, rule: Rule, data: Any, words: Numbering) -> np.ndarray | Texts:

@@ -5,14 +5,15 @@ The seconds are import times on a warm machine.
 """
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 
-def pandas() -> Any:
-    """Return pandas, for methods that return tables."""
+def frame(data: Any, columns: Sequence[str] | None = None) -> Any:
+    """Return data as a table of pandas."""
     import pandas  # 0.4 s
 
-    return pandas
+    return pandas.DataFrame(data, columns=columns)
 
 
 def h5py() -> Any:

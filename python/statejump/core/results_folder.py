@@ -8,6 +8,8 @@ folder moves the remaining files of ``.ID.ready`` and removes ``.ID.partial``.
 from __future__ import annotations
 
 import fcntl
+import hashlib
+import json
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -15,9 +17,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from statejump.core import results_owner
 from statejump.core.errors import NotWritten, size
 from statejump.core.output import PARTIAL, check_target, not_written, synced, unique
+from statejump.core.tables import write_json
+from statejump.schema.fields import attached_to_json
 
 if TYPE_CHECKING:
     from statejump.core.case import Case
@@ -26,6 +29,7 @@ READY = ".ready"
 SYNCED_AT_ONCE = 32
 SIDE_BY_SIDE = 8  # number of files from which threads save time
 OTHER = "choose another with --results"
+OWNER = ".case.json"
 
 
 @dataclass(frozen=True)
@@ -72,7 +76,7 @@ class Results:
         try:
             if case is not None and not self.force:
                 for folder in (path, *path.parents)[:len(path.relative_to(self.root).parts)]:
-                    results_owner.check(folder, case)
+                    _check_owner(folder, case)
             try:
                 _recover(path)
                 own = path / f".{unique()}{PARTIAL}"
@@ -141,7 +145,7 @@ class ResultsFolder:
         """
         ready = self.path / f"{self.staged.name.removesuffix(PARTIAL)}{READY}"
         if self.case is not None:
-            results_owner.write(self.staged, self.path, self.case)
+            _write_owner(self.staged, self.path, self.case)
         try:
             folders = [(Path(folder), files) for folder, _, files in os.walk(self.staged)]
             staged = [folder / name for folder, files in folders for name in files]
@@ -207,3 +211,39 @@ def _recover(path: Path) -> None:
 
 def _unusable(path: Path, code: str, remedy: str, cause: str | None = None, **details: Any) -> NotWritten:
     return NotWritten(code=code, file=path, place=f"results folder {path}", cause=cause, remedy=remedy, **details)
+
+
+def _known(folder: Path) -> dict[str, str]:
+    """Return the record of the case in a folder; empty: no readable record."""
+    try:
+        found = json.loads((folder / OWNER).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def _file(folder: Path, case: Case) -> str:
+    """Return the case file relative to the folder; "": the case was made in Python."""
+    file = case.origin.file
+    return "" if file is None else os.path.relpath(file.resolve(), folder.resolve())
+
+
+def _checksum(case: Case) -> str:
+    text = json.dumps(case.with_defaults(), sort_keys=True, default=attached_to_json)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _check_owner(folder: Path, case: Case) -> None:
+    """Raise NotWritten if the folder holds results of another case from another file."""
+    known = _known(folder)
+    if not known or (known.get("file") and known.get("file") == _file(folder, case)):
+        return
+    if known.get("sha256") == _checksum(case):
+        return
+    other = os.path.relpath(folder / str(known.get("file"))) if known.get("file") else "a case made in Python"
+    raise NotWritten(code="results_of_other_case", place=f"results folder {folder}", file=folder, other=other)
+
+
+def _write_owner(staged: Path, folder: Path, case: Case) -> None:
+    """Write the owner's file of a folder among its staged files."""
+    write_json(staged / OWNER, {"file": _file(folder, case), "sha256": _checksum(case)})

@@ -141,9 +141,7 @@ class Events(Sequence[Event]):
 
     def frame(self) -> pandas.DataFrame:
         """Return one row per event, with units in the column names."""
-        pandas = libraries.pandas()
-
-        return pandas.DataFrame([vars(event) for event in self._events], columns=list(Event.__dataclass_fields__))
+        return libraries.frame([vars(event) for event in self._events], columns=list(Event.__dataclass_fields__))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Events, (self._events,)
@@ -329,9 +327,7 @@ class Run:
 
         :param groups: any of ``history``, ``energy``, ``links``, ``contacts``; see :meth:`flat`
         """
-        pandas = libraries.pandas()
-
-        return pandas.DataFrame(self.flat(groups))
+        return libraries.frame(self.flat(groups))
 
     def write_csv(self, path: Path) -> None:
         """Write history and energies as CSV, in full precision."""

@@ -22,7 +22,7 @@ from typing import Any, TextIO
 import numpy as np
 
 from statejump.core.column_units import NO_UNIT, Column, accepted, matched
-from statejump.core.errors import NotAllowed, StatejumpError, Unreadable, printable
+from statejump.core.errors import NotAllowed, Unreadable, located, printable
 from statejump.core.iso_times import is_iso, seconds
 from statejump.core.reading import check_size, finite_number, is_file, open_csv
 from statejump.core.units import split_unit
@@ -348,6 +348,19 @@ def _encoding(path: Path) -> str:
         return "cp1252" if is_1252 and not is_utf8 else "utf-8-sig"
 
 
+def check_table(path: Path, key: str, missing: str) -> bool:
+    """Return whether a table is text, not HDF5.
+
+    :raises StatejumpError: its name ends with another suffix, or the file does not exist: code ``missing``
+    """
+    known = (*SUFFIXES, ".h5", ".hdf5")
+    if path.suffix.lower() not in known:
+        raise NotAllowed(key, path.name, code="suffix_unknown", suffixes=", ".join(known))
+    if not is_file(path):
+        raise Unreadable(code=missing, file=path)
+    return path.suffix.lower() in SUFFIXES
+
+
 @contextmanager
 def open_table(path: Path, largest_bytes: int | None = None, beside: str = "") -> Iterator[Table]:
     """Open a table.
@@ -412,12 +425,10 @@ def read_known(
     """
     with open_table(path) as table:
         kept = [place for place, name in enumerate(table.header) if name not in ignored]
-        try:
+        with located(file=path):
             for name in sorted(set(ignored) - set(table.header)):
                 raise NotAllowed("ignored", name, code="unknown_ignored_column")
             columns = matched([table.header[place] for place in kept], known, words)
-        except StatejumpError as failure:
-            raise failure.located(file=path) from None
         lines, cells = _all(table)
         return {column.key: np.array(part) if column.key in texts else numbers_of(table, column, part, lines)
                 for column, part in zip(columns, (cells[place] for place in kept))}

@@ -6,27 +6,21 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from statejump.core import libraries
 from statejump.core.column_units import Column, conversion, matched, splits
-from statejump.core.conversion import Conversion
-from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey, Unreadable
-from statejump.core.hdf5 import objects
-from statejump.core.reading import is_file
-from statejump.core.table_files import SUFFIXES as TEXT_SUFFIXES, Table, numbers_of, open_table, quoted
+from statejump.core.errors import StatejumpError, UnknownKey, Unreadable
+from statejump.core.hdf5 import foreign
+from statejump.core.table_files import Table, check_table, numbers_of, open_table, quoted
+from statejump.core.thermal import Numbers
+from statejump.core.units import Conversion
 from statejump.schema.toml import LARGEST_BYTES
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.float64]
 
 ZERO_CELSIUS_K = 273.15
 ENDINGS = {"_K": 0.0, "_degC": ZERO_CELSIUS_K}
-SUFFIXES = (*TEXT_SUFFIXES, ".h5", ".hdf5")
 TIMES = ("t", "timestamp", "datetime", "date", "date/time", "Zeit", "Datum/Zeit")  # accepted names of a first column
 ACCEPTED = "NAME_K, NAME_degC, NAME [K] or NAME [°C]"
 HDF5_TEMPERATURES = {"temperature_K": 0.0, "temperature_degC": ZERO_CELSIUS_K}
@@ -80,7 +74,7 @@ def of_means(read: Read) -> Read:
                 0.5 * (read.values[:, first] + read.values[:, second]))
 
 
-def refuse(read: Read, wrong: NDArray[np.bool_], what: str) -> None:
+def refuse(read: Read, wrong: np.ndarray, what: str) -> None:
     """Raise Unreadable for the first invalid value."""
     if wrong.any():
         row, column = np.unravel_index(int(np.argmax(wrong)), wrong.shape)
@@ -97,11 +91,7 @@ def read_columns(path: Path, key: str) -> Read:
 
     :raises StatejumpError: one sentence with the file, and line or column
     """
-    if path.suffix.lower() not in SUFFIXES:
-        raise NotAllowed(key, path.name, code="suffix_unknown", suffixes=", ".join(SUFFIXES))
-    if not is_file(path):
-        raise Unreadable(code="temperature_file_not_found", file=path)
-    found = _text(path) if path.suffix.lower() in TEXT_SUFFIXES else _hdf5(path)
+    found = _text(path) if check_table(path, key, "temperature_file_not_found") else _hdf5(path)
     _check_names(path, found.names)
     if len(found.time_s) < 2:
         raise Unreadable(code="fewer_than_two_times", file=path)
@@ -175,20 +165,12 @@ def _values(table: Table, line: int, row: Sequence[str], places: Sequence[int]) 
 
 
 def _hdf5(path: Path) -> Read:
-    h5py = libraries.h5py()
-
-    try:
-        if not h5py.is_hdf5(path):
-            raise Unreadable(code="not_hdf5", file=path)
-        with h5py.File(path, "r") as file:
-            found = objects(file, path)
-            units = [name for name in HDF5_TEMPERATURES if f"/{name}" in found]
-            if len(units) != 1:
-                raise Unreadable(code="temperatures_missing", file=path, data_sets=" and ".join(HDF5_TEMPERATURES))
-            time_s, values = _array(found, "time_s", 1, path), _array(found, units[0], 2, path)
-            names = _names(found, path)
-    except (OSError, RuntimeError, MemoryError) as error:
-        raise Unreadable(code="read_failed", cause=" ".join(str(error).split()), file=path) from None
+    with foreign(path) as found:
+        units = [name for name in HDF5_TEMPERATURES if f"/{name}" in found]
+        if len(units) != 1:
+            raise Unreadable(code="temperatures_missing", file=path, data_sets=" and ".join(HDF5_TEMPERATURES))
+        time_s, values = _array(found, "time_s", 1, path), _array(found, units[0], 2, path)
+        names = _names(found, path)
     if values.shape != (len(time_s), len(names)) or not names:
         raise Unreadable(code="temperatures_of_other_shape", file=path, data_set=units[0], rows=values.shape[0],
                          columns=values.shape[1], times=len(time_s), members=len(names))

@@ -11,7 +11,7 @@ import hashlib
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -20,14 +20,10 @@ from statejump.core.plausibility import warn_of_reference
 from statejump.core.table_files import quoted
 from statejump.core.temperature_columns import Read, listed, of_means, read_columns, refuse
 from statejump.core.thermal import (
-    KEYS_OF_FILES, LARGEST_CHANGE_K, LONGEST_TABLE_S, SAME_TEMPERATURE_K, SAME_TIME, MemberProgram, Thermal,
+    KEYS_OF_FILES, LARGEST_CHANGE_K, LONGEST_TABLE_S, SAME_TEMPERATURE_K, SAME_TIME, MemberProgram, Numbers,
+    Thermal,
 )
 from statejump.schema.fields import Attached, Section, fields_of, rule_of
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Numbers = NDArray[np.float64]
 
 
 class Histories(Attached):

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from statejump import _engine
 from statejump.core.errors import ABSENT, MissingKey, NotAllowed
@@ -18,10 +19,7 @@ from statejump.schema.fields import (
     CHOICE, Section, choice, definition, evolved, fields_of, numbers, parameter, rule_of, switch, text, whole,
 )
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-
+Numbers = NDArray[np.float64]
 SHAPES = ("triangle", "half_sine", "sine", "table")
 PERIOD_s = 1.0  # default duration of a cycle
 SAME_TIME = 1e-9  # relative difference below which two durations are equal up to rounding
@@ -85,8 +83,8 @@ class CaseThermal(Thermal):
 class MemberProgram:
     """The table of one member, with the interface of a temperature program."""
 
-    table_time_s: NDArray[np.float64]
-    table_temperature_change_K: NDArray[np.float64]
+    table_time_s: Numbers
+    table_temperature_change_K: Numbers
     cycles: int
     shape: str = "table"
 
@@ -178,17 +176,15 @@ def _is_sound(program: Thermal | MemberProgram) -> bool:
     return len(times) > 1 and len(times) == len(_changes(program)) and bool(np.all(np.diff(times) > 0))
 
 
-def _times(program: Thermal | MemberProgram) -> NDArray[np.float64]:
+def _times(program: Thermal | MemberProgram) -> Numbers:
     return np.asarray(program.table_time_s, dtype=float)
 
 
-def _changes(program: Thermal | MemberProgram) -> NDArray[np.float64]:
+def _changes(program: Thermal | MemberProgram) -> Numbers:
     return np.asarray(program.table_temperature_change_K, dtype=float)
 
 
-def rows(
-    program: Thermal | MemberProgram, period_s: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def rows(program: Thermal | MemberProgram, period_s: float) -> tuple[Numbers, Numbers]:
     """Return times [s] and temperature changes [K] of a table, with the added return until ``period_s``."""
     times, changes = _times(program), _changes(program)
     if period_s - times[-1] <= SAME_TIME * times[-1]:
@@ -287,7 +283,7 @@ def parameters(thermal: Thermal | MemberProgram, period_s: float) -> dict[str, A
             "temperature_change_max_K": thermal.temperature_change_max_K}
 
 
-def returns_s(programs: Sequence[Thermal | MemberProgram], period_s: float) -> NDArray[np.float64]:
+def returns_s(programs: Sequence[Thermal | MemberProgram], period_s: float) -> Numbers:
     """Return the times [s] at which all items have their first temperature again: ends of cycles, rows of a table.
 
     :param programs: of one case, the common one first; all have one duration
@@ -295,7 +291,7 @@ def returns_s(programs: Sequence[Thermal | MemberProgram], period_s: float) -> N
     common, own = programs[0], [period_s]
     if common.shape == "table" and common.table_time_s is not None:
         own = rows(common, period_s)[0][1:].tolist()
-    times: NDArray[np.float64] = (np.arange(common.cycles)[:, None] * period_s + np.array(own)).ravel()
+    times: Numbers = (np.arange(common.cycles)[:, None] * period_s + np.array(own)).ravel()
     for one in programs:
         times = times[np.abs(program(one, period_s).temperature_change(times)) < SAME_TEMPERATURE_K]
     return times

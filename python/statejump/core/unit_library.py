@@ -8,7 +8,7 @@ from tokenize import TokenError
 
 import pint
 
-from statejump.core.conversion import Conversion
+from statejump.core.units import Conversion
 
 REGISTRY = pint.UnitRegistry()
 _SIGNS = str.maketrans({"²": "**2", "³": "**3", "⁴": "**4", "·": "*", "⋅": "*", "∙": "*", "•": "*", "×": "*", "−": "-",

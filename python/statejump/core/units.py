@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
 
 # Units by the ending of a name, the longest first, because _N_m is not _m.
 ENDINGS = {
@@ -68,3 +73,23 @@ def text(value: float | None, unit: str = "-", digits: int = 6) -> str:
 def plain(value: float | None, unit: str = "-", digits: int = 6) -> str:
     """Return the number for terminals and text files with common blank and minus sign, so that a search finds it."""
     return text(value, unit, digits).replace("\u202f", " ").replace("−", "-")
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """Conversion of numbers to another unit: x · factor/divisor + offset. The divisor converts 12.5 mm to exactly the
+    number 0.0125."""
+
+    factor: float = 1.0
+    divisor: float = 1.0
+    offset: float = 0.0
+
+    def __call__(self, values: np.ndarray) -> np.ndarray:
+        if self.factor != 1:
+            values = values * self.factor
+        if self.divisor != 1:
+            values = values / self.divisor
+        return values + self.offset if self.offset else values
+
+
+SAME = Conversion()

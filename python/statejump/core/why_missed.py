@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from math import ceil, floor, inf, isinf, log10, pi, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from statejump import _engine
+from statejump.core.run import Run
 from statejump.core.thermal import LONGEST_PERIOD_S, Thermal, range_K
 from statejump.core.units import text
-
-if TYPE_CHECKING:
-    from statejump import _engine
-    from statejump.core.run import Run
 
 LOOKED_AT = 4000  # positions of a cycle at which the rate of the temperature is evaluated
 # Fraction of a tolerance above which an oscillation is reported. The other causes have the remainder.

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from statejump.core import libraries
-from statejump.core.errors import StatejumpError, Unreadable
-from statejump.core.hdf5 import made, objects
+from statejump.core.errors import Unreadable, located
+from statejump.core.hdf5 import foreign, made
 from statejump.core.reading import is_file
 from statejump.fclib.problem import Problem, Solution, Stored
 
@@ -37,21 +37,11 @@ def read(path: str | Path) -> Problem:
     :raises Unreadable: the file does not exist, is not HDF5, or contains no local problem; or a part is missing or
         damaged
     """
-    h5py = libraries.h5py()
-
     path = Path(path)
     if not is_file(path):
         raise Unreadable(code="file_not_found", file=path)
-    try:
-        if not h5py.is_hdf5(path):
-            raise Unreadable(code="not_hdf5", file=path)
-        with h5py.File(path, "r") as file:
-            objects(file, path)
-            return _problem(file)
-    except StatejumpError as error:
-        raise error.located(file=path) from None
-    except (OSError, RuntimeError, MemoryError) as error:
-        raise Unreadable(code="read_failed", cause=" ".join(str(error).split()), file=path) from None
+    with located(file=path), foreign(path) as found:
+        return _problem(found["/"])
 
 
 def _problem(file: h5py.File) -> Problem:

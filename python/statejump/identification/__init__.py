@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Identification of a joint from a measured loop. The function ``statejump.identify`` is in :mod:`statejump.api`."""
+"""Identification of a joint from a measured loop."""
 from __future__ import annotations
 
-from statejump.identification.result import Identification, identified
+from statejump.identification.result import Identification, identify
 
-__all__ = ["Identification", "identified"]
+__all__ = ["Identification", "identify"]

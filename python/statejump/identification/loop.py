@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from statejump.core.column_units import matched
-from statejump.core.errors import MissingKey, NotAllowed, StatejumpError
+from statejump.core.errors import MissingKey, NotAllowed, StatejumpError, located
 from statejump.core.table_files import read_known
 from statejump.core.tables import check_columns
 from statejump.identification.hysteresis import Memory, from_any_start, remembered
@@ -117,10 +117,8 @@ def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown", ig
         return _loop("loop", _named(source), start)
     file = Path(source)
     columns = read_known(file, COLUMNS, WORDS, ignored=ignored)
-    try:
+    with located(file=file):
         return _loop(file.stem, columns, start)
-    except StatejumpError as failure:
-        raise failure.located(file=file) from None
 
 
 def _named(source: Mapping[str, Any]) -> dict[str, np.ndarray]:

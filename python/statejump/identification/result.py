@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from statejump.core import libraries
-from statejump.core.errors import NotAllowed, Range, StatejumpError
+from statejump.core.errors import NotAllowed, Range, located
 from statejump.core.later import Later
-from statejump.core.tables import Shown, write_columns, write_csv, write_text
+from statejump.core.tables import Shown, html_table, write_columns, write_csv, write_text
 from statejump.core.units import plain
 from statejump.identification import case_section
 from statejump.identification.fit import Fit, Fits, Interval, intervals
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _DRAWN, _SAVED = Later("statejump.identification.picture:drawn"), Later("statejump.core.figures:save")
-_TABLE = Later("statejump.core.html:table")
 AUTO = "auto"
 CONFIDENCE = Range(0.5, 0.999)
 # A difference of BIC below this is "not worth more than a bare mention" (Kass and Raftery, JASA 90, 1995).
@@ -186,14 +185,12 @@ class Identification:
 
     def frame(self, table: str = "parameters") -> pandas.DataFrame:
         """Return a table: ``parameters``, ``models``, or the ``rows`` of the fit."""
-        pandas = libraries.pandas()
-
         if table == "parameters":
-            return pandas.DataFrame(self._rows_of_parameters(), columns=PARAMETER_COLUMNS)
+            return libraries.frame(self._rows_of_parameters(), columns=PARAMETER_COLUMNS)
         if table == "models":
-            return pandas.DataFrame(self._rows_of_models(), columns=MODEL_COLUMNS)
+            return libraries.frame(self._rows_of_models(), columns=MODEL_COLUMNS)
         if table == "rows":
-            return pandas.DataFrame(self._columns())
+            return libraries.frame(self._columns())
         raise NotAllowed("table", table, code="no_table_of_fit")
 
     def _columns(self) -> dict[str, np.ndarray]:
@@ -240,20 +237,37 @@ class Identification:
 
     def _repr_html_(self) -> str:
         head, *parts = (part for part in self.summary_lines() if isinstance(part, Shown))
-        return "".join(f"<h4>{part.title}</h4>{_TABLE(part.header, part.rows)}" for part in (*parts, head)) + "".join(
-            f"<p>{note}</p>" for note in self.notes)
+        tables = [f"<h4>{part.title}</h4>{html_table(part.header, part.rows)}" for part in (*parts, head)]
+        return "".join(tables) + "".join(f"<p>{note}</p>" for note in self.notes)
 
 
 def _end(value: float) -> str:
     return f"{value:.6g}" if np.isfinite(value) else "none"
 
 
-def identified(
+def identify(
     source: str | Path | Mapping[str, Any], *, model: str | Sequence[str] = AUTO, start: str = "unknown",
     confidence: float = 0.95, target: str | None = None, normal_force_N: float | None = None,
     journal_radius_m: float | None = None, ignored: Sequence[str] = (),
 ) -> Identification:
-    """Identify a joint; see :func:`statejump.identify`."""
+    """Identify a joint from a measured loop.
+
+    Least squares find the parameters; noise of the force may be correlated. Profile likelihood gives the intervals, and
+    BIC selects the joint. Notes list the parameters that the loop does not determine.
+
+    :param source: a table, or columns: ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``, or
+        the same in other units, row by row as measured. A force is positive where it resists a positive displacement
+    :param model: a joint, several, or ``auto``: all of :data:`statejump.identification.models.MODELS`
+    :param start: friction before the first row: ``fresh``: zero; ``cycled``: the path was traversed before;
+        ``unknown``: it is a parameter
+    :param confidence: of the intervals, 0.5 to 0.999
+    :param target: item of a case that the joint becomes: ``spring_slider`` (default), ``slider``, ``revolute``,
+        ``umbrella`` (default of rotations), ``torsion_spring``, ``iwan_joint``
+    :param normal_force_N: normal force in the test [N]; converts friction to a coefficient
+    :param journal_radius_m: radius of the journal [m]; converts a moment of friction to a coefficient
+    :param ignored: names of columns of a table that are not used
+    :raises StatejumpError: the file is no loop, or the joint is unknown
+    """
     for key, given in (("normal_force_N", normal_force_N), ("journal_radius_m", journal_radius_m)):
         if given is not None and not 0 < given < float("inf"):
             raise NotAllowed(key, given, code="not_positive", unit="N" if key.endswith("_N") else "m")
@@ -269,7 +283,7 @@ def identified(
     loop = read_loop(source, start, ignored)
     chosen_target = target or ("umbrella" if loop.angular else "spring_slider")
     case_section.check(chosen_target, loop.angular)
-    try:
+    with located(file=source if isinstance(source, (str, Path)) else None):
         fits = Fits(loop)
         chosen = fits.ranked(names)[0].model.name
         _, found = intervals(fits, chosen, confidence)
@@ -279,8 +293,6 @@ def identified(
             if larger is not None:
                 limits[name] = (larger, intervals(fits, larger, confidence, [name])[1].of[name])
         candidates = fits.ranked(names)
-    except StatejumpError as failure:
-        raise failure.located(file=source if isinstance(source, (str, Path)) else None) from None
     best = next(each for each in candidates if each.model.name == chosen)
     return Identification(loop, tuple(candidates), best, found.of, found.because, limits, confidence, chosen_target,
                           normal_force_N, journal_radius_m)

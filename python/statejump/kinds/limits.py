@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from statejump.core.case import Case
 from statejump.core.errors import NotAllowed, size
 from statejump.kinds import has, of, require
 from statejump.kinds.protocol import ItemNames
-
-if TYPE_CHECKING:
-    from statejump.core.case import Case
 
 # Number of samples above which a history is too long to read: a model that can compute its path at any time then omits
 # some.

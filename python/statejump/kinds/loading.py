@@ -10,7 +10,7 @@ from typing import Any
 
 from statejump import _paths
 from statejump.core.case import Case, CaseHeader, Origin
-from statejump.core.errors import StatejumpError
+from statejump.core.errors import located
 from statejump.core.item_files import with_tables
 from statejump.core.temperature_files import with_files
 from statejump.kinds import kind, names
@@ -49,15 +49,13 @@ def parse_case(
     :param files_from: folder of the files of temperatures and tables that the case names; None: it may name none
     :raises StatejumpError: one failure; of several the first
     """
-    try:
+    with located(file=file):
         of_kind = kind(_kind_name(data))
         data = with_keys_moved(of_kind.Case, data, str(file or ""))
         if files_from is not None:
             data = with_files(data, files_from, section_of(fields_of(of_kind.Case)["thermal"]))
             data = with_tables(data, files_from, of_kind.Case)
         made = of_kind.case_from(data)
-    except StatejumpError as failure:
-        raise failure.located(file=file) from None
     return made.with_origin(Origin(data, file, text))
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from statejump.core import yade_input, yade_process
+from statejump.core import yade_process
 from statejump.core.case import Case, Progress
 from statejump.core.errors import StatejumpError
 from statejump.core.progress import OnProgress, shown
@@ -54,23 +54,23 @@ def _keeping(case: Case, folder: Path) -> Callable[[Any, OnProgress], Run]:
     """Return a DEM run whose input is in a folder."""
     make_run = require(case, DemResult).dem_run
     values = require(case, DemValues).dem_values(case)
-    yade_input.keep_input(values, folder)
+    yade_process.keep_input(values, folder)
     return lambda _, on_progress: yade_process.run(case, values, make_run, on_progress)
 
 
 def keep_input(case: Case, folder: Path) -> str:
     """Write script and data of the DEM run into a folder; return the shell command that repeats the run."""
-    yade_input.check_folder(folder)
-    return yade_input.keep_input(require(case, DemValues).dem_values(case), folder)
+    yade_process.check_folder(folder)
+    return yade_process.keep_input(require(case, DemValues).dem_values(case), folder)
 
 
 def view(case: Case, folder: Path) -> None:
     """Write script and data of the DEM run into a folder, and open YADE's 3-D view of their scene."""
-    yade_input.check_display()
-    yade_input.check_folder(folder)
+    yade_process.check_display()
+    yade_process.check_folder(folder)
     values = require(case, DemValues).dem_values(case)
-    yade_input.keep_input(values, folder)
-    yade_input.view(values, folder)
+    yade_process.keep_input(values, folder)
+    yade_process.view(values, folder)
 
 
 def quasi_static(case: Case) -> Any:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from statejump import _engine
-from statejump.core.errors import FailedRun, MissingKey, NotAllowed, StatejumpError, UnknownKey
+from statejump.core.errors import FailedRun, MissingKey, NotAllowed, UnknownKey, located
 from statejump.core.table_files import read_known
 from statejump.core.tables import check_columns, write_columns
 from statejump.laws.traits import Law, catalogue
@@ -77,10 +77,8 @@ def drive(
     """
     kind, known = _driven(law)
     file, columns = _columns(history)
-    try:
+    with located(file=file):
         _check(columns, kind, known)
-    except StatejumpError as error:
-        raise error.located(file=file) from None
     if not (isinstance(steps_per_row, int) and steps_per_row >= 1):
         raise NotAllowed("steps_per_row", steps_per_row, code="not_positive_integer")
     rows = len(next(iter(columns.values())))

@@ -10,9 +10,8 @@ import numpy as np
 
 from statejump.core import units
 from statejump.core.case import Case
-from statejump.core.charts import TEMPERATURE, Axis, Chart
+from statejump.core.charts import TEMPERATURE, Axis, Chart, straight_part
 from statejump.core.run import Run
-from statejump.core.thin_loops import straight_part
 from statejump.kinds import has, require
 from statejump.report.capabilities import PageCharts
 from statejump.report.labels import Labels

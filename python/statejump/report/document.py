@@ -18,7 +18,7 @@ import numpy as np
 from statejump.core.case import Case
 from statejump.core.charts import PageSection
 from statejump.core.comparison import Quantity, sides
-from statejump.core.errors import StatejumpError
+from statejump.core.errors import StatejumpError, located
 from statejump.core.run import Event, Run
 from statejump.core.units import scale_of, text, unit_of
 from statejump.kinds import has, require
@@ -358,10 +358,8 @@ def _uncertainty(event: Event, run: Run) -> dict[str, str]:
 def of_file(path: Path, source: str, identifier: str, budget_bytes: float) -> Document:
     """Return the page of a result file. :raises Unreadable: the file, or a part that the page needs"""
     result = read(path)
-    try:
+    with located(file=path):
         return Document(result, source, identifier, budget_bytes)
-    except StatejumpError as failure:
-        raise failure.located(file=path) from None
 
 
 def _case_of(result: Result) -> Case | None:

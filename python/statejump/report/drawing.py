@@ -19,7 +19,7 @@ from statejump.core.errors import Unreadable
 from statejump.core.run import Run
 from statejump.report.labels import STATES, Labels
 from statejump.results.contents import Result
-from statejump.results.growth import growth
+from statejump.results.outline import growth
 from statejump.results.scene import resolve, resolve_point
 
 # Size of the smallest clearance at the default magnification, as a fraction of the scene. It is limited to a fraction

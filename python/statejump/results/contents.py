@@ -11,7 +11,7 @@ import numpy as np
 
 from statejump.core.case import Case
 from statejump.core.comparison import Comparison, Quantity
-from statejump.core.errors import StatejumpError
+from statejump.core.errors import located
 from statejump.core.run import Run
 from statejump.core.temperature_files import Histories
 from statejump.core.units import unit_of
@@ -90,10 +90,8 @@ class Result:
         data = _given(json.loads(self.case_json))
         if self.members is not None:
             data["thermal"]["members"] = self.members
-        try:
+        with located(case=self.name):
             return parse_case(data)
-        except StatejumpError as failure:
-            raise failure.located(case=self.name) from None
 
     @property
     def case(self) -> Case:

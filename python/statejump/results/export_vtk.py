@@ -18,8 +18,7 @@ from vtkmodules.vtkCommonDataModel import VTK_LINE, vtkDataObject, vtkPolyData, 
 
 from statejump.core.run import Run
 from statejump.results.contents import Result
-from statejump.results.growth import growth
-from statejump.results.outline import outlines, placed
+from statejump.results.outline import growth, outlines, placed
 from statejump.results.scene import PART_TYPES, resolve, resolve_point
 from statejump.results.vtk_data import add_array, cells, file_time, frames_of, points, write, write_series
 

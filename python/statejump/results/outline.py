@@ -6,6 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from statejump.results.contents import Result
+from statejump.results.scene import resolve
+
 SIDES = 96  # sides of a circle; the sagitta is 5e-4 of the radius
 
 
@@ -53,3 +56,10 @@ def placed(points: np.ndarray, centre: np.ndarray, angle_rad: float, growth: flo
     cos, sin = np.cos(angle_rad), np.sin(angle_rad)
     turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
     return centre + growth * points @ turn.T
+
+
+def growth(part: dict[str, Any], result: Result, model: str) -> np.ndarray:
+    """Return 1 + thermal strain of a part over the samples: factor of its radii and dimensions."""
+    run = result.models[model]
+    change = resolve(part.get("temperature_change_K", result.scene["temperature_change_K"]), run, result.names)
+    return 1 + part.get("thermal_expansion_per_K", 0.0) * change

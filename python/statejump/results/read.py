@@ -29,9 +29,9 @@ def is_result_file(path: Path) -> bool:
 
 
 def read(path: str | Path) -> Result:
-    """Return the contents of a result file.
+    """Return the content of a result file (HDF5): runs by model, comparison, case, scene and provenance.
 
-    :raises Unreadable: the file is missing, no result file, of a newer layout, truncated or altered, or lacks a part
+    :raises StatejumpError: the file does not exist, is no result file, has a newer layout, or is damaged
     """
     path = Path(path)
     try:

@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 import json
+import platform
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
+import h5py
+import numpy as np
+
+from statejump import _paths
+from statejump._version import __version__
 from statejump.core.case import Case
 from statejump.core.comparison import Comparison
 from statejump.core.output import check_suffix
@@ -16,7 +23,6 @@ from statejump.kinds.protocol import ItemNames, SceneDescription
 from statejump.results import export_csv
 from statejump.results.contents import Answers, Result
 from statejump.results.layout import SUFFIX
-from statejump.results.provenance import provenance
 from statejump.results.write import write
 from statejump.schema.fields import attached_to_json
 
@@ -88,3 +94,29 @@ def save(
     if "dem" in runs and result.complete:
         write_json(folder / "dem_run.json", runs["dem"].about)
     return path
+
+
+def provenance(case: Case, dem: Run | None) -> dict[str, Any]:
+    """Return the attributes of ``/provenance``.
+
+    :param dem: the DEM run; None without one
+    """
+    found: dict[str, Any] = {
+        "statejump_version": __version__,
+        "git_commit": _paths.GIT_COMMIT,
+        "python_version": platform.python_version(),
+        "numpy_version": np.__version__,
+        "h5py_version": h5py.__version__,
+        "hdf5_version": h5py.version.hdf5_version,
+    }
+    sections = case.with_defaults()
+    seed = sections.get("ensemble", {}).get("seed")
+    if seed is not None:
+        found["seed"] = seed
+    if dem is not None:
+        if "yade_version" in dem.about:
+            found["yade_version"] = dem.about["yade_version"]
+        threads = sections.get("dem", {}).get("threads")
+        if threads is not None:
+            found["threads"] = threads
+    return found

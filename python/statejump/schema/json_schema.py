@@ -13,20 +13,18 @@ import math
 import os
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from statejump import _paths, kinds
 from statejump.campaign.campaign_file import FILES
 from statejump.core.errors import Range
 from statejump.core.output import write_atomically
+from statejump.kinds.protocol import Kind
 from statejump.schema.fields import (
     TABLES_BESIDE, Section, default_of, fields_of, is_required, rule_of, section_of, tables_of,
 )
 from statejump.schema.items import Item
 from statejump.schema.rules import ATTACHED, NUMBERS, SWITCH, TEXT, TEXTS, WHOLE, Rule, check_name
-
-if TYPE_CHECKING:
-    from statejump.kinds.protocol import Kind
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
 ANY = "case"

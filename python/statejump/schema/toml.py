@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reader of TOML files; a fault is one sentence with its line."""
+"""Reader and writer of TOML files; a fault is one sentence with its line."""
 from __future__ import annotations
 
+import re
 import sys
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+
+import tomli_w
 
 from statejump.core.errors import Unreadable, size
 
@@ -50,3 +54,16 @@ def _reason(failure: tomllib.TOMLDecodeError, text: str) -> tuple[str, int]:
     words = place.replace(",", " ").split()
     last = len(text.splitlines())
     return reason or str(failure), int(words[1]) if words[:1] == ["line"] else last
+
+
+def to_toml(made: Mapping[str, Any]) -> str:
+    """Return a document as TOML, short lists on one line."""
+    text = tomli_w.dumps(dict(made))
+    # The writer puts every entry of a list on its own line; texts contain no line ends.
+    return re.sub(r"\[\n((?:    [^\n]*,\n)+)\]", _on_one_line, text)
+
+
+def _on_one_line(match: re.Match[str]) -> str:
+    items = [line.strip().rstrip(",") for line in match[1].splitlines()]
+    line = "[" + ", ".join(items) + "]"
+    return line if len(line) <= 100 else match[0]

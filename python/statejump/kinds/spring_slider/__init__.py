@@ -62,13 +62,13 @@ class SpringSlider(Kind[SpringSliderCase]):
     difference = Later("statejump.kinds.spring_slider.compare:difference")
     names = Later("statejump.kinds.spring_slider.result:names")
     scene = Later("statejump.kinds.spring_slider.result:scene")
-    outcomes = Later("statejump.kinds.spring_slider.outcomes:outcomes")
+    outcomes = Later("statejump.kinds.spring_slider.compare:outcomes")
     statics = Later("statejump.kinds.spring_slider.statics:statics")
-    control = Later("statejump.kinds.spring_slider.control:answer")
+    control = Later("statejump.kinds.spring_slider.control:control")
     sheet = Later("statejump.kinds.spring_slider.figure:sheet")
     summary_lines = Later("statejump.kinds.spring_slider.summary:summary_lines")
     describe = Later("statejump.kinds.spring_slider.summary:describe")
-    charts = Later("statejump.kinds.spring_slider.charts:charts")
+    charts = Later("statejump.kinds.spring_slider.summary:charts")
     event_reason = Later("statejump.kinds.spring_slider.summary:event_reason")
 
 

@@ -2,16 +2,19 @@
 """Comparison of the DEM run of a ``spring_slider`` case with the reduced model."""
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from math import pi, sqrt
 
 import numpy as np
 
 from statejump.core.comparison import Comparison, Quantity, models, share
 from statejump.core.run import Run, change, energy_residue_J
+from statejump.core.units import text
+from statejump.core.why_missed import heated_too_fast, still_moving
 from statejump.kinds.spring_slider import stable_step
 from statejump.kinds.spring_slider.case import SpringSliderCase
 from statejump.kinds.spring_slider.result import AT_END
-from statejump.kinds.spring_slider.why_missed import why_missed
 
 # Fraction of the largest stored energy. If friction does less work, the block does not slip.
 NO_SLIP = 1e-6
@@ -135,3 +138,56 @@ def difference(case: SpringSliderCase, first: Run, second: Run) -> list[Quantity
             for kind in COMPARED_EVENTS
         ]
     return [*rows, _displacement_row(case, first, second)]
+
+
+def outcomes(case: SpringSliderCase, run: Run) -> dict[str, float]:
+    """Return jump, event temperatures, work of friction and largest axial force; NaN: it did not happen."""
+    exact = run.native is not None
+    if exact:
+        columns, force = run.native.sample(np.array([case.duration_s])), run.native.largest_axial_force_N
+        events = first_cycle_events(case, run)
+    else:
+        columns, force = run, float(np.max(np.abs(run["axial_force_N"])))
+        events = dem_event_temperatures(run, case.samples_per_cycle)
+    found = {f"{kind}_temperature_change_K": events[kind] for kind in COMPARED_EVENTS}
+    return {
+        "state_jump_m": run.summary["state_jump_m"],
+        **{name: float("nan") if value is None else float(value) for name, value in found.items()},
+        "friction_dissipation_J": float(columns["friction_dissipation_J"][-1]) - (
+            0.0 if exact else float(columns["friction_dissipation_J"][0])),
+        "largest_axial_force_N": force,
+    }
+
+
+def natural_period_s(case: SpringSliderCase) -> float:
+    """Return the natural period of the block on its bar [s]."""
+    stiffness = stable_step.link_stiffness(case) + case.joint.preload_stiffness_N_per_m
+    return 2 * pi * sqrt(stable_step.tip_mass(case) / stiffness)
+
+
+def why_missed(case: SpringSliderCase, exact: Run, dem: Run, rows: Sequence[Quantity]) -> list[str]:
+    """Return sentences."""
+    period, moved = natural_period_s(case), float(np.ptp(exact["displacement_m"]))
+    allowed = max(case.tolerance.displacement_rms_relative * moved, case.tolerance.state_jump_absolute_m)
+    found = heated_too_fast(period, case.thermal, case.thermal_program(), moved, allowed)
+    found += still_moving(dem, stable_step.tip_mass(case), period, allowed)
+    if any(row.name.endswith("_temperature_change") and not row.passed for row in rows):
+        found += _events(case, dem)
+    return found
+
+
+def _events(case: SpringSliderCase, dem: Run) -> list[str]:
+    """Return the reasons for a shift of events: samples, and the compliance of contacts."""
+    found, allowed = [], case.tolerance.event_temperature_K
+    between = float(np.abs(np.diff(dem["temperature_change_K"])).max())
+    if between > allowed:
+        found.append(f"two samples of the DEM are up to {text(between, 'K', 2)} apart, the tolerance of events is "
+                     f"{text(allowed, 'K', 2)}: raise dem.samples_per_cycle")
+    _, tangential = stable_step.contact_stiffness(case, case.joint.normal_force_N)
+    give = case.friction_force_N / tangential
+    along = abs(case.thermal_expansion_per_K) * case.link.stress_free_length_m
+    if along and give / along > 0.5 * allowed:
+        found.append(f"the reduced model sticks rigidly, the floor of the DEM gives by {text(give, 'm', 2)} before the "
+                     f"block slides, {text(give / along, 'K', 2)} of expansion: raise joint.young_modulus_Pa or "
+                     "joint.pad_radius_m")
+    return found

@@ -162,6 +162,7 @@ def _sweeps(case: SpringSliderCase) -> list[Sweep]:
     ]
 
 
+@with_notes
 def control(
     case: SpringSliderCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
     on_progress: OnProgress = lambda share: None, choices: DesignChoices = DesignChoices(),
@@ -192,11 +193,6 @@ def control(
     if with_dem:
         _check_by_dem(case, result, on_progress)
     return result
-
-
-def answer(case: SpringSliderCase, **settings: Any) -> Study:
-    """Return the control study, with notes on the temperature program."""
-    return with_notes(control, case, **settings)
 
 
 def _find_ranges(case: SpringSliderCase, sweep: Sweep, wanted: float) -> None:

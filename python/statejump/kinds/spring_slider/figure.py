@@ -7,12 +7,14 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from statejump import _engine
-from statejump.core.figures import DEM, REDUCED, Sheet
+from statejump.core.figures import DEM, REDUCED, Sheet, panels, style
 from statejump.core.run import Run
 from statejump.kinds.spring_slider import reduced
 from statejump.kinds.spring_slider.case import SpringSliderCase
+from statejump.kinds.spring_slider.statics import RestSets, rest_sets
 
 STAGE_NAMES = {"at_stop_plus": "stop", "at_stop_minus": "stop", "in_play": "play"}
 STAGE_SHADES = {"S1": "0.94", "S2": "1.0", "S3": "0.94", "S4": "0.90", "S5": "1.0", "play": "0.97"}
@@ -21,6 +23,7 @@ MOST_NAMED_CYCLES = 3  # with more cycles the names of stages would overlap
 
 
 DENSE = 4001  # points of the exact path, in addition to its events
+TEMPERATURES = 401  # of the picture of rest sets
 QUANTITIES = (("displacement_m", 1e3, "Displacement of the slider [mm]"),
               ("axial_force_N", 1.0, "Axial force, compression positive [N]"))
 ABSCISSAE = (("temperature_change_K", "Temperature change [K]"), ("time_s", "Time [s]"))
@@ -116,3 +119,23 @@ def _mark_jump(panel: Axes, case: SpringSliderCase, path: _engine.SpringSliderPa
                        textcoords="axes fraction", fontsize=8, color="#A04000",
                        arrowprops={"arrowstyle": "->", "color": "#A04000", "shrinkB": 4,
                                    "connectionstyle": "arc3,rad=0.15"})
+
+
+def drawn(found: RestSets, axes: Axes | None = None) -> Figure:
+    """Draw the positions over the temperature; into given axes, or into a new figure."""
+    with style():
+        if axes is None:
+            _, axes = panels(1, 1, (5.5, 4.2))
+        dense = rest_sets(found.case, found.friction_force_N, TEMPERATURES).segments
+        change = [part.temperature_change_K for part in dense]
+        axes.fill_between(change, [part.from_m * 1e3 for part in dense], [part.to_m * 1e3 for part in dense],
+                          color="#E69F00", alpha=0.6, linewidth=0, label="held by friction or a stop")
+        for ends in ("from_m", "to_m"):  # at a stop the band is a line
+            axes.plot(change, [getattr(part, ends) * 1e3 for part in dense], color="#E69F00", linewidth=2)
+        axes.plot(change, [part.zero_force_m * 1e3 for part in dense], color="#000000", linewidth=1,
+                  linestyle=(0, (5, 2)), label="no force")
+        axes.set_xlabel("Temperature change [K]")
+        axes.set_ylabel("Place of the slider [mm]")
+        axes.legend(loc="best", framealpha=1)
+    figure: Figure = axes.figure
+    return figure

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_DRAWN, _SAVED = Later("statejump.kinds.spring_slider.statics_figure:drawn"), Later("statejump.core.figures:save")
+_DRAWN, _SAVED = Later("statejump.kinds.spring_slider.figure:drawn"), Later("statejump.core.figures:save")
 
 
 @dataclass(frozen=True)
@@ -58,10 +58,8 @@ class RestSets:
 
     def frame(self) -> pandas.DataFrame:
         """Return a row per temperature, units in the names of the columns."""
-        pandas = libraries.pandas()
-
         rows = [(*astuple(part), part.length_m) for part in self.segments]
-        return pandas.DataFrame(rows, columns=[*(field.name for field in fields(Segment)), "length_m"])
+        return libraries.frame(rows, columns=[*(field.name for field in fields(Segment)), "length_m"])
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the places of rest over the temperature; into given axes, or into a new figure."""
@@ -93,9 +91,6 @@ class RestSets:
 
     def _repr_html_(self) -> str:
         return str(self.frame().to_html(index=False))
-
-
-DENSE = 401  # number of temperatures of the picture
 
 
 def segment(case: SpringSliderCase, friction_force_N: float, temperature_change_K: float) -> Segment:

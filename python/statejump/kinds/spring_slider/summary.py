@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from statejump.core.charts import TEMPERATURE, TIME, Axis, Chart
 from statejump.core.run import AT_STOP, Event, Run
 from statejump.core.start import FRICTIONLESS
 from statejump.core.tables import Shown
@@ -100,3 +101,14 @@ def event_reason(case: SpringSliderCase, event: Event, model: str, runs: Mapping
     if AT_STOP not in run.contacts["state"].values[nearest]:
         return ""
     return "the stop carries: a rigid one holds the block still, that of the DEM gives and lets it creep on the floor"
+
+
+def charts(case: SpringSliderCase) -> list[Chart]:
+    """Return displacement and axial force over temperature and over time."""
+    displacement, force = Axis("displacement_m"), Axis("axial_force_N")
+    return [
+        Chart(TEMPERATURE, displacement, "Displacement-temperature loop", marks=True),
+        Chart(TEMPERATURE, force, "Force-temperature loop", marks=True),
+        Chart(TIME, displacement, "Displacement over time", stages=True),
+        Chart(TIME, force, "Axial force over time", stages=True),
+    ]

@@ -21,7 +21,11 @@ from statejump.schema.fields import (
 from statejump.schema.rules import suggestion
 
 PAPER = "Chen et al. (2021), section 2"
-TYPES = ("slot", "journal", "ball", "cylinder", "lobed", "mesh")
+TYPES = {
+    "slot": "A block in a slot", "journal": "A journal in a round bearing", "ball": "A ball in a socket",
+    "cylinder": "A cylinder in a bore with shoulders", "lobed": "A journal in a lobed bearing",
+    "mesh": "A component whose positions are the surface of a mesh",
+}
 LARGEST_FORCE_N = 1e12
 LARGEST_TEMPERATURE_CHANGE_K = 1e4
 MOST_FORCES = 256
@@ -110,7 +114,7 @@ class StaticsJoint(Section):
 
     GOES_WITH = {"type": KEYS_OF_TYPES}
 
-    type: str = choice(..., TYPES, PAPER + ": one, two or three dimensions")
+    type: str = choice(..., tuple(TYPES), PAPER + ": one, two or three dimensions")
     friction_coefficient: float = parameter(..., "-", 0, 100, PAPER)
     clearance_m: float | None = parameter(None, "m", 0, 1e2, PAPER + ": c", above=True)
     axial_play_m: float | None = parameter(None, "m", 0, 1e2, "cylinder: middle to shoulder", above=True)

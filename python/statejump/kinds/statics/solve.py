@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from html import escape
 from math import pi
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,7 +15,7 @@ from statejump import _engine
 from statejump.core import libraries
 from statejump.core.engine_failures import engine
 from statejump.core.later import Later
-from statejump.core.tables import Shown
+from statejump.core.tables import Shown, html_table
 from statejump.kinds.statics.case import LoadCase, StaticsCase
 from statejump.kinds.statics.mesh import can_mesh, read_mesh, vertex_normals
 from statejump.schema.fields import rule_of
@@ -26,10 +27,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _DRAWN, _WRITTEN = Later("statejump.kinds.statics.figure:drawn"), Later("statejump.kinds.statics.files:write")
-_SUMMARY_LINES = Later("statejump.kinds.statics.summary:summary_lines")
-_HTML = Later("statejump.kinds.statics.summary:html")
 SPHERE_LEVEL = 4  # 5120 triangles
 FRICTION = "joint.friction_coefficient"
+HEADINGS = ("force", "parts", "length [m]", "area [m2]", "angle [rad]", "largest jump [m]")
+NOWHERE = "no position holds under every force: the joint moves from one to the other"
 
 
 @dataclass(frozen=True)
@@ -64,8 +65,6 @@ class Statics:
     def frame(self) -> pandas.DataFrame:
         """Return one row per part of every set, with units in the column names; an empty set has a row without numbers.
         ``set_diameter_m`` is that of the whole set: the largest jump."""
-        pandas = libraries.pandas()
-
         rows = []
         for name, found in self.named():
             whole = {"parts": len(found["parts"]), "set_diameter_m": found["diameter_m"]}
@@ -80,7 +79,7 @@ class Statics:
                 rows.append({"set": name, **whole})
         columns = ("set", "part", "length_m", "area_m2", "angle_rad", "diameter_m", "x_m", "y_m", "z_m", "parts",
                    "set_diameter_m")
-        return pandas.DataFrame(rows, columns=list(columns))
+        return libraries.frame(rows, columns=list(columns))
 
     def plot(self, axes: Axes | None = None) -> Figure:
         """Draw the rest sets.
@@ -92,7 +91,29 @@ class Statics:
 
     def summary_lines(self) -> list[Shown | str]:
         """Return the tables and lines that a command prints."""
-        return _SUMMARY_LINES(self)
+        title = f"{self.case.title}: where it can rest, friction coefficient {self.friction_coefficient:g}"
+        return [Shown(title, HEADINGS, self._rows(), left=("force",)), *self._notes()]
+
+    def _rows(self) -> list[tuple[str, ...]]:
+        """Return every set and, if it has several parts, every part, as cells of ``HEADINGS``."""
+        found: list[tuple[str, ...]] = []
+        for name, one in self.named():
+            parts = one["parts"]
+            found.append((name, str(len(parts)), *_measure(one), _angle(parts[0]) if len(parts) == 1 else "-",
+                          _number(one["diameter_m"]) if parts else "-"))
+            for index, part in enumerate(parts if len(parts) > 1 else (), start=1):
+                found.append((f"  part {index}", "", *_measure(part), _angle(part), _number(part["diameter_m"])))
+        return found
+
+    def _notes(self) -> list[str]:
+        """Return the facts that the table does not contain."""
+        found = []
+        if not self.all["parts"] and len(self.loads) > 1:
+            found.append(NOWHERE)
+        error = max(one["diameter_error_m"] for _, one in self.named())
+        if error > 0:
+            found.append(f"on a mesh: error of the largest jump about {error:.2g} m")
+        return found
 
     def write(self, folder: Path) -> list[Path]:
         """Write ``statics.json``, the picture and, for positions in space, a ParaView file; return their paths.
@@ -106,7 +127,23 @@ class Statics:
                 f"{len(self.loads)} forces, largest jump {self.any['diameter_m']:.6g} m)")
 
     def _repr_html_(self) -> str:
-        return _HTML(self)
+        said = "".join(f"<p>{escape(note)}</p>" for note in self._notes())
+        title = f"{self.case.title}, friction coefficient {self.friction_coefficient:g}"
+        return f"<h4>{escape(title)}</h4>{html_table(HEADINGS, self._rows())}{said}"
+
+
+def _number(value: float) -> str:
+    return f"{value:.6g}"
+
+
+def _measure(value: dict[str, Any]) -> tuple[str, str]:
+    """Length and area for a table; a point has neither."""
+    length, area = (_number(value[key]) if value[key] else "-" for key in ("length_m", "area_m2"))
+    return length, area
+
+
+def _angle(part: dict[str, Any]) -> str:
+    return "-" if part["angle_rad"] is None else _number(part["angle_rad"])
 
 
 def solve(case: StaticsCase, friction_coefficient: float | None = None) -> Statics:

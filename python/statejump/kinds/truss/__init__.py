@@ -59,13 +59,13 @@ class Truss(Kind[TrussCase]):
     surface = Later("statejump.kinds.truss.reflector:surface")
     contact_problems = Later("statejump.kinds.truss.contact_problems:contact_problems")
     creak = Later("statejump.kinds.truss.creak:creak")
-    control = Later("statejump.kinds.truss.control.study:answer")
+    control = Later("statejump.kinds.truss.control.study:control")
     answers = Later("statejump.kinds.truss.answers.study:answer")
     sheet = Later("statejump.kinds.truss.figure:sheet")
     summary_lines = Later("statejump.kinds.truss.summary:summary_lines")
     describe = Later("statejump.kinds.truss.summary:describe")
     page = Later("statejump.kinds.truss.page:page")
-    draw = Later("statejump.kinds.truss.draw:draw")
+    draw = Later("statejump.kinds.truss.figure:draw")
 
 
 KIND = Truss()

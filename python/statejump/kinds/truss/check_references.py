@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from statejump.core.errors import ABSENT, MissingKey, NotAllowed
 from statejump.kinds.truss import check_mechanism
 from statejump.kinds.truss.arrays import having, said
-from statejump.kinds.truss.check_constraints import check_constraints
+from statejump.kinds.truss.constraints import LEAST_COEFFICIENT
 from statejump.kinds.truss.elements import ELEMENTS
-from statejump.kinds.truss.elements.protocol import listed_elements
 from statejump.kinds.truss.joints import JOINTS
-from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.references import Around, known_name, known_nodes, wrong_ends
+from statejump.kinds.truss.sections import Link, TrussSections
 from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns, ItemIndex, by_name, each, where_wrong
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.sections import Link, TrussSections
 
 _WITH_TEMPERATURE = [joint for joint in JOINTS if joint.has_temperature]
 
@@ -37,13 +33,9 @@ def check_references(case: TrussSections) -> None:
     _members(case)
     _alternatives(case)
     around = Around(node_places, link_places, _held(case), node_places.of(case.link, "nodes"))
-    for joint in JOINTS:
-        for item in where_wrong(listed_joints(case, joint), partial(joint.may_be_wrong_references, around=around)):
-            joint.check_references(item, nodes, links)
-    for element in ELEMENTS:
-        items = listed_elements(case, element)
-        for item in where_wrong(items, partial(element.may_be_wrong_references, around=around)):
-            element.check_references(item, nodes, links)
+    for kind in (*JOINTS, *ELEMENTS):
+        for item in where_wrong(kind.listed(case), partial(kind.may_be_wrong_references, around=around)):
+            kind.check_references(item, nodes, links)
     check_constraints(case, nodes)
     check_mechanism.check(case, links)
     if case.reflector is not None:
@@ -66,7 +58,7 @@ def _followers(case: TrussSections) -> Iterator[tuple[Any, dict[str, Any], bool]
     yield from ((link, {"item": f"link {link.name!r}"}, True)
                 for link in each(case.link, "name", "program", "temperature_fraction"))
     yield from ((item, joint.where(item.name), joint.expands(item)) for joint in _WITH_TEMPERATURE
-                for item in listed_joints(case, joint))
+                for item in joint.listed(case))
 
 
 def _programs(case: TrussSections) -> None:
@@ -74,7 +66,7 @@ def _programs(case: TrussSections) -> None:
     followers: Iterator[tuple[Any, Any]] = (
         (items, where) for items, where in (
             (case.link, lambda name: {"item": f"link {name!r}"}),
-            *((listed_joints(case, joint), joint.where) for joint in _WITH_TEMPERATURE)))
+            *((joint.listed(case), joint.where) for joint in _WITH_TEMPERATURE)))
     for items, where in followers:
         for item in where_wrong(items, lambda items: places.of(items, "program") == UNKNOWN):
             if item.program is not None:
@@ -134,5 +126,29 @@ def _alternatives(case: TrussSections) -> None:
             raise NotAllowed("mass_kg", link.mass_kg, code="conflicting_key", other="density_kg_per_m3",
                              item=f"link {link.name!r}")
     for element in ELEMENTS:
-        for item in where_wrong(listed_elements(case, element), element.may_be_wrong_keys):
+        for item in where_wrong(element.listed(case), element.may_be_wrong_keys):
             element.check_keys(item)
+
+
+def check_constraints(case: TrussSections, nodes: Mapping[str, Any]) -> None:
+    """Raise NotAllowed for the first constraint with inconsistent terms."""
+    for item in case.constraint:
+        where = {"item": f"constraint {item.name!r}"}
+        if not item.nodes:
+            raise NotAllowed("nodes", item.nodes, code="no_nodes", **where)
+        for name in item.nodes:
+            known_name("nodes", item.nodes, name, nodes, "node", **where)
+        for key in ("directions", "coefficients"):
+            if len(getattr(item, key)) != len(item.nodes):
+                raise NotAllowed(key, getattr(item, key), code="constraint_length", terms=len(item.nodes), **where)
+        if case.truss.dimension == 2 and "z" in item.directions:
+            raise NotAllowed("directions", item.directions, code="planar_directions", **where)
+        terms = list(zip(item.nodes, item.directions))
+        for term in terms:
+            if terms.count(term) > 1:
+                raise NotAllowed("nodes", item.nodes, code="constraint_term_twice", node=term[0], direction=term[1],
+                                 **where)
+        largest = max(abs(value) for value in item.coefficients)
+        for value in item.coefficients:
+            if value == 0 or abs(value) < LEAST_COEFFICIENT * largest:
+                raise NotAllowed("coefficients", value, code="constraint_coefficient", **where)

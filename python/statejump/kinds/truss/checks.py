@@ -8,27 +8,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from statejump.core import expansion, thermal
 from statejump.core.errors import NotAllowed, StatejumpError
 from statejump.kinds.truss.check_geometry import check_geometry
 from statejump.kinds.truss.check_references import check_references
 from statejump.kinds.truss.elements import ELEMENTS
-from statejump.kinds.truss.elements.protocol import listed_elements
 from statejump.kinds.truss.joints import JOINTS
-from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.references import vector, wrong_vectors
+from statejump.kinds.truss.resolved import ResolvedTruss
+from statejump.kinds.truss.sections import Node, TrussSections
 from statejump.schema.item_tables import ItemColumns, each, repeated_names, where_wrong
 
-if TYPE_CHECKING:
-    import numpy as np
-
-    from statejump.kinds.truss.resolved import ResolvedTruss
-    from statejump.kinds.truss.sections import Node, TrussSections
-
-SECTIONS = ("node", "link", "program", "expansion", *(joint.section for joint in JOINTS),
-            *(element.section for element in ELEMENTS), "constraint", "drive")
+SECTIONS = ("node", "link", "program", "expansion", *(kind.section for kind in (*JOINTS, *ELEMENTS)), "constraint",
+            "drive")
 
 
 def check(case: TrussSections, resolve: Callable[[], ResolvedTruss]) -> None:
@@ -112,14 +107,9 @@ def _vectors(case: TrussSections) -> None:
         if dimension == 2 and "z" in node.fixed:
             raise NotAllowed("fixed", node.fixed, code="planar_directions", item=f"node {node.name!r}",
                              nodes=(node.name,))
-    for joint in JOINTS:
-        for item in where_wrong(listed_joints(case, joint),
-                                partial(joint.may_be_wrong_vectors, dimension=dimension)):
-            joint.check_vectors(item, dimension)
-    for element in ELEMENTS:
-        for item in where_wrong(listed_elements(case, element),
-                                partial(element.may_be_wrong_vectors, dimension=dimension)):
-            element.check_vectors(item, dimension)
+    for kind in (*JOINTS, *ELEMENTS):
+        for item in where_wrong(kind.listed(case), partial(kind.may_be_wrong_vectors, dimension=dimension)):
+            kind.check_vectors(item, dimension)
     if case.reflector is not None:
         axis = case.reflector.axis
         if len(axis) != dimension or not any(axis):

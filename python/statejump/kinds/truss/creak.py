@@ -60,9 +60,7 @@ class Creak:
 
     def frame(self, table: str) -> pandas.DataFrame:
         """Return ``slips`` or ``bands`` as a table, with units in the column names."""
-        pandas = libraries.pandas()
-
-        return pandas.DataFrame(getattr(self, table))
+        return libraries.frame(getattr(self, table))
 
     def plot(self) -> Figure:
         """Draw the slips of joints over time, the acceleration of the node, and its spectrum."""

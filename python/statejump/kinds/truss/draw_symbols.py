@@ -19,8 +19,7 @@ from scipy.spatial import cKDTree
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.elements.protocol import Lines
 from statejump.kinds.truss.joints import JOINTS
-from statejump.kinds.truss.joints.protocol import Strokes, Symbol
-from statejump.kinds.truss.joints.phrases import scaled
+from statejump.kinds.truss.joints.protocol import Strokes, Symbol, scaled
 from statejump.kinds.truss.resolved import ResolvedTruss
 
 # Cold is pale, hot is dark red. The colours differ in grey and for colour-blind eyes too. The palest ones are invisible

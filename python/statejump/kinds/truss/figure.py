@@ -8,13 +8,19 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d import Axes3D
 
-from statejump.core.figures import DEM, REDUCED, Panel, Sheet
+from statejump.core.charts import straight_part
+from statejump.core.errors import StatejumpError
+from statejump.core.figures import DEM, REDUCED, Panel, Sheet, style
 from statejump.core.run import Run
-from statejump.core.thin_loops import straight_part
 from statejump.core.units import scale_of, text
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.compare import jumps_m, reduced_name, scales_of
+from statejump.kinds.truss.draw_planar import draw_planar, planar
+from statejump.kinds.truss.draw_spatial import draw_spatial, spatial
+from statejump.kinds.truss.draw_symbols import MOST_NAMED
 
 REDUCED_RUN: dict[str, Any] = {**REDUCED, "linewidth": 3.6}
 DEM_RUN = {**DEM, "linewidth": 1.1}
@@ -48,8 +54,8 @@ def sheet(case: TrussCase, runs: Sequence[Run]) -> Sheet:
 
     def loop(node: int, axis: int) -> Panel:
         def draw(axes: Axes) -> None:
-            for run, style in styled:
-                axes.plot(run["temperature_change_K"], run["displacement_m"][:, node, axis] * scale, **style)
+            for run, line_style in styled:
+                axes.plot(run["temperature_change_K"], run["displacement_m"][:, node, axis] * scale, **line_style)
             axes.set_xlabel("Temperature change [K]")
             axes.set_ylabel(f"Displacement of node {case.node[node].name} along {'xyz'[axis]} [{unit}]")
             _mark_jump(axes, case, first, node, axis, scale)
@@ -63,8 +69,8 @@ def sheet(case: TrussCase, runs: Sequence[Run]) -> Sheet:
         assert line is not None
         left = [line.taken_off(run["temperature_change_K"], run["displacement_m"][:, node, axis]) for run in runs]
         own_scale, own_unit = scale_of("m", float(np.abs(left[0]).max()))
-        for (run, style), values in zip(styled, left):
-            axes.plot(run["temperature_change_K"], values * own_scale, **style)
+        for (run, line_style), values in zip(styled, left):
+            axes.plot(run["temperature_change_K"], values * own_scale, **line_style)
         axes.set_xlabel("Temperature change [K]")
         slope_scale, slope_unit = scale_of("m", abs(line.slope))
         axes.set_ylabel(f"The same less {line.slope * slope_scale:.5g} {slope_unit}/K [{own_unit}]")
@@ -74,15 +80,15 @@ def sheet(case: TrussCase, runs: Sequence[Run]) -> Sheet:
 
     def force(axes: Axes) -> None:
         assert link is not None
-        for run, style in styled:
-            axes.plot(run["temperature_change_K"], run.links["axial_force_N"].values[:, link], **style)
+        for run, line_style in styled:
+            axes.plot(run["temperature_change_K"], run.links["axial_force_N"].values[:, link], **line_style)
         axes.set_xlabel("Temperature change [K]")
         axes.set_ylabel(f"Axial force of {case.link[link].name}, compression positive [N]")
 
     def friction(axes: Axes) -> None:
-        for run, style in styled:
+        for run, line_style in styled:
             heat = run["friction_dissipation_J"]
-            axes.plot(run.time_s, (heat - heat[0]) * 1e3, **style)
+            axes.plot(run.time_s, (heat - heat[0]) * 1e3, **line_style)
         axes.set_xlabel("Time [s]")
         axes.set_ylabel("Work of friction [mJ]")
 
@@ -104,3 +110,28 @@ def _mark_jump(axes: Axes, case: TrussCase, run: Run, node: int, axis: int, scal
     axes.plot(run["temperature_change_K"][-1], values[-1], "s", color="#D55E00", markersize=5, zorder=6,
               label=_label(case, run, float(jump)))
     axes.legend(loc="best", framealpha=1)
+
+
+def draw(case: TrussCase, axes: Axes | None = None, names: bool = False) -> Figure:
+    """Return the drawing of a truss.
+
+    :param names: write the names of all nodes, even if they cover the drawing
+    :param axes: axes to draw into, with projection ``3d`` for a spatial truss; None: a new figure
+    :raises StatejumpError: the axes are not three-dimensional
+    """
+    truss = case.resolve()
+    most_named = len(truss.nodes.names) if names else MOST_NAMED
+    if axes is None:
+        with style():
+            drawing = (planar if truss.dimension == 2 else spatial)(truss, most_named)
+            drawing.suptitle(case.title, fontsize=11)
+        return drawing
+    if truss.dimension == 2:
+        draw_planar(truss, axes, most_named)
+    elif isinstance(axes, Axes3D):
+        draw_spatial(truss, axes, most_named)
+    else:
+        raise StatejumpError(code="spatial_axes_needed", key="axes")
+    figure = axes.figure
+    assert isinstance(figure, Figure)
+    return figure

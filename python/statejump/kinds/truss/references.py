@@ -5,17 +5,15 @@ from __future__ import annotations
 import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from statejump.core.errors import MissingKey, NotAllowed
 from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION, said
+from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns, ItemIndex
 from statejump.schema.texts import BLOCK
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.resolved import ResolvedTruss
 
 MOST_LISTED = 5
 

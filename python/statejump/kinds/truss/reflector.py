@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from statejump.core.errors import StatejumpError
+from statejump.core.errors import StatejumpError, located
 from statejump.kinds.truss.case import TrussCase
 from statejump.surface.design import Design
 
@@ -18,7 +18,5 @@ def surface(case: TrussCase) -> tuple[Design, np.ndarray]:
     if truss.reflector is None:
         raise StatejumpError(code="reflector_missing", file=case.origin.file)
     nodes = np.asarray(truss.reflector.nodes)
-    try:
+    with located(file=case.origin.file):
         return Design.of(truss.nodes.position_m[nodes], truss.reflector.axis, truss.reflector.focal_length_m), nodes
-    except StatejumpError as failure:
-        raise failure.located(file=case.origin.file) from None

@@ -2,24 +2,24 @@
 """The arrays of a case of kind ``truss``: names become indices, keys become arrays."""
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
 
+from statejump.core.errors import NotAllowed
+from statejump.core.expansion import followed
+from statejump.core.thermal import MemberProgram
 from statejump.kinds.truss.arrays import (
-    References, column, columns, distances, given_or, having, in_space, names, pairs, texts, unit, vectors,
+    References, column, columns, distances, given_or, having, in_space, names, pairs, texts, unit, values, vectors,
 )
 from statejump.kinds.truss.constraints import resolve_constraints
 from statejump.kinds.truss.elements import ELEMENTS
-from statejump.kinds.truss.elements.protocol import listed_elements
-from statejump.kinds.truss.expansions import LinkTemperatures, link_temperatures
 from statejump.kinds.truss.joints import JOINTS
-from statejump.kinds.truss.joints.protocol import listed_joints
 from statejump.kinds.truss.mechanism import resolve_bodies, resolve_drives, weights_N
 from statejump.kinds.truss.resolved import Links, Nodes, ReflectorSurface, ResolvedTruss
-from statejump.kinds.truss.sections import TrussSections
-from statejump.schema.item_tables import ItemIndex, once
+from statejump.kinds.truss.sections import TrussSections, TrussThermal
+from statejump.schema.item_tables import ItemColumns, ItemIndex, once
 
 
 def resolve(case: TrussSections) -> ResolvedTruss:
@@ -54,8 +54,8 @@ def resolve(case: TrussSections) -> ResolvedTruss:
         )
     return ResolvedTruss(
         name=case.name, dimension=dimension, nodes=nodes, links=links, bodies=bodies,
-        joints={joint.section: joint.resolve(listed_joints(case, joint), known) for joint in JOINTS},
-        elements={element.section: element.resolve(listed_elements(case, element), known) for element in ELEMENTS},
+        joints={joint.section: joint.resolve(joint.listed(case), known) for joint in JOINTS},
+        elements={element.section: element.resolve(element.listed(case), known) for element in ELEMENTS},
         constraints=resolve_constraints(case.constraint, node_places), drives=resolve_drives(case.drive, known),
         programs=warmed.programs,
         program_names=warmed.program_names,
@@ -98,3 +98,52 @@ def _links(case: TrussSections, nodes: np.ndarray, positions: np.ndarray, warmed
         second_moment_of_area_m4=once(given_or(column(case.link, "second_moment_of_area_m4"), area**2 / 12)),
         ends=texts(case.link, "ends"), yield_strength_Pa=given_or(column(case.link, "yield_strength_Pa"), inf),
     )
+
+
+@dataclass(frozen=True)
+class LinkTemperatures:
+    """Programs of a truss, and the program of each link (m); see :mod:`statejump.core.expansion`."""
+
+    programs: tuple[TrussThermal | MemberProgram, ...]
+    program_names: tuple[str, ...]
+    program: np.ndarray
+    temperature_fraction: np.ndarray
+    expanding: np.ndarray  # bool: it has an [[expansion]]
+    largest_per_K: np.ndarray  # of the [[expansion]], else 0
+    shown_program: np.ndarray  # program of the temperature itself
+    shown_fraction: np.ndarray
+
+
+def link_temperatures(case: TrussSections, shown: np.ndarray, names: tuple[str, ...]) -> LinkTemperatures:
+    """Return the programs of the links. ``checks`` has checked the references when the case was read.
+
+    :param shown: the program of the temperature of every link
+    :param names: of the programs of the case
+    :raises NotAllowed: a program leaves the table of an expansion, or is not piecewise linear
+    """
+    programs, named = case.programs, list(names)
+    expansions = {expansion.name: expansion for expansion in case.expansion}
+    fraction = column(case.link, "temperature_fraction")
+    if isinstance(case.link, ItemColumns) and not case.link.texts("expansion").given().any():
+        none = np.broadcast_to(0.0, len(case.link))
+        return LinkTemperatures(tuple(programs), names, shown, fraction, none != 0, none, shown, fraction)
+    program, own_fraction, largest = shown.copy(), fraction.copy(), np.zeros(len(case.link))
+    made: dict[tuple[int, float, str], int] = {}
+    for index, named_expansion in enumerate(values(case.link, "expansion")):
+        if named_expansion is None:
+            continue
+        expansion, number = expansions[named_expansion], int(shown[index])
+        key = number, float(fraction[index]), named_expansion
+        if key not in made:
+            followed_program = programs[number]
+            try:
+                strain = followed(expansion, followed_program, followed_program.period_s, key[1])
+            except NotAllowed as refused:
+                refused.item = f"expansion {expansion.name!r}, link {case.link[index].name!r}"
+                raise
+            made[key] = len(programs)
+            programs.append(strain)
+            named.append(f"{expansion.name} of {names[number]}")
+        program[index], own_fraction[index], largest[index] = made[key], 1.0, expansion.largest_per_K
+    return LinkTemperatures(tuple(programs), tuple(named), program, own_fraction, program != shown, largest, shown,
+                            fraction)

@@ -15,7 +15,7 @@ from statejump.core.run import (
 )
 from statejump.core.start import carried
 from statejump.core.units import unit_of
-from statejump.kinds.truss import compare, members, notes
+from statejump.kinds.truss import compare, notes
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.elements.protocol import ElementType
@@ -289,7 +289,7 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
     })
     summary = {**_start_friction(path.truss, states), "energy_residue_J": path.energy_residue_J,
                "solves": float(path.solves), "unknowns": float(path.unknowns)}
-    beyond = members.warnings(path.truss.links, at, states["temperature_change_K"], states["axial_force_N"])
+    beyond = notes.warnings(path.truss.links, at, states["temperature_change_K"], states["axial_force_N"])
     if len(at) == len(path.cycle_ends["time_s"]):
         beyond = (*beyond, "of this long path the ends of cycles are kept: loads of links between them are not checked")
     beyond = (*beyond, *_taken_together(case, path), *notes.sentences(path.truss, path.notes))
@@ -391,5 +391,5 @@ def dem_run(case: TrussCase, columns: Columns, about: Mapping[str, Any]) -> Run:
 
 def _beyond(case: TrussCase, plain: Mapping[str, Column], items: Mapping[str, np.ndarray]) -> tuple[str, ...]:
     """Warnings of links that cannot carry the forces at the samples."""
-    return members.warnings(case.resolve().links, plain["time_s"].values, plain["temperature_change_K"].values,
-                            items["axial_force_N"])
+    return notes.warnings(case.resolve().links, plain["time_s"].values, plain["temperature_change_K"].values,
+                          items["axial_force_N"])

@@ -6,7 +6,7 @@ name; :class:`.case.TrussCase` turns names into indices and keys into arrays.
 """
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from statejump.core import thermal as core_thermal
 from statejump.core import yade_process
@@ -14,11 +14,11 @@ from statejump.core.case import Case
 from statejump.core.expansion import Expansion
 from statejump.core.start import Start
 from statejump.core.temperature_files import Histories
-from statejump.core.thermal import CaseThermal, MemberProgram, Thermal, returns_s
+from statejump.core.thermal import CaseThermal, MemberProgram, Numbers, Thermal, returns_s
 from statejump.kinds.truss.constraints import AXES, Constraint
 from statejump.kinds.truss.elements import ElementLists
 from statejump.kinds.truss.joints import JointLists
-from statejump.kinds.truss.joints.phrases import ALUMINIUM, USER
+from statejump.kinds.truss.joints.protocol import ALUMINIUM, USER
 from statejump.kinds.truss.mechanism import Drive
 from statejump.kinds.truss.resolved import FIXITY, STICKING
 from statejump.schema.fields import (
@@ -26,10 +26,6 @@ from statejump.schema.fields import (
     section_class, switch, tables, text, texts, whole,
 )
 from statejump.schema.items import Item
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 LARGEST_LENGTH_M = 1e6
 MOST_EXPANSION_PER_K = 1e-3
@@ -258,6 +254,6 @@ class TrussSections(ElementLists, JointLists, TrussParts):
         of_members = [] if members is None else [members.furthest_at_end(cycles)]
         return [self.thermal, *self.program, *of_members]
 
-    def returns_s(self) -> NDArray[np.float64]:
+    def returns_s(self) -> Numbers:
         """Return the times [s] at which all items have their first temperature again."""
         return returns_s(self.programs, self.period_s)

@@ -12,10 +12,8 @@ from statejump.core.tables import Shown
 from statejump.kinds.truss import compare
 from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.elements import ELEMENTS
-from statejump.kinds.truss.elements.protocol import listed_elements
 from statejump.kinds.truss.joints import JOINTS
-from statejump.kinds.truss.joints.protocol import listed_joints
-from statejump.kinds.truss.joints.phrases import count, spread
+from statejump.kinds.truss.joints.protocol import count, spread
 from statejump.kinds.truss.motion import TrussMotion
 from statejump.kinds.truss.result import AT_END
 from statejump.kinds.truss.sections import Node
@@ -58,7 +56,7 @@ def describe(case: TrussCase) -> list[str]:
 
 
 def _joints(case: TrussCase) -> list[str]:
-    found = ((joint, listed_joints(case, joint)) for joint in JOINTS)
+    found = ((joint, joint.listed(case)) for joint in JOINTS)
     sentences = [joint.describe(items) for joint, items in found if items]
     if case.start.friction == FRICTIONLESS:
         sentences.append("Loads and preloads act before friction does: joints start without friction.")
@@ -71,7 +69,7 @@ def _joints(case: TrussCase) -> list[str]:
 
 
 def _tied(case: TrussCase) -> list[str]:
-    found = [(items, noun) for element in ELEMENTS for items, noun in element.counted(listed_elements(case, element))]
+    found = [(items, noun) for element in ELEMENTS for items, noun in element.counted(element.listed(case))]
     tied = [count(items, noun) for items, noun in (*found, (case.constraint, "constraint")) if items]
     return [f"It has {' and '.join(filter(None, [', '.join(tied[:-1]), tied[-1]]))}."] if tied else []
 

@@ -68,12 +68,12 @@ class Umbrella(Kind):
     difference = Later("statejump.kinds.umbrella.compare:difference")
     names = Later("statejump.kinds.umbrella.result:names")
     scene = Later("statejump.kinds.umbrella.result:scene")
-    outcomes = Later("statejump.kinds.umbrella.outcomes:outcomes")
-    laws = Later("statejump.kinds.umbrella.laws:joint")
+    outcomes = Later("statejump.kinds.umbrella.compare:outcomes")
+    laws = Later("statejump.kinds.umbrella.figure:joint")
     sheet = Later("statejump.kinds.umbrella.figure:sheet")
     summary_lines = Later("statejump.kinds.umbrella.summary:summary_lines")
     describe = Later("statejump.kinds.umbrella.summary:describe")
-    charts = Later("statejump.kinds.umbrella.charts:charts")
+    charts = Later("statejump.kinds.umbrella.summary:charts")
 
 
 KIND = Umbrella()

@@ -2,6 +2,8 @@
 """Comparison of the DEM run of an ``umbrella`` case with the reduced model."""
 from __future__ import annotations
 
+from math import nan
+
 import numpy as np
 
 from statejump.core.comparison import Comparison, Quantity, models, quantity, share
@@ -14,6 +16,7 @@ STORED = tuple(f"{name}_energy_J" for name in ("kinetic", "axial", "contact", "t
 DISSIPATED = tuple(f"{name}_dissipation_J" for name in ("axial", "pin", "friction", "impact"))
 FIRST_CONTACT = "first_contact_temperature_change"
 UNTIL = "compared point by point until the largest temperature only"
+ANGLES = ("theta2", "theta4")
 
 
 def largest_temperature(run: Run) -> int:
@@ -121,3 +124,17 @@ def difference(case: UmbrellaCase, first: Run, second: Run) -> list[Quantity]:
         rows.append(models(FIRST_CONTACT, "K", first_contact_K(first), first_contact_K(second),
                            case.tolerance.first_contact_dem_K))
     return rows + history_rows(case, first, second)
+
+
+def outcomes(case: UmbrellaCase, run: Run) -> dict[str, float]:
+    """Return jumps and ranges of both angles, first contact, contacts and energy residue; NaN: it did not happen."""
+    said = run.summary
+    # The reduced model accounts for energy in every step, the DEM at its samples.
+    residue = said["energy_residue_J"] if "energy_residue_J" in said else energy_residual(run)
+    return {
+        **{f"{angle}_jump_rad": said[f"{angle}_jump_rad"] for angle in ANGLES},
+        **{f"{angle}_range_rad": float(np.ptp(run[f"{angle}_rad"])) for angle in ANGLES},
+        "first_contact_temperature_change_K": said.get("first_contact_temperature_change_K", nan),
+        "contacts": said["contacts"],
+        "energy_residue_J": residue,
+    }

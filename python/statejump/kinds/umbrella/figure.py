@@ -12,6 +12,7 @@ from statejump.core.run import Run
 from statejump.kinds.umbrella import reduced
 from statejump.kinds.umbrella.case import UmbrellaCase
 from statejump.kinds.umbrella.compare import largest_temperature
+from statejump.laws.curves import Joint, reduced_mass_kg
 
 LINES = {"reduced": {**REDUCED, "label": "reduced model", "linewidth": 3.2}, "dem": {**DEM, "linewidth": 1.0}}
 ALONG = {"time_s": "Time [s]", "temperature_change_K": "Temperature change [K]"}
@@ -73,3 +74,11 @@ def _mark_play(panel: Axes, case: UmbrellaCase) -> None:
     panel.set_aspect("equal")
     panel.set_xlabel("Journal − bearing centre, along AC [µm]")
     panel.set_ylabel("across AC [µm]")
+
+
+def joint(case: UmbrellaCase) -> Joint:
+    """Return the joint of a case."""
+    return Joint(
+        case.title, case.joint.journal_radius_m, case.bearing_radius_m, case.joint.contact_length_m,
+        case.effective_young_modulus_Pa, reduced_mass_kg(case.link_ab.mass_kg, case.link_bc.mass_kg),
+    )

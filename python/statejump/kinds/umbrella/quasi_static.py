@@ -50,15 +50,11 @@ class QuasiStatic:
 
         :raises NotAllowed: there is no such path
         """
-        pandas = libraries.pandas()
-
-        return pandas.DataFrame(self._path(links).columns())
+        return libraries.frame(self._path(links).columns())
 
     def events(self, links: str = RIGID) -> pandas.DataFrame:
         """Return where the joint begins to roll or to slip, a row each. :raises NotAllowed: there is no such path"""
-        pandas = libraries.pandas()
-
-        return pandas.DataFrame(self._path(links).events)
+        return libraries.frame(self._path(links).events)
 
     @property
     def summary(self) -> dict[str, float]:

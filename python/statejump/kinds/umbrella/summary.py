@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from statejump.core.charts import TEMPERATURE, TIME, Axis, Chart
 from statejump.core.run import Run
 from statejump.core.tables import Shown
 from statejump.core.units import text
@@ -60,3 +61,19 @@ def summary_lines(case: UmbrellaCase, runs: Mapping[str, Run]) -> list[Shown | s
             found.append(f"{said['steps']:,.0f} steps, {said['contacts']:.0f} contacts, energy residue "
                          f"{said['energy_residue_J']:.3g} J")
     return found
+
+
+def charts(case: UmbrellaCase) -> list[Chart]:
+    """Return both deflections over temperature, the trajectory of the journal in its clearance, and the contact
+    force."""
+    return [
+        Chart(TEMPERATURE, Axis("theta2_rad", "Deflection of AB, θ2 − θ2(0)", from_start=True),
+              "Deflection-temperature loop", marks=True),
+        Chart(TEMPERATURE, Axis("theta4_rad", "Deflection of BC, θ4 − θ4(0)", from_start=True),
+              "Deflection-temperature loop of BC", marks=True),
+        Chart(
+            Axis("eccentricity_x_m", "Journal − bearing centre, along AC"), Axis("eccentricity_y_m", "across AC"),
+            "Journal in its clearance", equal=True, rings_m=(case.joint.radial_clearance_m,),
+        ),
+        Chart(TIME, Axis("normal_force_N", "Normal force at the samples"), "Contact force over time"),
+    ]

@@ -11,7 +11,7 @@ import numpy as np
 from statejump.core.progress import OnProgress
 from statejump.kinds.truss.answers.outputs import Output
 from statejump.kinds.truss.joints import JOINTS
-from statejump.kinds.truss.joints.friction_loads import Loads
+from statejump.kinds.truss.joints.protocol import Loads
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, whole_path
 

@@ -98,9 +98,7 @@ class TrussAnswers:
 
     def frame(self, table: str) -> pandas.DataFrame:
         """Return a table, with units in its column names. :raises KeyError: it does not exist"""
-        pandas = libraries.pandas()
-
-        return pandas.DataFrame(self.tables[table])
+        return libraries.frame(self.tables[table])
 
     def plot(self) -> Figure:
         """Draw the truss with its jumps, magnified."""

@@ -4,7 +4,6 @@ or below a bound, and which of several candidates is best."""
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from statejump.control.study import DesignChoices, Line, Study, Sweep, check_wanted, number, refuse_runs, with_notes
 from statejump.core.errors import NotAllowed
@@ -24,6 +23,7 @@ LINES: dict[str, Line] = {
 MICRO = 1e6
 
 
+@with_notes
 def control(
     case: TrussCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
     on_progress: OnProgress = lambda share: None, choices: DesignChoices = DesignChoices(),
@@ -79,11 +79,6 @@ def control(
             result.sentences.append("No key is named best, for not all of them are free to a designer: --free KEY (in "
                                     "Python scale=[KEY]) names those that are.")
     return result
-
-
-def answer(case: TrussCase, **settings: Any) -> Study:
-    """Return the control study, with notes on the temperature program."""
-    return with_notes(control, case, **settings)
 
 
 def _shown(search: Search, value: float) -> str:

@@ -10,20 +10,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, TypeVar, cast
+from typing import Any, ClassVar, Protocol, TypeVar, cast
 
 import numpy as np
 
-from statejump.core.case import Case
 from statejump.core.errors import StatejumpError
-from statejump.kinds.truss.arrays import References, arrays_of, distances
-from statejump.kinds.truss.joints.protocol import ItemColumn, Symbol, Torsion
+from statejump.kinds.truss.arrays import distances
+from statejump.kinds.truss.joints.protocol import PartType
 from statejump.kinds.truss.references import Around, known_nodes, wrong_ends
+from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.resolved import ResolvedTruss
 
 ItemType = TypeVar("ItemType", bound=Item)
 ArraysType = TypeVar("ArraysType")
@@ -49,58 +46,19 @@ class Switch:
     off: str
 
 
-class ElementType(Generic[ItemType, ArraysType]):
+class ElementType(PartType[ItemType, ArraysType]):
     """A type of element. ``section`` is its list in a case file and its name in messages."""
 
-    section: ClassVar[str]
-    Item: ClassVar[type[Item]]
-    Arrays: ClassVar[type[Any]]  # dataclass: names, and a field of the name of each key that models use
-    columns: ClassVar[tuple[ItemColumn, ...]] = ()
     listed_if_none: ClassVar[bool] = False  # results list its items even if a truss has none
-    varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that may affect a jump
-    not_in_dem: ClassVar[str] = ""  # text after its name if the DEM refuses it; empty: the DEM supports it
-
-    @property
-    def items(self) -> str:
-        """Name of its list in results, and of its table in the engine."""
-        return f"{self.section}s"
-
-    def where(self, name: str) -> dict[str, Any]:
-        """Return the name of one of its elements in messages."""
-        return {"item": f"{self.section} {name!r}"}
 
     # ---------------------------------------------------------------- case
-
-    def check_vectors(self, item: ItemType, dimension: int) -> None:
-        """Raise NotAllowed for a vector whose length differs from the truss' dimension."""
-
-    def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
-        """Raise an error for a name that does not exist or does not match."""
-        raise NotImplementedError
 
     def check_keys(self, item: ItemType) -> None:
         """Raise an error for keys that exclude each other."""
 
-    def may_be_wrong_vectors(self, items: ItemColumns[ItemType], dimension: int) -> np.ndarray:
-        """Return the items (n,) that :meth:`check_vectors` has to check; must include all invalid ones."""
-        return np.full(len(items), False)
-
-    def may_be_wrong_references(self, items: ItemColumns[ItemType], around: Around) -> np.ndarray:
-        """Return the items (n,) that :meth:`check_references` has to check; must include all invalid ones."""
-        raise NotImplementedError
-
     def may_be_wrong_keys(self, items: ItemColumns[ItemType]) -> np.ndarray:
         """Return the items (n,) that :meth:`check_keys` has to check; must include all invalid ones."""
         return np.full(len(items), False)
-
-    def resolve(self, items: Sequence[ItemType], known: References) -> ArraysType:
-        """Return the elements as arrays: the keys of their items, except those of :meth:`derived`."""
-        made: ArraysType = arrays_of(self.Arrays, self.Item, items, known, **self.derived(items, known))
-        return made
-
-    def derived(self, items: Sequence[ItemType], known: References) -> dict[str, Any]:
-        """Return the arrays whose values differ from those of a key."""
-        return {}
 
     def check_geometry(self, truss: ResolvedTruss, elements: ArraysType) -> None:
         """Raise an error for invalid positions, directions and lengths."""
@@ -114,10 +72,6 @@ class ElementType(Generic[ItemType, ArraysType]):
     def stiffness_N_per_m(self, elements: ArraysType) -> np.ndarray:
         """Return the largest stiffness (k,) [N/m] between the ends."""
         return np.zeros(0)
-
-    def torsion(self, elements: ArraysType) -> Torsion:
-        """Return the moments by which it rotates links against each other."""
-        return Torsion((), np.zeros((0, 2), dtype=int), np.zeros((0, 3)), np.zeros(0))
 
     def preload_N(self, elements: ArraysType) -> np.ndarray:
         """Return the forces (k,) [N] in the reference configuration."""
@@ -140,14 +94,6 @@ class ElementType(Generic[ItemType, ArraysType]):
     def lines(self, elements: ArraysType) -> list[Lines]:
         """Return the lines of the elements for drawings."""
         return []
-
-    def symbols(self, truss: ResolvedTruss, elements: ArraysType) -> list[Symbol]:
-        """Return its symbols, the first of them for the legend; empty for a type that is drawn as lines."""
-        return []
-
-    def legend(self, elements: ArraysType) -> str:
-        """Return the text of the legend for its symbol, with the numbers that a drawing cannot show."""
-        raise NotImplementedError
 
     def counted(self, items: Sequence[ItemType]) -> list[tuple[Sequence[ItemType], str]]:
         """Return the number of items by the noun that sentences use for them."""
@@ -204,9 +150,3 @@ def check_lengths(truss: ResolvedTruss, section: str, names: Sequence[str], ends
         place = truss.nodes.position_m[ends[index, 0]][: truss.dimension].tolist()
         raise StatejumpError(code="coincident_nodes", item=f"{section} {names[index]!r}", key="nodes", value=nodes,
                              nodes=nodes, ends=" and ".join(map(repr, nodes)), place_m=place, part=section)
-
-
-def listed_elements(case: Case, element: ElementType[ItemType, Any]) -> list[ItemType]:
-    """Return the elements of a type that a case has."""
-    found: list[ItemType] = getattr(case, element.section)
-    return found

@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from statejump.core.errors import NotAllowed
 from statejump.kinds.truss.arrays import References, column, distances, given_or, pairs, said
 from statejump.kinds.truss.elements.protocol import BetweenNodes, EndsArrays, Lines, Switch
-from statejump.kinds.truss.joints.protocol import ItemColumn
-from statejump.kinds.truss.joints.phrases import USER, scaled
+from statejump.kinds.truss.joints.protocol import USER, ItemColumn, scaled
+from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.schema.fields import definition, parameter, switch, texts
 from statejump.schema.item_tables import ItemColumns, once
 from statejump.schema.items import Item
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.resolved import ResolvedTruss
 
 GREEN, ORANGE = "#009E73", "#D55E00"
 LARGEST_LENGTH_M = 1e6

@@ -2,25 +2,18 @@
 """Springs on the angle between two links, or on the angle of one link in space."""
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from statejump.kinds.truss.elements.protocol import ElementType
-from statejump.kinds.truss.joints.protocol import Strokes, Symbol, Torsion
-from statejump.kinds.truss.joints.phrases import USER, scaled
-from statejump.kinds.truss.references import (
-    Around, axis_of_rotation, known_links, turned_links, wrong_axes, wrong_ends,
-)
+from statejump.kinds.truss.joints.protocol import USER, BetweenLinks, Strokes, Symbol, Torsion, scaled
+from statejump.kinds.truss.references import turned_links
+from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.schema.fields import definition, numbers, parameter, texts
-from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.resolved import ResolvedTruss
 
 SPIRAL: Strokes = (tuple((0.28 * t * np.cos(5.2 * t), 0.28 * t * np.sin(5.2 * t)) for t in np.linspace(0.4, 3.6, 60)),)
 PINK = "#CC79A7"
@@ -52,25 +45,13 @@ class TorsionSprings:
     axis: np.ndarray  # (t, 3) unit; z in planar trusses
 
 
-class TorsionSpringType(ElementType[TorsionSpring, TorsionSprings]):
+class TorsionSpringType(BetweenLinks[TorsionSpring, TorsionSprings], ElementType[TorsionSpring, TorsionSprings]):
     """Torsion springs, in the solver and in the DEM."""
 
     section = "torsion_spring"
     Item = TorsionSpring
     Arrays = TorsionSprings
     varied = ("stiffness_N_m_per_rad", "bias_rad")
-
-    def check_vectors(self, item: TorsionSpring, dimension: int) -> None:
-        axis_of_rotation(item.axis, dimension, self.where(item.name))
-
-    def may_be_wrong_vectors(self, items: ItemColumns[TorsionSpring], dimension: int) -> np.ndarray:
-        return wrong_axes(items, dimension)
-
-    def check_references(self, item: TorsionSpring, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
-        known_links(item.links, links, self.where(item.name))
-
-    def may_be_wrong_references(self, items: ItemColumns[TorsionSpring], around: Around) -> np.ndarray:
-        return wrong_ends(around.links.of(items, "links"), 1)
 
     def check_geometry(self, truss: ResolvedTruss, elements: TorsionSprings) -> None:
         turned_links(truss, self.section, elements)

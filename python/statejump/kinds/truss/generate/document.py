@@ -9,7 +9,7 @@ from typing import Any
 from statejump.core.item_files import write_items
 from statejump.core.output import write_atomically
 from statejump.schema.fields import TABLES_BESIDE
-from statejump.schema.toml_text import to_toml
+from statejump.schema.toml import to_toml
 
 Document = dict[str, Any]
 

@@ -2,11 +2,18 @@
 """Selection of the reader of a file by its format."""
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import TypeVar
 
 from statejump.core.errors import NotAllowed, Unreadable
+from statejump.kinds.truss.check_geometry import NoSupport
+from statejump.kinds.truss.generate.document import Document
 from statejump.kinds.truss.importing import abaqus, mesh, nastran, tables
 from statejump.kinds.truss.importing.model import SUFFIXES, Deck, Options
+
+Made = TypeVar("Made")
+REMEDY = "hold nodes with --fixed NODE=xyz, or with the key 'fixed' in the case, before it runs"
 
 
 def read(path: Path, form: str | None = None, bars: Path | None = None, options: Options | None = None) -> Deck:
@@ -34,3 +41,20 @@ def read(path: Path, form: str | None = None, bars: Path | None = None, options:
         raise Unreadable(code="no_bars", file=path,
                          remedy=", ".join(f"{card}: {why}" for card, _, _, why in deck.left_rows()[:3]) or None)
     return deck
+
+
+def checked(document: Document, parse: Callable[[Document], Made]) -> tuple[Made, str | None]:
+    """Return the case of a document, and a hint if parts of the truss have no support.
+
+    All other checks run as if one node of each of these parts were held.
+
+    :param parse: returns the case of a document
+    :raises StatejumpError: another check fails
+    """
+    try:
+        return parse(document), None
+    except NoSupport as found:
+        loose, hint = set(found.loose), f"{found}; {REMEDY}"
+    axes = list("xyz"[:document["truss"]["dimension"]])
+    nodes = [{**node, "fixed": axes} if node["name"] in loose else node for node in document["node"]]
+    return parse({**document, "node": nodes}), hint

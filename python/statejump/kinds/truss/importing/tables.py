@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Union
 
 from statejump.core.column_units import matched
-from statejump.core.errors import StatejumpError, Unreadable
+from statejump.core.errors import Unreadable, located
 from statejump.core.reading import is_file
 from statejump.core.table_files import numbers_of, open_table
 from statejump.kinds.truss.importing.model import LARGEST_BYTES, Bar, Deck, quoted
@@ -57,10 +57,8 @@ def _rows(deck: Deck, path: Path, needed: Sequence[str], more: Sequence[str]) ->
     if not is_file(path):
         raise Unreadable(code="file_not_found", file=path)
     with open_table(path, LARGEST_BYTES) as table:
-        try:
+        with located(file=path):
             columns = matched(table.header, (*needed, *more))
-        except StatejumpError as refused:
-            raise refused.located(file=path) from None
         missing = [key for key in needed if key not in {column.key for column in columns}]
         if missing:
             raise deck.fail(1, "missing_column", column=missing[0], needed=", ".join(needed))

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from statejump.core.errors import MissingKey, StatejumpError
 from statejump.kinds.truss.generate.document import Document, finished
-from statejump.kinds.truss.importing import expansions
 from statejump.kinds.truss.importing.bodies import named_nodes
 from statejump.kinds.truss.importing.joints import matching, put_in
 from statejump.kinds.truss.importing.model import Bar, Deck, Equation, Spring
 from statejump.kinds.truss.importing.supports import supports
-from statejump.kinds.truss.importing.units import Units, in_units
 from statejump.kinds.truss.sections import MOST_DENSITY_KG_PER_M3, MOST_EXPANSION_PER_K
 
 # A smaller difference of coordinates, over the size of the truss, counts as zero, because decks have eight digits.
@@ -29,6 +28,44 @@ WEIGHTLESS_KG = 1e-15
 # Options that give all links a number that the deck lacks.
 OPTIONS = {"young_modulus_Pa": "--young-modulus", "cross_section_area_m2": "--area",
            "thermal_expansion_per_K": "--thermal-expansion"}
+# Beyond its table a coefficient is constant. Tables of cases extend this far [K].
+BEYOND_K = 1e3
+# Half the width of a jump over the range of the table. Beyond the jump, the error of the strain is the square of this
+# fraction. Narrower jumps need more steps of the solver.
+JUMP = 1e-3
+
+
+@dataclass(frozen=True)
+class Units:
+    """The units of a deck.
+
+    :param length_m: of length [m]
+    :param force_N: of force [N]
+    :param mass_kg: of mass [kg]; None: force times seconds squared by length
+    """
+
+    length_m: float = 1.0
+    force_N: float = 1.0
+    mass_kg: float | None = None
+
+    @property
+    def mass(self) -> float:
+        """Unit of mass [kg]."""
+        return self.force_N / self.length_m if self.mass_kg is None else self.mass_kg
+
+    @property
+    def stress(self) -> float:
+        """Unit of stress [Pa]."""
+        return self.force_N / self.length_m**2
+
+
+POUND_FORCE_N = 4.4482216152605  # exact
+INCH_M = 0.0254  # exact
+# Usual ones first: among equally plausible ones, the first is chosen.
+SYSTEMS = {
+    "SI": Units(), "mm-N": Units(1e-3), "in-lbf": Units(INCH_M, POUND_FORCE_N), "mm-kg-s": Units(1e-3, 1e-3),
+    "mm-kN-t": Units(1e-3, 1e3, 1e3),
+}
 
 
 def case_document(
@@ -158,7 +195,7 @@ def _expansions(deck: Deck, made: Document) -> None:
         key = (bar.expansion_table, bar.expansion_zero, _free(deck, bar))
         if key not in names:
             names[key] = f"X{len(names) + 1}"
-            made["expansion"].append(expansions.item(names[key], *key))
+            made["expansion"].append(item(names[key], *key))
         link["expansion"] = names[key]
         del link["thermal_expansion_per_K"]
 
@@ -266,3 +303,30 @@ def _link(deck: Deck, bar: Bar, change: float, peak: float, units: Units,
     if peak and change != peak:
         made["temperature_fraction"] = change / peak
     return made
+
+
+def in_units(value: float, unit: float) -> float:
+    """Return a number of a deck in the units of cases, rounded to the digits of a deck: 50 mm2 are 5e-05 m2."""
+    return value if unit == 1 else float(f"{value * unit:.15g}")
+
+
+def item(name: str, table: Sequence[tuple[float, float]], zero: float, start: float) -> dict[str, Any]:
+    """Return the ``[[expansion]]`` of a table.
+
+    :param table: temperatures, rising, and secant coefficients
+    :param zero: temperature at which the secants begin
+    :param start: stress-free temperature
+    """
+    temperatures, secants = (np.array(column) for column in zip(*table))
+    width = JUMP * max(float(np.ptp(temperatures)), 1.0)
+    low, high = min(temperatures[0], start) - BEYOND_K, max(temperatures[-1], start) + BEYOND_K
+    rows = [(low, secants[0]), (temperatures[0] - width, secants[0])]
+    for left, right, first, last in zip(temperatures, temperatures[1:], secants, secants[1:]):
+        if right - left <= 2 * width:  # a jump of the deck itself
+            continue
+        slope = (last - first) / (right - left)
+        # The derivative of the strain: α(T) + α'(T) (T - Tz).
+        rows += [(at, first + slope * (2 * at - left - zero)) for at in (left + width, right - width)]
+    rows += [(temperatures[-1] + width, secants[-1]), (high, secants[-1])]
+    return {"name": name, "temperature_change_K": [float(at - start) for at, _ in rows],
+            "thermal_expansion_per_K": [float(value) for _, value in rows]}

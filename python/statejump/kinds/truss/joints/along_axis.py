@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar, cast
+from typing import Any, ClassVar, Protocol, TypeVar, cast
 
 import numpy as np
 
 from statejump.core.errors import NotAllowed
 from statejump.kinds.truss.arrays import GROUND, SAME_DIRECTION
-from statejump.kinds.truss.joints.protocol import JointType
+from statejump.kinds.truss.joints.protocol import JointType, Loads
 from statejump.kinds.truss.references import Around, known_nodes, vector, wrong_ends, wrong_vectors
+from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.joints.friction_loads import Loads
-    from statejump.kinds.truss.resolved import ResolvedTruss
 
 
 class Directed(Protocol):

@@ -2,24 +2,19 @@
 """Ball joints with clearance: a ball in a socket, with a cone of Coulomb friction; spatial trusses."""
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from math import inf
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from statejump.core.errors import NotAllowed
-from statejump.kinds.truss.arrays import References, having
-from statejump.kinds.truss.joints.protocol import BLACK, Contacts, ItemColumn, Sampled, Symbol
-from statejump.kinds.truss.joints.round_parts import RoundParts
-from statejump.kinds.truss.joints.phrases import ALUMINIUM, USER, count, scaled, spread
+from statejump.kinds.truss.joints.protocol import ALUMINIUM, BLACK, USER, Contacts, ItemColumn, Sampled, Symbol, scaled
+from statejump.kinds.truss.joints.round_parts import RoundArrays, RoundParts
+from statejump.kinds.truss.resolved import Course, ResolvedTruss
 from statejump.schema.fields import CHOICE, choice, definition, parameter, text
 from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.resolved import Course, ResolvedTruss
 
 
 @definition
@@ -45,29 +40,16 @@ class BallJoint(Item):
 
 
 @dataclass(frozen=True)
-class BallJoints:
+class BallJoints(RoundArrays):
     """Ball joints with clearance."""
 
-    names: Sequence[str]
     socket_node: np.ndarray  # int
     ball_node: np.ndarray  # int
     socket_link: np.ndarray  # int, GROUND: the socket does not rotate
     ball_link: np.ndarray  # int, GROUND: the ball does not rotate
     ball_radius_m: np.ndarray
-    radial_clearance_m: np.ndarray  # at ΔT = 0
-    friction_coefficient: np.ndarray
     ball_thermal_expansion_per_K: np.ndarray
     socket_thermal_expansion_per_K: np.ndarray
-    temperature_fraction: np.ndarray
-    program: np.ndarray  # int, index into ResolvedTruss.programs
-    young_modulus_Pa: np.ndarray
-    poisson_ratio: np.ndarray
-    rigid: np.ndarray  # bool: contact = "rigid"
-
-    @property
-    def socket_radius_m(self) -> np.ndarray:
-        """Radius of the socket at ΔT = 0 [m]."""
-        return self.ball_radius_m + self.radial_clearance_m
 
 
 class BallJointType(RoundParts[BallJoint, BallJoints]):
@@ -82,13 +64,11 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
         ItemColumn("ball_friction_force_N", "on the ball", vector=True),
     )
     varied = ("friction_coefficient", "radial_clearance_m", "ball_radius_m", "young_modulus_Pa")
+    noun = "ball joint"
     inner, outer = "ball", "socket"
     eccentricity, normal_force = "ball_eccentricity_m", "ball_normal_force_N"
     friction_force = "ball_friction_force_N"
     has_axis = False
-
-    def derived(self, items: Sequence[BallJoint], known: References) -> dict[str, Any]:
-        return {"rigid": having(items, "contact", "rigid")}
 
     def check_vectors(self, item: BallJoint, dimension: int) -> None:
         if dimension == 2:
@@ -104,22 +84,10 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
                              **self.where(joints.names[index]))
         self.check_parts(truss, joints, ranges_K, np.linalg.norm(self.offset_m(truss, joints), axis=1))
 
-    def regularised_refuses(self, joints: BallJoints) -> tuple[str, str] | None:
-        for index in np.flatnonzero(joints.rigid)[:1]:
-            return joints.names[index], "has contact = 'rigid'"
-        return None
-
     def path_refuses(self, joints: BallJoints) -> tuple[str, str] | None:
         for index in np.flatnonzero(joints.rigid)[:1]:
             return joints.names[index], "rigid_ball_joint_at_rest"
         return None
-
-    def engine_arrays(self, truss: ResolvedTruss, joints: BallJoints) -> dict[str, Any]:
-        return {
-            "hertz_stiffness_N_per_m15": np.where(joints.rigid, inf, self.hertz_stiffness(joints)),
-            "mindlin_stiffness_N_per_m15": np.where(joints.rigid, inf, self.mindlin_stiffness(joints)),
-            "partial_slip": (truss.sticking == "partial_slip") & (joints.friction_coefficient > 0) & ~joints.rigid,
-        }
 
     def contacts(self, run: Sampled, joints: BallJoints) -> Contacts:
         return self.touching(run, joints, run.columns["ball_friction_force_N"])
@@ -132,19 +100,11 @@ class BallJointType(RoundParts[BallJoint, BallJoints]):
         return (f"ball joint, c = {scaled(joints.radial_clearance_m, 1e3, 'mm')}, "
                 f"μ = {scaled(joints.friction_coefficient, 1.0, '').strip()}")
 
-    def describe(self, items: Sequence[BallJoint]) -> str:
-        return (
-            f"{count(items, 'ball joint')} with clearance: radial clearance "
-            f"{spread((joint.radial_clearance_m for joint in items), 'm')}, ball radius "
-            f"{spread((joint.ball_radius_m for joint in items), 'm')}, friction coefficient "
-            f"{spread(joint.friction_coefficient for joint in items)}."
-        )
-
     def friction_on_inner_N(self, joints: BallJoints, state: Mapping[str, np.ndarray]) -> np.ndarray:
         return state["ball_friction_force_N"]
 
     def reach_m(self, path: Course, joints: BallJoints) -> np.ndarray:
-        return joints.socket_radius_m
+        return self.radius_m(joints, "socket")
 
 
 BALL_JOINT = BallJointType()

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -15,14 +15,11 @@ from statejump import _engine
 from statejump.core.errors import NotAllowed
 from statejump.kinds.truss.arrays import none_of
 from statejump.kinds.truss.joints.along_axis import AlongAxis
-from statejump.kinds.truss.joints.protocol import ItemColumn, Strokes, Symbol
+from statejump.kinds.truss.joints.protocol import USER, ItemColumn, Strokes, Symbol, count, scaled, spread
 from statejump.kinds.truss.joints.slider import with_sliders
-from statejump.kinds.truss.joints.phrases import USER, count, scaled, spread
+from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.schema.fields import CHOICE, definition, numbers, parameter, texts, whole
 from statejump.schema.items import Item
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.resolved import ResolvedTruss
 
 NUMBERS = ("tangent_stiffness_N_per_m", "slip_force_N", "exponent", "stiffness_ratio")
 LONGEST = 1e12  # longest interval over the first one, so that the first is above rounding

@@ -5,23 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf, pi
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from statejump.kinds.truss.arrays import GROUND, References, column
-from statejump.kinds.truss.joints.protocol import ItemColumn, JointType, Symbol, Torsion
-from statejump.kinds.truss.joints.phrases import USER, count, scaled, spread
-from statejump.kinds.truss.references import (
-    Around, axis_of_rotation, known_links, turned_links, wrong_axes, wrong_ends,
+from statejump.kinds.truss.joints.protocol import (
+    USER, BetweenLinks, ItemColumn, JointType, Loads, Symbol, Torsion, count, scaled, spread,
 )
+from statejump.kinds.truss.references import turned_links
+from statejump.kinds.truss.resolved import Course, ResolvedTruss
 from statejump.schema.fields import definition, numbers, parameter, texts
-from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.joints.friction_loads import Loads
-    from statejump.kinds.truss.resolved import Course, ResolvedTruss
 
 
 @definition
@@ -58,7 +53,7 @@ class LatchHinges:
     axis: np.ndarray  # (h, 3) unit; z in planar trusses
 
 
-class LatchHingeType(JointType[LatchHinge, LatchHinges]):
+class LatchHingeType(BetweenLinks[LatchHinge, LatchHinges], JointType[LatchHinge, LatchHinges]):
     """Latch hinges, in the solver and in the DEM."""
 
     section = "latch_hinge"
@@ -70,18 +65,6 @@ class LatchHingeType(JointType[LatchHinge, LatchHinges]):
         ItemColumn("hinge_moment_N_m", "against the rotation: preload, stiffness beyond the play, friction"),
     )
     varied = ("deadband_rad", "stiffness_N_m_per_rad", "friction_moment_N_m", "preload_moment_N_m")
-
-    def check_vectors(self, item: LatchHinge, dimension: int) -> None:
-        axis_of_rotation(item.axis, dimension, self.where(item.name))
-
-    def check_references(self, item: LatchHinge, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
-        known_links(item.links, links, self.where(item.name))
-
-    def may_be_wrong_vectors(self, items: ItemColumns[LatchHinge], dimension: int) -> np.ndarray:
-        return wrong_axes(items, dimension)
-
-    def may_be_wrong_references(self, items: ItemColumns[LatchHinge], around: Around) -> np.ndarray:
-        return wrong_ends(around.links.of(items, "links"), 1)
 
     def derived(self, items: Sequence[LatchHinge], known: References) -> dict[str, Any]:
         sticking = column(items, "friction_stiffness_N_m_per_rad")

@@ -9,19 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+from typing import Any, ClassVar, Generic, Protocol, TypeVar, cast
 
 import numpy as np
 
 from statejump.core.case import Case
-from statejump.kinds.truss.arrays import References, arrays_of
+from statejump.core.units import text
+from statejump.kinds.truss.arrays import GROUND, References, arrays_of
+from statejump.kinds.truss.references import Around, axis_of_rotation, known_links, wrong_axes, wrong_ends
+from statejump.kinds.truss.resolved import Course, ResolvedTruss
 from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.joints.friction_loads import Loads
-    from statejump.kinds.truss.references import Around
-    from statejump.kinds.truss.resolved import Course, ResolvedTruss
 
 ItemType = TypeVar("ItemType", bound=Item)
 ArraysType = TypeVar("ArraysType")
@@ -30,6 +28,8 @@ Strokes = tuple[tuple[tuple[float, float], ...], ...]  # in units of a symbol's 
 BLACK = "#000000"
 # Friction may double a contact's force for a moment, and Hertz's stiffness is proportional to its cube root.
 IMPACT = 2 ** (1 / 3)
+USER = "no default: the truss decides"
+ALUMINIUM = "choice, the paper is silent: aluminium"
 
 
 @dataclass(frozen=True)
@@ -105,23 +105,106 @@ class Torsion:
     stiffness_N_m_per_rad: np.ndarray  # (k,) the largest one
 
 
-class JointType(Generic[ItemType, ArraysType]):
-    """A type of joint. ``section`` is its list in a case file, its kind in the engine and its name in messages."""
+class PartType(Generic[ItemType, ArraysType]):
+    """Common part of the types of joints and elements. ``section`` is its list in a case file and its name in
+    messages."""
 
     section: ClassVar[str]
     Item: ClassVar[type[Item]]
     Arrays: ClassVar[type[Any]]  # dataclass: names, and a field of the name of each key that models use
-    columns: ClassVar[tuple[ItemColumn, ...]] = ()  # the first is its position: a slide, an offset, a rotation
+    columns: ClassVar[tuple[ItemColumn, ...]] = ()  # of a joint first its position: a slide, an offset, a rotation
     varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that may affect a jump
-    has_temperature: ClassVar[bool] = False  # its items have a program and a temperature_fraction
-    has_contacts: ClassVar[bool] = False  # two surfaces touch: it has rows among the contacts of a result
-    turns: ClassVar[bool] = False  # its friction is a moment
     not_in_dem: ClassVar[str] = ""  # text after its name if the DEM refuses it; empty: the DEM supports it
 
     @property
     def items(self) -> str:
-        """Name of its list of items in results."""
+        """Name of its list of items in results, and of the table of elements in the engine."""
         return f"{self.section}s"
+
+    def where(self, name: str) -> dict[str, Any]:
+        """Return the name of one of its items in messages."""
+        return {"item": f"{self.section} {name!r}"}
+
+    def listed(self, case: Case) -> list[ItemType]:
+        """Return its items in a case."""
+        found: list[ItemType] = getattr(case, self.section)
+        return found
+
+    def check_vectors(self, item: ItemType, dimension: int) -> None:
+        """Raise NotAllowed for a vector whose length differs from the truss' dimension."""
+
+    def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
+        """Raise an error for a name that does not exist or does not match."""
+        raise NotImplementedError
+
+    def may_be_wrong_vectors(self, items: ItemColumns[ItemType], dimension: int) -> np.ndarray:
+        """Return the items (n,) that :meth:`check_vectors` has to check; must include all invalid ones."""
+        return np.full(len(items), False)
+
+    def may_be_wrong_references(self, items: ItemColumns[ItemType], around: Around) -> np.ndarray:
+        """Return the items (n,) that :meth:`check_references` has to check; must include all invalid ones."""
+        raise NotImplementedError
+
+    def resolve(self, items: Sequence[ItemType], known: References) -> ArraysType:
+        """Return the items as arrays: their keys, except those of :meth:`derived`."""
+        made: ArraysType = arrays_of(self.Arrays, self.Item, items, known, **self.derived(items, known))
+        return made
+
+    def derived(self, items: Sequence[ItemType], known: References) -> dict[str, Any]:
+        """Return the arrays whose values differ from those of a key."""
+        return {}
+
+    def torsion(self, arrays: ArraysType) -> Torsion:
+        """Return the moments by which it rotates links against each other."""
+        return Torsion((), np.zeros((0, 2), dtype=int), np.zeros((0, 3)), np.zeros(0))
+
+    def symbols(self, truss: ResolvedTruss, arrays: ArraysType) -> list[Symbol]:
+        """Return its symbols, the first of them for the legend; empty for a type that is drawn as lines."""
+        return []
+
+    def legend(self, arrays: ArraysType) -> str:
+        """Return the text of the legend for its symbol, with the numbers that a drawing cannot show."""
+        raise NotImplementedError
+
+
+class Rotating(Protocol):
+    """Items with an axis of rotation."""
+
+    axis: list[float] | None
+
+
+class AboutAxis(PartType[ItemType, ArraysType]):
+    """A type whose items rotate about an ``axis``, which planar trusses do not give."""
+
+    def check_vectors(self, item: ItemType, dimension: int) -> None:
+        axis_of_rotation(cast(Rotating, item).axis, dimension, self.where(item.name))
+
+    def may_be_wrong_vectors(self, items: ItemColumns[ItemType], dimension: int) -> np.ndarray:
+        return wrong_axes(items, dimension)
+
+
+class Linked(Protocol):
+    """Items that act on the angle between links."""
+
+    links: list[str]
+
+
+class BetweenLinks(AboutAxis[ItemType, ArraysType]):
+    """A type that acts on the angle between two ``links``, or on that of one."""
+
+    def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
+        known_links(cast(Linked, item).links, links, self.where(item.name))
+
+    def may_be_wrong_references(self, items: ItemColumns[ItemType], around: Around) -> np.ndarray:
+        return wrong_ends(around.links.of(items, "links"), 1)
+
+
+class JointType(PartType[ItemType, ArraysType]):
+    """A type of joint. ``section`` is its list in a case file, its kind in the engine and its name in messages."""
+
+    has_temperature: ClassVar[bool] = False  # its items have a program and a temperature_fraction
+    has_contacts: ClassVar[bool] = False  # two surfaces touch: it has rows among the contacts of a result
+    turns: ClassVar[bool] = False  # its friction is a moment
 
     @property
     def state_column(self) -> str:
@@ -130,36 +213,13 @@ class JointType(Generic[ItemType, ArraysType]):
 
     def where(self, name: str) -> dict[str, Any]:
         """Return the name of one of its joints in messages."""
-        return {"item": f"{self.section} {name!r}", "joint": name}
+        return {**super().where(name), "joint": name}
 
     # ---------------------------------------------------------------- case
-
-    def check_vectors(self, item: ItemType, dimension: int) -> None:
-        """Raise NotAllowed for a vector whose length differs from the truss' dimension."""
-
-    def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
-        """Raise an error for a name that does not exist or does not match."""
-
-    def may_be_wrong_vectors(self, items: ItemColumns[ItemType], dimension: int) -> np.ndarray:
-        """Return the items (n,) that :meth:`check_vectors` has to check; must include all invalid ones."""
-        return np.full(len(items), True)
-
-    def may_be_wrong_references(self, items: ItemColumns[ItemType], around: Around) -> np.ndarray:
-        """Return the items (n,) that :meth:`check_references` has to check; must include all invalid ones."""
-        return np.full(len(items), True)
 
     def expands(self, item: ItemType) -> bool:
         """Return whether joints that have a temperature expand with it."""
         return False
-
-    def resolve(self, items: Sequence[ItemType], known: References) -> ArraysType:
-        """Return the joints as arrays: the keys of their items, except those of :meth:`derived`."""
-        made: ArraysType = arrays_of(self.Arrays, self.Item, items, known, **self.derived(items, known))
-        return made
-
-    def derived(self, items: Sequence[ItemType], known: References) -> dict[str, Any]:
-        """Return the arrays whose values differ from those of a key."""
-        return {}
 
     def check_geometry(self, truss: ResolvedTruss, joints: ArraysType, ranges_K: np.ndarray) -> None:
         """Raise an error for invalid positions, directions and clearances.
@@ -199,14 +259,6 @@ class JointType(Generic[ItemType, ArraysType]):
 
     def place_nodes(self, truss: ResolvedTruss, joints: ArraysType) -> np.ndarray:
         """Return the node (joints,) at which a point represents a joint."""
-        raise NotImplementedError
-
-    def symbols(self, truss: ResolvedTruss, joints: ArraysType) -> list[Symbol]:
-        """Return its symbols, the first of them for the legend."""
-        raise NotImplementedError
-
-    def legend(self, joints: ArraysType) -> str:
-        """Return the text of the legend for its symbol, with the numbers that a drawing cannot show."""
         raise NotImplementedError
 
     def covered_nodes(self, joints: ArraysType) -> np.ndarray:
@@ -291,10 +343,6 @@ class JointType(Generic[ItemType, ArraysType]):
         ``told_m`` [m]."""
         return []
 
-    def torsion(self, joints: ArraysType) -> Torsion:
-        """Return the moments by which it rotates links against each other."""
-        return Torsion((), np.zeros((0, 2), dtype=int), np.zeros((0, 3)), np.zeros(0))
-
     def largest_turn_rad(self, path: Course, joints: ArraysType) -> np.ndarray:
         """Return the largest rotation of :meth:`torsion` from the reference configuration on the path (joints,)."""
         return np.zeros(0)
@@ -304,7 +352,64 @@ class JointType(Generic[ItemType, ArraysType]):
         return {}
 
 
-def listed_joints(case: Case, joint: JointType[ItemType, Any]) -> list[ItemType]:
-    """Return the joints of a type that a case has."""
-    found: list[ItemType] = getattr(case, joint.section)
-    return found
+def count(items: Sequence[object], one: str) -> str:
+    """Return how many there are of something."""
+    return f"{len(items)} {one}{'' if len(items) == 1 else 's'}"
+
+
+def spread(values: Iterable[float], unit: str = "-", digits: int = 4) -> str:
+    """Return the common value of many items, or the range of their values."""
+    known = [float(value) for value in values]
+    low, high = min(known), max(known)
+    return text(low, unit, digits) if low == high else f"{text(low, unit, digits)} to {text(high, unit, digits)}"
+
+
+def scaled(values: np.ndarray, scale: float, unit: str) -> str:
+    """Return one value or the range of several, in a readable unit of the values times ``scale``."""
+    low, high = values.min() * scale, values.max() * scale
+    return f"{low:.4g} {unit}" if high - low <= 1e-9 * abs(high) else f"{low:.3g} to {high:.3g} {unit}"
+
+
+@dataclass(frozen=True)
+class Loads:
+    """Forces of one joint after the other.
+
+    :param force_N: (joints, nodes, 3), to which forces are added
+    :param place_m: (nodes, 3), positions of nodes in the state
+    """
+
+    truss: ResolvedTruss
+    force_N: np.ndarray
+    place_m: np.ndarray
+
+    def push(self, joint: int, node: int, force_N: np.ndarray) -> None:
+        """Add a force on a node; on GROUND none."""
+        if node != GROUND:
+            self.force_N[joint, node] += force_N
+
+    def turn(self, joint: int, link: int, moment_N_m: np.ndarray) -> None:
+        """Add a moment on a link; on GROUND none."""
+        if link == GROUND:
+            return
+        one, two = self.truss.links.nodes[link]
+        along = self.place_m[two] - self.place_m[one]
+        pair = np.cross(moment_N_m, along) / (along @ along)
+        self.force_N[joint, two] += pair
+        self.force_N[joint, one] -= pair
+
+    def rub(self, joint: int, nodes: tuple[int, int], links: tuple[int, int], friction_N: np.ndarray,
+            offset_m: np.ndarray, arm_m: float) -> None:
+        """Add the friction between a round part and a hollow one, with the moments on both about their own nodes.
+
+        :param nodes: of the hollow part and of the round one; ``links`` likewise
+        :param friction_N: on the round part
+        :param offset_m: of the round part's centre from the hollow one's
+        :param arm_m: from the round part's centre to the contact point
+        """
+        distance = float(np.linalg.norm(offset_m))
+        if distance == 0 or not friction_N.any():
+            return
+        for node, link, force, arm in ((nodes[0], links[0], -friction_N, arm_m + distance),
+                                       (nodes[1], links[1], friction_N, arm_m)):
+            self.push(joint, node, force)
+            self.turn(joint, link, np.cross(offset_m / distance * arm, force))

@@ -2,25 +2,22 @@
 """Clearance revolutes: a journal with clearance in a bearing, with Coulomb friction."""
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from statejump.core.errors import NotAllowed
-from statejump.kinds.truss.arrays import References, having
-from statejump.kinds.truss.joints.protocol import BLACK, Contacts, ItemColumn, Sampled, Symbol
-from statejump.kinds.truss.joints.round_parts import RoundParts
-from statejump.kinds.truss.joints.phrases import ALUMINIUM, USER, count, scaled, spread
-from statejump.kinds.truss.references import axis_of_rotation, wrong_axes
+from statejump.kinds.truss.arrays import unit
+from statejump.kinds.truss.joints.protocol import (
+    ALUMINIUM, BLACK, USER, AboutAxis, Contacts, ItemColumn, Sampled, Symbol, scaled,
+)
+from statejump.kinds.truss.joints.round_parts import RoundArrays, RoundParts
+from statejump.kinds.truss.resolved import Course, ResolvedTruss
 from statejump.schema.fields import CHOICE, choice, definition, numbers, parameter, text
-from statejump.schema.item_tables import ItemColumns
 from statejump.schema.items import Item
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.resolved import Course, ResolvedTruss
 
 
 @definition
@@ -46,33 +43,20 @@ class Revolute(Item):
 
 
 @dataclass(frozen=True)
-class Revolutes:
+class Revolutes(RoundArrays):
     """Clearance revolute joints."""
 
-    names: Sequence[str]
     bearing_node: np.ndarray  # int
     journal_node: np.ndarray  # int
     bearing_link: np.ndarray  # int, GROUND: the bearing does not rotate
     journal_link: np.ndarray  # int, GROUND: the journal does not rotate
     axis: np.ndarray  # (r, 3) unit; z in planar trusses
     journal_radius_m: np.ndarray
-    radial_clearance_m: np.ndarray  # at ΔT = 0
-    friction_coefficient: np.ndarray
     journal_thermal_expansion_per_K: np.ndarray
     bearing_thermal_expansion_per_K: np.ndarray
-    temperature_fraction: np.ndarray
-    program: np.ndarray  # int, index into ResolvedTruss.programs
-    young_modulus_Pa: np.ndarray
-    poisson_ratio: np.ndarray
-    rigid: np.ndarray  # bool: contact = "rigid" in the reduced model
-
-    @property
-    def bearing_radius_m(self) -> np.ndarray:
-        """Radius of the bearing at ΔT = 0 [m]."""
-        return self.journal_radius_m + self.radial_clearance_m
 
 
-class RevoluteType(RoundParts[Revolute, Revolutes]):
+class RevoluteType(AboutAxis[Revolute, Revolutes], RoundParts[Revolute, Revolutes]):
     """Clearance revolutes, in all models."""
 
     section = "revolute"
@@ -84,17 +68,9 @@ class RevoluteType(RoundParts[Revolute, Revolutes]):
         ItemColumn("friction_force_N", "on the journal, clockwise about the axis"),
     )
     varied = ("friction_coefficient", "radial_clearance_m", "journal_radius_m")
+    noun = "revolute joint"
     inner, outer = "journal", "bearing"
     eccentricity, normal_force, friction_force = "eccentricity_m", "normal_force_N", "friction_force_N"
-
-    def check_vectors(self, item: Revolute, dimension: int) -> None:
-        axis_of_rotation(item.axis, dimension, self.where(item.name))
-
-    def may_be_wrong_vectors(self, items: ItemColumns[Revolute], dimension: int) -> np.ndarray:
-        return wrong_axes(items, dimension)
-
-    def derived(self, items: Sequence[Revolute], known: References) -> dict[str, Any]:
-        return {"rigid": having(items, "contact", "rigid")}
 
     def check_geometry(self, truss: ResolvedTruss, joints: Revolutes, ranges_K: np.ndarray) -> None:
         slips = (truss.sticking == "partial_slip") & (joints.friction_coefficient > 0)
@@ -104,19 +80,9 @@ class RevoluteType(RoundParts[Revolute, Revolutes]):
         along = (offset * joints.axis).sum(axis=1, keepdims=True) * joints.axis
         self.check_parts(truss, joints, ranges_K, np.linalg.norm(offset - along, axis=1))
 
-    def regularised_refuses(self, joints: Revolutes) -> tuple[str, str] | None:
-        for index in np.flatnonzero(joints.rigid)[:1]:
-            return joints.names[index], "has contact = 'rigid'"
-        return None
-
     def engine_arrays(self, truss: ResolvedTruss, joints: Revolutes) -> dict[str, Any]:
-        gives_way = truss.sticking != "rigid"
-        return {
-            "hertz_stiffness_N_per_m15": np.where(joints.rigid, inf, self.hertz_stiffness(joints)),
-            "mindlin_stiffness_N_per_m15": np.where(joints.rigid | (not gives_way), inf,
-                                                    self.mindlin_stiffness(joints)),
-            "partial_slip": (truss.sticking == "partial_slip") & (joints.friction_coefficient > 0),
-        }
+        sticks = {} if truss.sticking != "rigid" else {"mindlin_stiffness_N_per_m15": np.full(len(joints.names), inf)}
+        return {**super().engine_arrays(truss, joints), **sticks}
 
     def contacts(self, run: Sampled, joints: Revolutes) -> Contacts:
         normal = self.normals(run)
@@ -124,10 +90,7 @@ class RevoluteType(RoundParts[Revolute, Revolutes]):
         return self.touching(run, joints, -run.columns["friction_force_N"][:, :, None] * across)
 
     def friction_on_inner_N(self, joints: Revolutes, state: Mapping[str, np.ndarray]) -> np.ndarray:
-        offset = state["eccentricity_m"]
-        distance = np.linalg.norm(offset, axis=1, keepdims=True)
-        normal = np.divide(offset, distance, out=np.zeros_like(offset), where=distance > 0)
-        return np.asarray(-state["friction_force_N"][:, None] * np.cross(joints.axis, normal))
+        return np.asarray(-state["friction_force_N"][:, None] * np.cross(joints.axis, unit(state["eccentricity_m"])))
 
     def symbols(self, truss: ResolvedTruss, joints: Revolutes) -> list[Symbol]:
         centres = truss.nodes.position_m[joints.bearing_node]
@@ -137,20 +100,12 @@ class RevoluteType(RoundParts[Revolute, Revolutes]):
         return (f"clearance joint, c = {scaled(joints.radial_clearance_m, 1e3, 'mm')}, "
                 f"μ = {scaled(joints.friction_coefficient, 1.0, '').strip()}")
 
-    def describe(self, items: Sequence[Revolute]) -> str:
-        return (
-            f"{count(items, 'revolute joint')} with clearance: radial clearance "
-            f"{spread((joint.radial_clearance_m for joint in items), 'm')}, journal radius "
-            f"{spread((joint.journal_radius_m for joint in items), 'm')}, friction coefficient "
-            f"{spread(joint.friction_coefficient for joint in items)}."
-        )
-
     def parameters(self, joints: Revolutes) -> list[tuple[str, np.ndarray]]:
         elastic = np.where(joints.rigid, 0.0, joints.young_modulus_Pa)
         return [*super().parameters(joints), *([("young_modulus_Pa", elastic)] if elastic.any() else [])]
 
     def reach_m(self, path: Course, joints: Revolutes) -> np.ndarray:
-        return np.sqrt(2) * joints.bearing_radius_m
+        return np.sqrt(2) * self.radius_m(joints, "bearing")
 
 
 REVOLUTE = RevoluteType()

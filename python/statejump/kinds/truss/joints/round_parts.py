@@ -3,31 +3,48 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from dataclasses import dataclass, replace
+from math import inf
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
 from statejump.core import physics
 from statejump.core.errors import MissingKey, NotAllowed
-from statejump.kinds.truss.arrays import GROUND
-from statejump.kinds.truss.joints.protocol import IMPACT, ContactPart, Contacts, Drawn, JointType, Sampled
+from statejump.kinds.truss.arrays import GROUND, References, having, unit
+from statejump.kinds.truss.joints.protocol import (
+    IMPACT, ContactPart, Contacts, Drawn, JointType, Loads, Sampled, count, spread,
+)
 from statejump.kinds.truss.references import Around, known_name
+from statejump.kinds.truss.resolved import Course, ResolvedTruss
 from statejump.results import scene as drawing
 from statejump.schema.item_tables import NONE, UNKNOWN, ItemColumns
 from statejump.schema.items import Item
 
-if TYPE_CHECKING:
-    from statejump.kinds.truss.joints.friction_loads import Loads
-    from statejump.kinds.truss.resolved import Course, ResolvedTruss
-
 ItemType = TypeVar("ItemType", bound=Item)
-ArraysType = TypeVar("ArraysType")
+
+
+@dataclass(frozen=True)
+class RoundArrays:
+    """Arrays of joints of both types."""
+
+    names: Sequence[str]
+    radial_clearance_m: np.ndarray  # at ΔT = 0
+    friction_coefficient: np.ndarray
+    temperature_fraction: np.ndarray
+    program: np.ndarray  # int, index into ResolvedTruss.programs
+    young_modulus_Pa: np.ndarray
+    poisson_ratio: np.ndarray
+    rigid: np.ndarray  # bool: contact = "rigid" in the reduced model
+
+
+ArraysType = TypeVar("ArraysType", bound=RoundArrays)
 
 
 class RoundParts(JointType[ItemType, ArraysType]):
     """Keys and arrays of both parts begin with their names: ``journal_node``, ``journal_radius_m``, ..."""
 
+    noun: ClassVar[str]  # in sentences
     inner: ClassVar[str]  # name of the inner part
     outer: ClassVar[str]  # name of the outer part
     eccentricity: ClassVar[str]  # columns: inner less outer centre
@@ -46,8 +63,8 @@ class RoundParts(JointType[ItemType, ArraysType]):
         return np.stack([getattr(joints, f"{part}_node") for part in self.parts], axis=1)
 
     def radius_m(self, joints: ArraysType, part: str) -> np.ndarray:
-        found: np.ndarray = getattr(joints, f"{part}_radius_m")
-        return found
+        found: np.ndarray = getattr(joints, f"{self.inner}_radius_m")
+        return found if part == self.inner else found + joints.radial_clearance_m
 
     def hertz_stiffness(self, joints: Any) -> np.ndarray:
         """Return K of F = K δ^1.5 [N/m^1.5] of every joint. Both parts are of one material and touch as a sphere of R =
@@ -67,6 +84,21 @@ class RoundParts(JointType[ItemType, ArraysType]):
                  for part in self.parts]
         found: np.ndarray = joints.radial_clearance_m + temperature_change_K * (grown[0] - grown[1])
         return found
+
+    def derived(self, items: Sequence[ItemType], known: References) -> dict[str, Any]:
+        return {"rigid": having(items, "contact", "rigid")}
+
+    def engine_arrays(self, truss: ResolvedTruss, joints: ArraysType) -> dict[str, Any]:
+        return {
+            "hertz_stiffness_N_per_m15": np.where(joints.rigid, inf, self.hertz_stiffness(joints)),
+            "mindlin_stiffness_N_per_m15": np.where(joints.rigid, inf, self.mindlin_stiffness(joints)),
+            "partial_slip": (truss.sticking == "partial_slip") & (joints.friction_coefficient > 0) & ~joints.rigid,
+        }
+
+    def regularised_refuses(self, joints: ArraysType) -> tuple[str, str] | None:
+        for index in np.flatnonzero(joints.rigid)[:1]:
+            return joints.names[index], "has contact = 'rigid'"
+        return None
 
     def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
         where = self.where(item.name)
@@ -145,9 +177,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
 
     def normals(self, run: Sampled) -> np.ndarray:
         """Return the unit normals of the contacts (samples, joints, 3); zero for concentric parts."""
-        offset = run.columns[self.eccentricity]
-        distance = np.linalg.norm(offset, axis=2)[:, :, None]
-        return np.divide(offset, distance, out=np.zeros_like(offset), where=distance > 0)
+        return unit(run.columns[self.eccentricity])
 
     def touching(self, run: Sampled, joints: Any, tangential_force_N: np.ndarray) -> Contacts:
         """Return the contacts, from the friction force on the inner part (samples, joints, 3)."""
@@ -180,7 +210,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
                 axis = {"axis": joints.axis[place].tolist()} if truss.dimension == 3 and self.has_axis else {}
                 parts.append({
                     "name": label, "type": kind, "centre": drawing.ref("history/position_m", truss.nodes.names[node]),
-                    "angle_rad": angle, "radius_m": float(getattr(joints, f"{part}_radius_m")[place]),
+                    "angle_rad": angle, "radius_m": float(self.radius_m(joints, part)[place]),
                     "thermal_expansion_per_K": float(getattr(joints, f"{part}_thermal_expansion_per_K")[place]), **axis,
                 })
             contacts.append((name, pair[0], pair[1]))
@@ -200,6 +230,12 @@ class RoundParts(JointType[ItemType, ArraysType]):
                     getattr(joints, f"{part}_link"))])
             for part in self.parts
         ]
+
+    def describe(self, items: Sequence[Any]) -> str:
+        clearance = spread((joint.radial_clearance_m for joint in items), "m")
+        radius = spread((getattr(joint, f"{self.inner}_radius_m") for joint in items), "m")
+        return (f"{count(items, self.noun)} with clearance: radial clearance {clearance}, {self.inner} radius "
+                f"{radius}, friction coefficient {spread(joint.friction_coefficient for joint in items)}.")
 
     def friction_on_inner_N(self, joints: Any, state: Mapping[str, np.ndarray]) -> np.ndarray:
         """Return the friction on the inner part (joints, 3) in one state of the solver."""

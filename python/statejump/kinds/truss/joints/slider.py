@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -16,15 +16,12 @@ from statejump.core.units import text
 from statejump.kinds.truss.arrays import GROUND, References, columns
 from statejump.kinds.truss.joints.along_axis import AlongAxis, Axes
 from statejump.kinds.truss.joints.protocol import (
-    IMPACT, ContactPart, Contacts, Drawn, ItemColumn, Sampled, Strokes, Symbol,
+    ALUMINIUM, IMPACT, USER, ContactPart, Contacts, Drawn, ItemColumn, Sampled, Strokes, Symbol, count, scaled, spread,
 )
-from statejump.kinds.truss.joints.phrases import ALUMINIUM, USER, count, scaled, spread
+from statejump.kinds.truss.resolved import Course, ResolvedTruss
 from statejump.results import scene as drawing
 from statejump.schema.fields import CHOICE, definition, numbers, parameter, texts
 from statejump.schema.items import Item
-
-if TYPE_CHECKING:
-    from statejump.kinds.truss.resolved import Course, ResolvedTruss
 
 BLOCK: Strokes = (
     ((-0.75, -0.45), (0.75, -0.45), (0.75, 0.45), (-0.75, 0.45), (-0.75, -0.45)), ((-1.0, -0.55), (1.0, -0.55)),

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from statejump.kinds.truss.importing import profiles
-from statejump.kinds.truss.importing.abaqus import assembly, equations, generation, loads, mesh, sections
+from statejump.kinds.truss.importing.abaqus import assembly, generation, loads, mesh, sections
 from statejump.kinds.truss.importing.abaqus.keywords import Block, blocks
 from statejump.kinds.truss.importing.abaqus.model import Element, Model, Reading, Scope, Section
 from statejump.kinds.truss.importing.abaqus.table import BAR, BEAM, KEYWORDS
@@ -30,7 +30,7 @@ STAGES: tuple[dict[str, Reading], ...] = (
      "NODAL THICKNESS": sections.thickness,
      "MASS": sections.mass, "INITIAL CONDITIONS": loads.initial},
     # Read after the steps, because their effect depends on supports.
-    {"SPRING": sections.spring, "EQUATION": equations.equation},
+    {"SPRING": sections.spring, "EQUATION": loads.equation},
 )
 # Keywords that are read with the steps, or that delimit parts.
 TOGETHER = ("BOUNDARY", "CLOAD", "DLOAD", "TEMPERATURE", "AMPLITUDE", "STEP", "STATIC", "END STEP", "PART", "END PART",

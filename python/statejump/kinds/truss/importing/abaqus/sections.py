@@ -9,7 +9,7 @@ from statejump.kinds.truss.importing.abaqus.keywords import Block
 from statejump.kinds.truss.importing.abaqus.model import Material, Model, Scope, Section
 from statejump.kinds.truss.importing.abaqus.table import BAR, BEAM, MASS, SPRING
 from statejump.kinds.truss.importing.model import quoted
-from statejump.kinds.truss.importing.springs import add_spring
+from statejump.kinds.truss.importing.supports import add_spring
 
 ISOTROPIC = ("", "ISO", "ISOTROPIC")
 

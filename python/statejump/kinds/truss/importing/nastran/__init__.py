@@ -9,8 +9,7 @@ from statejump.core.reading import finite_number
 from statejump.kinds.truss.importing.bodies import settle_bodies
 from statejump.kinds.truss.importing.contract import IDLE, REFUSED
 from statejump.kinds.truss.importing.model import BENDING, Deck, Options
-from statejump.kinds.truss.importing.nastran import (bodies, control, elements, loads, masses, nodes, properties,
-                                                     singularities)
+from statejump.kinds.truss.importing.nastran import bodies, control, elements, loads, nodes, properties
 from statejump.kinds.truss.importing.nastran.cards import BARE_EXPONENT, Card, split
 from statejump.kinds.truss.importing.nastran.reader import Reader
 from statejump.kinds.truss.importing.nastran.table import CARDS, PARAMS
@@ -22,7 +21,7 @@ READERS: dict[str, Callable[[Reader, Card], None]] = {
     "CROD": elements.rods, "CTUBE": elements.rods, "CBAR": elements.bar, "CBEAM": elements.bar,
     "CONROD": elements.conrod,
     "SPC": nodes.spc, "SPC1": nodes.spc1, "CELAS1": elements.celas, "CELAS2": elements.celas, "CBUSH": elements.cbush,
-    "PMASS": properties.pmass, "CMASS1": masses.cmass, "CMASS2": masses.cmass, "CONM1": elements.conm1,
+    "PMASS": properties.pmass, "CMASS1": elements.cmass, "CMASS2": elements.cmass, "CONM1": elements.conm1,
     "CONM2": elements.conm2, "FORCE": loads.force, "FORCE1": loads.force, "FORCE2": loads.force, "MOMENT": loads.moment,
     "MOMENT1": loads.moment, "MOMENT2": loads.moment, "PLOAD1": loads.pload1, "GRAV": loads.gravity,
     "RBAR": bodies.rbar, "RBAR1": bodies.rbar, "RBE2": bodies.rbe2, "RBE3": bodies.rbe3, "RROD": bodies.rrod,
@@ -56,13 +55,13 @@ def read(path: Path, options: Options | None = None) -> Deck:
         for card in by_name.get(name, []):
             if name not in deck.options.ignored and _counts(reader, card):
                 read_card(reader, card)
-    masses.take_components(reader)
+    elements.take_components(reader)
     _take_together(reader)
     loads.temperatures(reader)
     elements.finish_bars(reader)
     settle_bodies(deck)
     if chosen.autospc:
-        singularities.hold_singular(reader)
+        nodes.hold_singular(reader)
     if chosen.solution.startswith("106"):  # in this solution TREF belongs to the coefficient of expansion only
         for bar in deck.bars:
             bar.reference_temperature = None

@@ -9,7 +9,7 @@ from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.control import FREE_SOLUTIONS, Control
 from statejump.kinds.truss.importing.nastran.reader import Reader
 from statejump.kinds.truss.importing.nastran.table import CARDS, DYNAMIC, HEAT
-from statejump.kinds.truss.importing.springs import ALONG
+from statejump.kinds.truss.importing.supports import ALONG
 
 COMBINED = {"spc": "SPCADD", "mpc": "MPCADD"}
 

@@ -2,12 +2,18 @@
 """GRID, coordinate systems and supports."""
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from statejump.kinds.truss.importing.coordinates import BASIC, by_points
-from statejump.kinds.truss.importing.model import quoted
+from statejump.kinds.truss.importing.model import Deck, quoted
 from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.reader import Reader
+from statejump.kinds.truss.importing.supports import SAME, basis_of, held_directions
+
+# EPZERO of Nastran: a smaller fraction of the node's largest stiffness counts as zero.
+EPZERO = 1e-8
 
 
 def read_nodes(reader: Reader) -> None:
@@ -147,3 +153,46 @@ def spc(reader: Reader, card: Card) -> None:
             reader.deck.refuse(card.name, "prescribed_displacement", card.line)
             continue
         fix(reader, card, card[place + 1], [reader.node(card, place)])
+
+
+def hold_singular(reader: Reader) -> None:
+    """Hold components of displacement systems without stiffness, except at ends of beams, which are stiff in
+    Nastran."""
+    deck = reader.deck
+    stiffness: dict[str, np.ndarray] = {}
+    bent = {end for bar in deck.bars if bar.bends for end in bar.nodes}
+    pairs = [bar.nodes for bar in deck.bars]
+    pairs += [(spring.first, spring.second) for spring in deck.springs if spring.second]
+    for first, second in pairs:
+        way = np.subtract(deck.nodes[second], deck.nodes[first])
+        length = float(np.linalg.norm(way))
+        if length == 0:
+            continue
+        block = np.outer(way, way) / length**2  # only which directions are stiff matters
+        for end in (first, second):
+            stiffness[end] = stiffness.get(end, np.zeros((3, 3))) + block
+    for spring in deck.springs:
+        if spring.direction is not None:
+            block = np.outer(spring.direction, spring.direction)
+            stiffness[spring.first] = stiffness.get(spring.first, np.zeros((3, 3))) + block
+    tied = deck.equation_directions()
+    for node, block in stiffness.items():
+        if node in bent:
+            continue
+        axes = reader.frames[reader.displacement_frame[node]].directions(deck.nodes[node])
+        largest = np.einsum("ij,jk,ik->i", axes, block, axes).max()
+        for free in _left_free(deck, node, axes, tied.get(node, [])):
+            if free @ block @ free > EPZERO * largest:
+                continue
+            deck.hold(node, [float(part) for part in free])
+            deck.take("AUTOSPC", "directions of nodes without stiffness, held as in Nastran")
+
+
+def _left_free(deck: Deck, node: str, axes: np.ndarray, tied: list[np.ndarray]) -> Iterator[np.ndarray]:
+    """Yield the directions of axes, without those that supports hold and equations couple."""
+    basis = basis_of(np.vstack([held_directions(deck, node), *tied]))
+    for axis in axes:
+        free = axis - basis.T @ (basis @ axis)
+        size = np.linalg.norm(free)
+        if size > SAME:
+            yield axis if size > 1 - SAME else free / size
