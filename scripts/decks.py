@@ -22,9 +22,13 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import decks_ccx
 import numpy as np
+
+if TYPE_CHECKING:
+    from statejump.kinds.truss.importing.model import Deck
 
 SUFFIXES = (".inp", ".bdf", ".nas", ".dat")
 HEADER = ("deck", "units", "imported", "ran", "why not", "largest displacement [m]", "difference to ccx")
@@ -57,6 +61,7 @@ def one(path: Path, name: str, options: argparse.Namespace) -> Row:
     """Import and run a deck in this process."""
     from statejump.core.errors import StatejumpError
     from statejump.kinds.truss.importing import SYSTEMS, Options, case_document, read
+    from statejump.kinds.truss.importing.reading import form_of
 
     row, beams = Row(name), False
     try:
@@ -73,10 +78,8 @@ def one(path: Path, name: str, options: argparse.Namespace) -> Row:
             return row
         row.largest_m = float(np.abs(_displacements(case.reduced())).max())  # type: ignore[attr-defined]
         row.ran = True
-        if path.suffix == ".inp" and decks_ccx.installed():
-            names = {node: f"N{node}" if node.isdecimal() else node for node in deck.nodes}
-            ours = {node: moved / SYSTEMS[row.units].length_m for node, moved in _small(made).items()}
-            row.difference = decks_ccx.difference(path, deck.step, ours, names)
+        if path.suffix == ".inp" and form_of(path) == "abaqus" and decks_ccx.installed():
+            row.difference = _difference(path, deck, made, SYSTEMS[row.units].length_m)
     except StatejumpError as refused:
         row.cause = str(refused).replace(str(path), path.name)
         if row.imported and beams and any(said in row.cause for said in ("mechanism", "stiffness is singular")):
@@ -104,6 +107,18 @@ def _plausible(documents: dict[str, dict]) -> tuple[str, dict, object, str | Non
         return units, documents[units], case, without_support
     assert first is not None
     raise first
+
+
+def _difference(path: Path, deck: Deck, made: dict, length_m: float) -> str:
+    """Return the difference to CalculiX, or the reason why the linear parts cannot be compared."""
+    from statejump.core.errors import StatejumpError
+
+    try:
+        small = _small(made)
+    except StatejumpError:  # the run has the stiffness of stressed bars
+        return "no linear solution: only stress makes it stiff"
+    names = {node: f"N{node}" if node.isdecimal() else node for node in deck.nodes}
+    return decks_ccx.difference(path, deck.step, {node: moved / length_m for node, moved in small.items()}, names)
 
 
 def _displacements(run: object) -> np.ndarray:

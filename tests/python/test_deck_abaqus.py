@@ -60,6 +60,7 @@ def refusal(folder: Path, text: str, **options: Any) -> sj.StatejumpError:
 NODES = MODEL[:MODEL.index("*ELEMENT")]
 SAME = {  # what is replaced in the deck without changing it
     "elements before nodes": (MODEL, MODEL.replace(NODES, "") + NODES),
+    "abbreviated parameters": ("*STEP", "*AMPLITUDE, NAME=RAMP, DEF=TABULAR\n0., 0., 1., 1.\n*STEP, NLGEO=NO, PERT"),
     "quoted names with commas": ("ELSET=BARS", 'ELSET="bars, left"'),
     "blanks left out": ("*SOLID SECTION", "*SOLIDSECTION"),
     "lower case": ("*ELASTIC", "*elastic"),
@@ -79,6 +80,22 @@ def test_what_says_the_same_is_the_same(name: str, tmp_path: Path) -> None:
     text = MODEL + LOAD
     assert old in text
     assert moved(made(tmp_path, text.replace(old, new))) == pytest.approx(1e-3, rel=1e-12)
+
+
+def test_an_abbreviation_has_three_letters_and_one_meaning(tmp_path: Path) -> None:
+    for short in ("NL", "IN", "STE"):
+        refused = refusal(tmp_path, MODEL + LOAD.replace("*STEP", f"*STEP, {short}"))
+        assert refused == failure("deck_not_supported", card=f"*STEP, {short}", reason="unknown_parameter")
+    full = refusal(tmp_path, MODEL + LOAD.replace("*CLOAD", "*CLOAD, DAT=1"))
+    assert full == failure("deck_not_supported", card="*CLOAD, DATASET")
+    two = refusal(tmp_path, MODEL + LOAD.replace("*STEP", "*AMPLITUDE, NAME=A, SHI=1.\n0., 0., 1., 1.\n*STEP"))
+    assert two == failure("deck_not_supported", card="*AMPLITUDE, SHI", reason="unknown_parameter")
+
+
+def test_a_deck_may_end_with_dat(tmp_path: Path) -> None:
+    (tmp_path / "deck.dat").write_text("** written by a mesher\n\n" + MODEL + LOAD)
+    found = case_document(read(tmp_path / "deck.dat"), "deck", temperature_change_K=0.0)
+    assert {**found, "case": 0} == {**made(tmp_path, MODEL + LOAD), "case": 0}
 
 
 def test_parameters_have_their_numbers(tmp_path: Path) -> None:

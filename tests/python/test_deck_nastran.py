@@ -55,6 +55,13 @@ def test_the_rod_is_as_long_as_by_hand(tmp_path: Path) -> None:
     assert moved(made(tmp_path, ROD)) == pytest.approx(1e-3, rel=1e-12)
 
 
+@pytest.mark.parametrize("head", ["", "NASTRAN FILES=NPTP\nID D1,NASTRAN\n", "$ * a comment\n"])
+def test_a_deck_may_end_with_inp(head: str, tmp_path: Path) -> None:
+    (tmp_path / "deck.inp").write_text(head + CONTROL + ROD + "ENDDATA\n")
+    found = case_document(read(tmp_path / "deck.inp"), "deck", temperature_change_K=0.0)
+    assert {**found, "case": 0} == {**made(tmp_path, ROD), "case": 0}
+
+
 def test_blanks_between_components_change_nothing(tmp_path: Path) -> None:
     assert "SPC1,1,23,2" in ROD
     assert made(tmp_path, ROD.replace("SPC1,1,23,2", "SPC1    1        2  3   2")) == made(tmp_path, ROD)
@@ -192,6 +199,8 @@ BARS = {  # cards in place of CROD and PROD, and the displacement under 7000 N
     "taper by shape": ("CBEAM,1,1,1,2,0.,0.,1.\nPBEAML,1,1,,BAR\n,.02,.02,0.,YES,1.,.01,.01\n",
                        7000 / E * np.log(4) / 3e-4),
     "equal offsets": ("CBAR,1,1,1,2,0.,1.,0.\n,,,0.,.1,0.,0.,.1,0.\nPBAR,1,1,1.-4\n", 1e-3),
+    "offsets along it": ("CBAR,1,1,1,2,0.,1.,0.\n,,,-.25,.1,0.,.5,.1,0.\nPBAR,1,1,1.-4\n", 1.75e-3),
+    "offsets that shorten it": ("CBAR,1,1,1,2,0.,1.,0.\n,,,.25,0.,0.\nPBAR,1,1,1.-4\n", 0.75e-3),
     "moments released": ("CBAR,1,1,1,2,0.,1.,0.\n,456,56\nPBAR,1,1,1.-4\n", 1e-3),
     "default property": ("BAROR,,7\nCBAR,1,,1,2,0.,1.,0.\nPBAR,7,1,1.-4\n", 1e-3),
 }
@@ -202,6 +211,13 @@ def test_bars_by_their_sections(name: str, tmp_path: Path) -> None:
     cards, wanted = BARS[name]
     bulk = ROD.replace("CROD,1,1,1,2\nPROD,1,1,1.-4\n", cards)
     assert moved(made(tmp_path, bulk, beams_as_bars=True)) == pytest.approx(wanted, rel=1e-9)
+
+
+def test_a_bar_with_rigid_ends_expands_and_weighs_by_its_own_length(tmp_path: Path) -> None:
+    bulk = ROD.replace("CROD,1,1,1,2\nPROD,1,1,1.-4\n", "CBAR,1,1,1,2,0.,1.,0.\n,,,-1.,0.,0.\nPBAR,1,1,1.-4\n")
+    document = made(tmp_path, bulk, beams_as_bars=True, change=100.0)
+    assert moved(document) == pytest.approx(2 * (1e-3 + 2.3e-5 * 100), rel=2e-3)  # of the heated bar
+    assert document["link"][0]["density_kg_per_m3"] == 2 * 2700
 
 
 def test_a_taper_weighs_its_mean_area(tmp_path: Path) -> None:
@@ -386,7 +402,7 @@ def test_several_unsupported_cards_are_named_at_once(tmp_path: Path) -> None:
 BENT = {
     "no option": ("CBAR,1,1,1,2,0.,1.,0.\n", {}, failure("deck_not_supported", card="CBAR", reason="bending", line=8)),
     "pin flag": ("CBAR,1,1,1,2,0.,1.,0.\n,,1\n", {"beams_as_bars": True}, failure("deck_not_supported", card="CBAR.PB", reason="pin_flags")),
-    "offset": ("CBAR,1,1,1,2,0.,1.,0.\n,,,-.5,0.,0.,.5,0.,0.\n", {"beams_as_bars": True}, failure("deck_not_supported", card="CBAR.W1A-W3B", reason="unequal_offsets")),
+    "offset": ("CBAR,1,1,1,2,0.,1.,0.\n,,,-.5,0.,0.,.5,.1,0.\n", {"beams_as_bars": True}, failure("deck_not_supported", card="CBAR.W1A-W3B", reason="unequal_offsets")),
     "load across": ("CBAR,1,1,1,2,0.,1.,0.\nPLOAD1,5,1,FY,FR,0.,1.,1.,1.\n", {"beams_as_bars": True}, failure("deck_not_supported", card="PLOAD1", reason="lateral_load")),
     "group of sections": ("CBAR,1,1,1,2,0.,1.,0.\nPBARL,1,1,MINE,ROD\n,1.\n", {"beams_as_bars": True}, failure("bar_without_property", kind="CBAR")),
 }

@@ -80,7 +80,7 @@ def _units(system: str | None, length: float | None, force: float | None) -> Uni
 @click.option("-o", "--output", required=True, metavar="CASE", type=click.Path(path_type=Path),
               help="Case file to write; its name is that of the case.")
 @click.option("--format", "form", type=click.Choice(["abaqus", "nastran", "tables", "mesh"]),
-              help="What FILE is; by its suffix where nothing is said.")
+              help="Format of FILE. Without it: by the suffix and the first lines.")
 @click.option("--bars", metavar="FILE", type=click.Path(path_type=Path), help="Table of bars beside a table of nodes.")
 @click.option("--units", type=click.Choice(["SI", "mm-N", "mm-kN-t", "mm-kg-s", "in-lbf"]),
               help="Units of a deck; mm-kN-t has masses in tonnes, mm-kg-s forces in millinewtons. Without it: SI.")

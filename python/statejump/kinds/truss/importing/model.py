@@ -33,6 +33,7 @@ class Bar:
     :param more_mass: mass per length besides that of the density
     :param why_no_area: reason why the deck's section gives no area
     :param bends: whether it is a beam whose bending is omitted
+    :param lengthened: its length over the distance of its nodes, which rigid ends along the bar connect to it
     """
 
     name: str
@@ -50,6 +51,7 @@ class Bar:
     more_mass: float = 0.0
     why_no_area: str = ""
     bends: bool = False
+    lengthened: float = 1.0
 
 
 @dataclass

@@ -2,11 +2,13 @@
 """Selection of the reader of a file by its format."""
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
 from statejump.core.errors import NotAllowed, Unreadable
+from statejump.core.reading import is_file
 from statejump.kinds.truss.check_geometry import NoSupport
 from statejump.kinds.truss.generate.document import Document
 from statejump.kinds.truss.importing import abaqus, mesh, nastran, tables
@@ -14,17 +16,36 @@ from statejump.kinds.truss.importing.model import SUFFIXES, Deck, Options
 
 Made = TypeVar("Made")
 REMEDY = "hold nodes with --fixed NODE=xyz, or with the key 'fixed' in the case, before it runs"
+HEAD_BYTES = 1 << 16  # of a deck, to recognise its format
+CASE_CONTROL = re.compile(r"^[ \t]*(CEND|BEGIN[ \t]+BULK)\b", re.IGNORECASE | re.MULTILINE)
+
+
+def form_of(path: Path) -> str | None:
+    """Return the format of a file by its suffix, of a deck also by its content: decks of Nastran end with .inp too,
+    and decks of CalculiX with .dat."""
+    form = SUFFIXES.get(path.suffix.lower())
+    if form not in ("abaqus", "nastran") or not is_file(path):
+        return form
+    try:
+        with path.open("rb") as stream:
+            head = stream.read(HEAD_BYTES).decode("latin-1")
+    except OSError:
+        return form  # the reader reports it
+    first = next((line for line in map(str.strip, head.splitlines()) if line and not line.startswith(("$", "**"))), "")
+    if re.match(r"\*[A-Za-z]", first):
+        return "abaqus"
+    return "nastran" if CASE_CONTROL.search(head) else form
 
 
 def read(path: Path, form: str | None = None, bars: Path | None = None, options: Options | None = None) -> Deck:
     """Return the content of a deck.
 
-    :param form: ``abaqus`` (CalculiX too), ``nastran``, ``tables`` or ``mesh``; None: by the suffix
+    :param form: ``abaqus`` (CalculiX too), ``nastran``, ``tables`` or ``mesh``; None: :func:`form_of`
     :param bars: the second table of ``tables``
     :param options: choices for cards of ``abaqus`` and ``nastran``
     :raises StatejumpError: one sentence with file and line
     """
-    form = form or SUFFIXES.get(path.suffix.lower())
+    form = form or form_of(path)
     if form is None:
         raise NotAllowed("FILE", path.name, code="deck_suffix", suffixes=", ".join(SUFFIXES))
     if form == "mesh" and path.suffix.lower() not in mesh.FORMATS:

@@ -46,7 +46,7 @@ REASONS: dict[str, str] = {
     "support_off_bar_ends": "a support beside the position at which bars end",
     "temperature_dependent": "its numbers depend on temperature",
     "temperature_gradient": "temperatures that differ across a section",
-    "unequal_offsets": "offsets that differ from end to end need rotations",
+    "unequal_offsets": "offsets across the bar that differ from end to end need rotations",
     "unequal_temperatures": "its nodes at one position have different temperatures",
     "unknown_card": "the card is unknown",
     "unknown_parameter": "the parameter is unknown",

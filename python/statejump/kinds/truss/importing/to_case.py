@@ -298,6 +298,10 @@ def _link(deck: Deck, bar: Bar, change: float, peak: float, units: Units,
         deck.leave(bar.kind, f"no density: a mass of {WEIGHTLESS_KG:g} kg is taken, for gravity acts", 0)
     else:
         deck.leave(bar.kind, "no density: the DEM and --dynamic need one, see --density", 0)
+    for key in ("thermal_expansion_per_K", "density_kg_per_m3"):
+        if key in made:
+            made[key] *= bar.lengthened
+    made["young_modulus_Pa"] /= bar.lengthened
     if bar.poisson_ratio is not None:
         made["poisson_ratio"] = bar.poisson_ratio
     if peak and change != peak:

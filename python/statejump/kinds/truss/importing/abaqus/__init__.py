@@ -13,7 +13,7 @@ from statejump.kinds.truss.importing.abaqus.keywords import Block, blocks
 from statejump.kinds.truss.importing.abaqus.model import Element, Model, Reading, Scope, Section
 from statejump.kinds.truss.importing.abaqus.table import BAR, BEAM, KEYWORDS
 from statejump.kinds.truss.importing.bodies import settle_bodies
-from statejump.kinds.truss.importing.contract import IDLE, REFUSED, Card
+from statejump.kinds.truss.importing.contract import IDLE, REFUSED, Card, Field
 from statejump.kinds.truss.importing.model import Bar, Deck, Options
 
 # Order in which keywords are read, because decks have them in any order. Keywords of one stage are read in the order of
@@ -35,6 +35,7 @@ STAGES: tuple[dict[str, Reading], ...] = (
 # Keywords that are read with the steps, or that delimit parts.
 TOGETHER = ("BOUNDARY", "CLOAD", "DLOAD", "TEMPERATURE", "AMPLITUDE", "STEP", "STATIC", "END STEP", "PART", "END PART",
             "ASSEMBLY", "END ASSEMBLY", "INSTANCE", "END INSTANCE", "PARAMETER")
+SHORTEST = 3  # letters of an abbreviated parameter
 # Tolerance of the middle node of a bar with three nodes: decks have eight digits, and meshers position it to six.
 MIDDLE = 1e-6
 # CalculiX ignores blanks in keywords and parameters.
@@ -91,10 +92,18 @@ def _check(model: Model, block: Block) -> bool:
     return False
 
 
-def _check_parameters(model: Model, block: Block, known: Card) -> None:
+def _parameter(known: Card, letters: str) -> Field | None:
+    """Return the parameter of a keyword. Abaqus accepts the first letters of a name that no other parameter has."""
     by_letters = {field.name.replace("_", ""): field for field in known.fields}
+    if letters in by_letters or len(letters) < SHORTEST:
+        return by_letters.get(letters)
+    begun = [field for name, field in by_letters.items() if name.startswith(letters)]
+    return begun[0] if len(begun) == 1 else None
+
+
+def _check_parameters(model: Model, block: Block, known: Card) -> None:
     for name, value in list(block.parameters.items()):
-        field = by_letters.get(name.replace(" ", ""))
+        field = _parameter(known, name.replace(" ", ""))
         if field is None:
             model.deck.refuse(f"*{block.name}, {name}", "unknown_parameter", block.line, f"{block.name}.{name}")
             continue

@@ -9,7 +9,7 @@ from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.reader import Property, Reader
 from statejump.kinds.truss.importing.supports import add_spring, is_held
 
-SAME = 1e-6  # relative difference of equal offsets: cards have seven digits
+SAME = 1e-6  # relative tolerance of offsets: cards have seven digits
 
 
 def element(reader: Reader, card: Card, kind: str = "") -> str:
@@ -42,25 +42,33 @@ def bar(reader: Reader, card: Card) -> None:
                 reader.deck.refuse(f"{card.name}.{'PA' if place == 8 else 'PB'}",
                                    "pin_flags", card.line, flags=quoted(card[place]))
     ends = (reader.node(card, 2), reader.node(card, 3))
+    made = Bar(name, ends, card.name, bends=beam)
     if beam and any(card.fields[10:16]):
-        _check_offsets(reader, card, ends)
+        made.lengthened = _lengthened(reader, card, ends)
     reader.deck.take(card.name, "link: it carries axial force only, its bending is left out" if beam else "link")
-    reader.bars[name] = (card.line, Bar(name, ends, card.name, bends=beam), reader.whole(card, 1, default))
+    reader.bars[name] = (card.line, made, reader.whole(card, 1, default))
 
 
-def _check_offsets(reader: Reader, card: Card, ends: tuple[str, str]) -> None:
-    """Refuse offsets that lengthen or rotate a bar. Equal offsets shift it, which has no effect on nodes without
-    rotations."""
+def _lengthened(reader: Reader, card: Card, ends: tuple[str, str]) -> float:
+    """Return the length of a bar with offsets over the distance of its nodes. Offsets that rotate the bar are refused.
+    Equal offsets shift it, which has no effect on nodes without rotations."""
     offsets, kinds = [], (card[7].upper() or "GGG").ljust(3, "G")[1:]
     for place, end, kind in zip((10, 13), ends, kinds):
         given = np.array([reader.number(card, at, 0.0) for at in range(place, place + 3)])
         frame = reader.frames[reader.displacement_frame[end] if kind == "G" else "0"]
         offsets.append(given @ frame.directions(reader.deck.nodes[end]))
-    apart = np.linalg.norm(offsets[0] - offsets[1])
-    if kinds[0] != kinds[1] and np.any(offsets) or apart > SAME * np.linalg.norm(offsets):
+    between = np.subtract(reader.deck.nodes[ends[1]], reader.deck.nodes[ends[0]])
+    longer, distance = offsets[1] - offsets[0], np.linalg.norm(between)
+    if kinds[0] == kinds[1] and np.linalg.norm(longer) <= SAME * np.linalg.norm(offsets):
+        if np.any(offsets):
+            reader.deck.leave(card.name, "equal offsets of both ends: nodes of a truss do not rotate", card.line)
+        return 1.0
+    along = longer @ between / distance**2 if distance else -1.0
+    if kinds != "GG" or along <= -1 or np.linalg.norm(longer - along * between) > SAME * np.linalg.norm(offsets):
         reader.deck.refuse(f"{card.name}.W1A-W3B", "unequal_offsets", card.line)
-    elif np.any(offsets):
-        reader.deck.leave(card.name, "equal offsets of both ends: nodes of a truss do not rotate", card.line)
+        return 1.0
+    reader.deck.take(card.name, "offsets along the bar: modulus, expansion and density of a bar of another length")
+    return float(1 + along)
 
 
 def conrod(reader: Reader, card: Card) -> None:

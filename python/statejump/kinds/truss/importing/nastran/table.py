@@ -16,7 +16,7 @@ OUTPUT = "output"
 THROUGH = "acts through elements that name it, which are not supported"
 SHELL, SOLID = "shells are no part of a truss", "solids are no part of a truss"
 RIGID = "rigid elements need rotations"
-SUPORTED = "supports that inertia relief or a rigid body need, but of modes and responses, where they hold nothing"
+SUPORTED = "supports of inertia relief or of a rigid body; in modes and responses they hold nothing and are left out"
 EXACT = "reduction, exact in statics"
 BODY = "one node of those at one place, where forces and masses of the others act; apart from that it is refused"
 EXPANDS = "thermal expansion of a rigid bar"
@@ -33,7 +33,7 @@ CARDS: dict[str, Card] = table(
     used("CROD", "link, two on a card of COSMIC", "EID PID G1 G2 EID2 PID2 G3 G4"),
     used("CTUBE", "link, two on a card of COSMIC", "EID PID G1 G2 EID2 PID2 G3 G4"),
     used("CONROD", "link", "EID G1 G2 MID A J C NSM", idle={"J C": TURNS}),
-    *(used(name, "pin-jointed bar; offsets must be equal at both ends, pin flags of 4 to 6",
+    *(used(name, "pin-jointed bar; offsets must be equal at both ends or along the bar, pin flags of 4 to 6",
            f"EID PID GA GB X1 X2 X3 OFFT PA PB W1A W2A W3A W1B W2B W3B{more}",
            idle={f"X1 X2 X3{more}": BENDS}, bending=True)
       for name, more in (("CBAR", ""), ("CBEAM", " SA SB"))),
@@ -104,7 +104,7 @@ CARDS: dict[str, Card] = table(
     refused("RBE1 RBE2GS RJOINT RTRPLT RTRPLT1 RSPLINE RSSCON CRIGD1 CRIGD2 CRIGD3 CRIGDR CRBAR CRBE1 CRBE2 CRBE3 "
             "CRROD CRTRPLT", RIGID),
     refused("SUPORT", SUPORTED), refused("SUPORT1", SUPORTED, sets="suport"),
-    refused("SPCD", "given displacement, but of SOL 108 to 112, which RLOAD or TLOAD multiplies", sets="load"),
+    refused("SPCD", "displacement given in a static solution; in SOL 108 to 112 it is left out", sets="load"),
     refused("PLOAD PLOAD2 PLOAD3 PLOAD4 PLOADX PLOADX1 PLOADB3", "pressure on an element", sets="load"),
     refused("RFORCE RFORCE1 ACCEL ACCEL1", "loads of a field of accelerations", sets="load"),
     refused("SLOAD", "load on a scalar point", sets="load"),
