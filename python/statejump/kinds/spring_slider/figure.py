@@ -60,13 +60,13 @@ def sheet(case: SpringSliderCase, runs: Sequence[Run]) -> Sheet:
 
 
 def _dense(path: _engine.SpringSliderPath, run: Run) -> dict[str, np.ndarray]:
-    """Return the exact path as a curve that includes its corners."""
+    """Return columns of the exact path, dense and with its corners."""
     times = np.linspace(0, run.time_s[-1], DENSE)
     return path.sample(np.unique(np.concatenate((times, [event.time_s for event in path.events]))))
 
 
 def _mark_stages(panel: Axes, path: _engine.SpringSliderPath) -> None:
-    """Shade the stages over time; name them in the first cycle when they are wide enough."""
+    """Shade the stages over time. Name the stages of the first cycle that are wide enough."""
     end = path.segments[-1].end_time_s
     spans: list[list[Any]] = []
     for segment in path.segments:
@@ -91,7 +91,7 @@ def _mark_stages(panel: Axes, path: _engine.SpringSliderPath) -> None:
 
 
 def _mark_events(panel: Axes, path: _engine.SpringSliderPath) -> None:
-    """Points at the first cycle's events on the loop, with their temperatures."""
+    """Mark the events of the first cycle on the loop, with their temperatures."""
     labels = {"first_slip": ("first slip", (14, 0), "left"),
               "stop_reached": ("stop reached", (38, -34), "right"),
               "stop_left": ("stop left", (-12, 2), "right")}

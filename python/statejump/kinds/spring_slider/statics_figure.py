@@ -18,7 +18,7 @@ def drawn(found: RestSets, axes: Axes | None = None) -> Figure:
         change = [part.temperature_change_K for part in dense]
         axes.fill_between(change, [part.from_m * 1e3 for part in dense], [part.to_m * 1e3 for part in dense],
                           color="#E69F00", alpha=0.6, linewidth=0, label="held by friction or a stop")
-        for ends in ("from_m", "to_m"):  # at a stop the band is a line
+        for ends in ("from_m", "to_m"):  # at a stop the band shrinks to a line
             axes.plot(change, [getattr(part, ends) * 1e3 for part in dense], color="#E69F00", linewidth=2)
         axes.plot(change, [part.zero_force_m * 1e3 for part in dense], color="#000000", linewidth=1,
                   linestyle=(0, (5, 2)), label="no force")

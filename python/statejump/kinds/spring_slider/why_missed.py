@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Possible reasons why the models of a ``spring_slider`` case missed a tolerance."""
+"""Possible reasons for a missed tolerance in the comparison of the models of a ``spring_slider`` case."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -33,7 +33,7 @@ def why_missed(case: SpringSliderCase, exact: Run, dem: Run, rows: Sequence[Quan
 
 
 def _events(case: SpringSliderCase, dem: Run) -> list[str]:
-    """Return the reasons for a shift of events: samples, and the compliance of contacts."""
+    """Return reasons for a shift of events: the distance of samples and the compliance of contacts."""
     found, allowed = [], case.tolerance.event_temperature_K
     between = float(np.abs(np.diff(dem["temperature_change_K"])).max())
     if between > allowed:

@@ -63,7 +63,7 @@ class Statics:
 
     def frame(self) -> pandas.DataFrame:
         """Return one row per part of every set, with units in the column names; an empty set has a row without numbers.
-        ``set_diameter_m`` is that of the whole set: the largest jump."""
+        ``set_diameter_m`` is the diameter of the whole set, the largest possible jump."""
         pandas = libraries.pandas()
 
         rows = []
@@ -152,7 +152,7 @@ def solve(case: StaticsCase, friction_coefficient: float | None = None) -> Stati
 
 
 def cone_angles(statics: Statics) -> np.ndarray:
-    """Smallest angle(-F, N) over the forces at every corner of every polygon, one after another."""
+    """Return the smallest angle(-F, N) [rad] over the forces, for every corner of every polygon in turn."""
     assert statics.mesh is not None
     polygons = statics.pieces["polygons_m"]
     points = np.concatenate(polygons)

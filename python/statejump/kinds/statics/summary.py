@@ -25,7 +25,7 @@ def _number(value: float) -> str:
 
 
 def _measure(value: dict[str, Any]) -> tuple[str, str]:
-    """Length and area for a table; a point has neither."""
+    """Return length and area as texts; a point has neither."""
     length, area = (_number(value[key]) if value[key] else "-" for key in ("length_m", "area_m2"))
     return length, area
 
@@ -47,7 +47,7 @@ def rows(statics: Statics) -> list[tuple[str, ...]]:
 
 
 def notes(statics: Statics) -> list[str]:
-    """Return the facts that the table does not contain."""
+    """Return notes on the rest sets that the table does not contain."""
     found = []
     if not statics.all["parts"] and len(statics.loads) > 1:
         found.append(NOWHERE)
