@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drawings of trusses in the reference configuration; nothing is solved.
+"""Drawings of trusses in the reference configuration, without a solution.
 
-The size of symbols depends on the number of nodes, not on the size of the parts. The legend has the clearances.
+The size of symbols depends on the number of nodes, not on the size of parts. The legend lists the clearances.
 """
 from __future__ import annotations
 

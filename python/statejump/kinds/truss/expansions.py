@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Temperature programs of the links of a truss. A link with an [[expansion]] gets a program of its strain."""
+"""Temperature programs of the links of a truss. A link with an [[expansion]] gets the program of its strain, ε/α₀."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class LinkTemperatures:
-    """Programs of a truss, and the program of each link (m); see :mod:`statejump.core.expansion`."""
+    """Programs of a truss, and the index of the program of each link (m); see :mod:`statejump.core.expansion`."""
 
     programs: tuple[TrussThermal | MemberProgram, ...]
     program_names: tuple[str, ...]

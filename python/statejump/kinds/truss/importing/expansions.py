@@ -2,8 +2,8 @@
 """Coefficients of thermal expansion that depend on temperature.
 
 CalculiX and Abaqus use secants: from a temperature T0 to T the strain is α(T) (T - Tz) - α(T0) (T0 - Tz). α is linear
-between its rows, and Tz is the value of ZERO=. Cases use the tangent. It is linear between rows too, and jumps at each
-row of the deck.
+between its rows, and Tz is the value of ZERO=. Cases use the tangent, which is also linear between rows and jumps at
+each row of the deck.
 """
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ import numpy as np
 
 # Beyond its table a coefficient is constant. Tables of cases extend this far [K].
 BEYOND_K = 1e3
-# Half the width of a jump over the range of the table. Beyond the jump, the error of the strain is the square of this
-# fraction. Narrower jumps need more steps of the solver.
+# Half the width of a jump, as a fraction of the range of the table. Beyond the jump, the strain error is the square of
+# this fraction. Narrower jumps need more solver steps.
 JUMP = 1e-3
 
 
 def item(name: str, table: Sequence[tuple[float, float]], zero: float, start: float) -> dict[str, Any]:
     """Return the ``[[expansion]]`` of a table.
 
-    :param table: temperatures, rising, and secant coefficients
+    :param table: increasing temperatures with secant coefficients
     :param zero: temperature at which the secants begin
     :param start: stress-free temperature
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Trusses without supports: models of sections, meshes and free bodies. The user adds supports after the import."""
+"""Trusses without supports: models of sections, meshes, and free bodies. Users add supports after the import."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -15,7 +15,7 @@ REMEDY = "hold nodes with --fixed NODE=xyz, or with the key 'fixed' in the case,
 def checked(document: Document, parse: Callable[[Document], Made]) -> tuple[Made, str | None]:
     """Return the case of a document, and a hint if parts of the truss have no support.
 
-    All other checks run as if one node of each of these parts were held.
+    All other checks run with one node of each unsupported part held.
 
     :param parse: returns the case of a document
     :raises StatejumpError: another check fails

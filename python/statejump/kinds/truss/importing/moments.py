@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Moments on nodes. Rods and bars of a truss have no rotations, so a moment matters only if it would bend a beam."""
+"""Moments on nodes. Nodes of a truss do not rotate, so a moment matters only if it would bend a beam."""
 from __future__ import annotations
 
 import numpy as np
@@ -26,8 +26,8 @@ class Turning:
     def bends(self, node: str, moment: np.ndarray) -> bool:
         """Return whether a moment bends a beam.
 
-        Rods carry only moments about their own axis, and torsion of straight bars does not move their ends. In beams
-        the moment causes torsion only if all beams that are connected to the node are along it.
+        Rods carry only moments about their own axis, and torsion of straight bars does not move their ends. In beams a
+        moment causes torsion only if all beams at the node are parallel to it.
         """
         reached, waiting = {node}, [node]
         while waiting:

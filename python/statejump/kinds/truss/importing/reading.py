@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Selection of the reader of a file by its format."""
+"""Selects the reader of a file by its format."""
 from __future__ import annotations
 
 from pathlib import Path

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Springs between components of nodes, converted to springs along a line."""
+"""Conversion of springs between components of nodes to springs along a line."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -9,8 +9,7 @@ import numpy as np
 from statejump.kinds.truss.importing.model import Deck, Spring
 from statejump.kinds.truss.importing.supports import is_held
 
-# Sine of the angle between a spring and the line of its nodes below which both are parallel, because decks have at
-# least four digits.
+# Sine of the angle below which a spring is parallel to the line of its nodes; decks have at least four digits.
 ALONG = 1e-4
 
 
@@ -18,8 +17,8 @@ def add_spring(deck: Deck, line: int, card: str, name: str, stiffness: float,
                ends: Sequence[tuple[str, np.ndarray]]) -> None:
     """Add a spring between nodes, each with its direction, or between one node and the ground.
 
-    A truss cannot represent the effect of a spring across the line between its nodes. Such a spring is refused, unless
-    one end is held in its direction: it is then a spring to the ground. Supports must be known.
+    A truss cannot represent a spring across the line between its nodes. Such a spring is refused unless one end is held
+    in its direction, which makes it a spring to the ground. Call this function after supports are read.
     """
     if not ends or not stiffness:
         deck.leave(card, "it has no stiffness or no node", line)

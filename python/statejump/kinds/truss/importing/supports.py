@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Directions without motion in the form of a case: along axes, and one of any direction."""
+"""Held directions in the form of a case: along axes, and one in any direction."""
 from __future__ import annotations
 
 from typing import Any
@@ -8,8 +8,8 @@ import numpy as np
 
 from statejump.kinds.truss.importing.model import Deck
 
-# Sine of the angle below which two directions are equal: axes come from coordinates with at least four digits. A
-# support with this error changes the direction of the displacement by as little.
+# Sine of the angle below which directions are equal: coordinates have at least four digits. A support with this error
+# changes the direction of the displacement by the same angle.
 SAME = 1e-6
 
 
@@ -39,7 +39,7 @@ def supports(deck: Deck, node: str, dimension: int) -> dict[str, Any]:
 
 
 def held_directions(deck: Deck, node: str) -> np.ndarray:
-    """Return the directions in which a node is held, as rows; they may be dependent."""
+    """Return the directions in which a node is held, as rows that may be linearly dependent."""
     axes = np.eye(3)
     rows = [axes["xyz".index(axis)] for axis in sorted(deck.fixed.get(node, ()))]
     return np.array(rows + [np.array(direction) for direction in deck.held.get(node, ())]).reshape(-1, 3)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A deck as a case document: units, dimension, temperatures, and joints that are inserted by name."""
+"""Conversion of a deck to a case document: units, dimension, temperatures, and inserted joints."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -17,16 +17,16 @@ from statejump.kinds.truss.importing.supports import supports
 from statejump.kinds.truss.importing.units import Units, in_units
 from statejump.kinds.truss.sections import MOST_DENSITY_KG_PER_M3, MOST_EXPANSION_PER_K
 
-# A smaller difference of coordinates, over the size of the truss, counts as zero, because decks have eight digits.
+# Fraction of the truss size below which a difference of coordinates is zero, because decks have eight digits.
 FLAT = 1e-9
-# A smaller coefficient, over the largest one of its equation, comes from the rounding of directions.
+# Fraction of the largest coefficient of an equation below which a coefficient is rounding of directions.
 ROUNDING = 1e-12
-# Length of a spring to the ground, over the size of the truss. If a node moves across the spring by a thousandth of the
-# size, it feels a millionth of its force. Positions keep 13 digits.
+# Length of a spring to the ground, as a multiple of the truss size. If the node moves across the spring by 1/1000 of
+# the size, the transverse force is a millionth of the spring force. Positions keep 13 digits.
 FAR, FARTHEST_M = 1e3, 9e5
-# Mass of a bar without density under gravity: cases need a mass, and this one is negligible.
+# Mass of a bar without density under gravity [kg]: cases need a mass, and this mass is negligible.
 WEIGHTLESS_KG = 1e-15
-# Options that give all links a number that the deck lacks.
+# Options that give all links a number that is missing in the deck.
 OPTIONS = {"young_modulus_Pa": "--young-modulus", "cross_section_area_m2": "--area",
            "thermal_expansion_per_K": "--thermal-expansion"}
 
@@ -38,17 +38,17 @@ def case_document(
     reflector: tuple[Sequence[str], Sequence[float]] | None = None, links: Mapping[str, float] | None = None,
     fixed: Sequence[tuple[str, str]] = (), check_ignored: bool = True,
 ) -> Document:
-    """Return the case of a deck; the deck's account records the use of its cards.
+    """Return the case document of a deck, and record in the deck the use of its cards.
 
     :param units: units of the deck
-    :param temperature_change_K: of all links, for a deck without temperatures
-    :param density_kg_per_m3: of links without density in the deck
+    :param temperature_change_K: temperature change of all links, for a deck without temperatures
+    :param density_kg_per_m3: density of links that have none in the deck
     :param joints: arguments of ``--joint``, see :mod:`~statejump.kinds.truss.importing.joints`
-    :param sections: sections that the deck lacks; ``thermal`` replaces its temperatures
+    :param sections: further sections of the case; ``thermal`` replaces the temperatures of the deck
     :param reflector: nodes of a reflecting surface, names or patterns, and its axis
-    :param links: keys of links whose number the deck lacks
+    :param links: values of link keys that are missing in the deck
     :param fixed: names or patterns of nodes, and further directions in which they are held
-    :param check_ignored: whether to refuse an item of ``Options.ignored`` that the deck does not have
+    :param check_ignored: whether to raise an error for an item of ``Options.ignored`` that matches nothing in the deck
     :raises StatejumpError: a link lacks a number, or a node does not exist
     """
     used = named_nodes(deck)
@@ -99,7 +99,7 @@ def _hold(made: Document, fixed: Sequence[tuple[str, str]], dimension: int) -> N
 
 
 def _check_unused(deck: Deck, used: set[str]) -> None:
-    """Refuse loads on a node without bars and springs; record other items there."""
+    """Refuse loads on a node without bars and springs; record its other items as omitted."""
     acting = [(deck.force_line[node], node, "force") for node, force in deck.force.items()
               if node in deck.force_line and any(force)]
     acting += [(deck.mass_line[node], node, "mass") for node, mass in deck.mass.items() if mass]
@@ -122,7 +122,7 @@ def _dimension(deck: Deck, used: set[str]) -> int:
 
 
 def _springs(deck: Deck, made: Document, units: Units, dimension: int) -> None:
-    """Add springs. A spring to the ground in a direction ends at a far node, so that it acts in that direction only."""
+    """Add springs. A spring to the ground ends at a far node, so that it acts in its direction only."""
     places = np.array([node["position_m"] for node in made["node"]])
     size = float(np.ptp(places, axis=0).max()) or 1.0
     for spring in deck.springs:
@@ -150,7 +150,7 @@ def _constraint(name: str, equation: Equation) -> dict[str, Any]:
 
 
 def _expansions(deck: Deck, made: Document) -> None:
-    """Give links coefficients that depend on temperature: one for each table and stress-free temperature."""
+    """Give links temperature-dependent coefficients: one [[expansion]] per table and stress-free temperature."""
     names: dict[tuple[tuple[tuple[float, float], ...], float, float], str] = {}
     for bar, link in zip(deck.bars, made["link"]):
         if not bar.expansion_table:
@@ -166,8 +166,8 @@ def _expansions(deck: Deck, made: Document) -> None:
 def _leave_impossible(deck: Deck, made: Document, *, heated: bool, weighed: bool) -> None:
     """Omit numbers that are out of range and have no influence.
 
-    These are expansions of a truss that nothing heats, and densities without gravity. Some decks have 1 for both,
-    others a weight for a mass.
+    These are expansion coefficients of an unheated truss, and densities without gravity. Some decks have 1 for both,
+    others a weight instead of a mass.
     """
     for bar, link in zip(deck.bars, made["link"]):
         expansion, density = link.get("thermal_expansion_per_K", 0.0), link.get("density_kg_per_m3", 0.0)
@@ -194,7 +194,7 @@ def _ground(deck: Deck, spring: Spring, name: str, units: Units, length: float, 
 
 
 def node_name(name: str) -> str:
-    """Return the name of a node of a deck: numbers begin with N, those of an instance with its name."""
+    """Return the name in the case of a node of a deck: N and its number, or the name of its instance and its number."""
     return _called("N", name)
 
 
@@ -203,7 +203,7 @@ def _called(letter: str, name: str) -> str:
 
 
 def _changes(deck: Deck, given: float | None) -> list[float]:
-    """Return the temperature change of every bar, from its stress-free temperature to the mean of its ends."""
+    """Return the temperature change of every bar: mean of its ends minus the stress-free temperature."""
     found = []
     for bar in deck.bars:
         change = bar.temperature_change

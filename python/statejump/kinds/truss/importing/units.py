@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Units of decks, which do not state them."""
+"""Units of decks. A deck does not state its units."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -9,9 +9,9 @@ from dataclasses import dataclass
 class Units:
     """The units of a deck.
 
-    :param length_m: of length [m]
-    :param force_N: of force [N]
-    :param mass_kg: of mass [kg]; None: force times seconds squared by length
+    :param length_m: one unit of length of the deck [m]
+    :param force_N: one unit of force [N]
+    :param mass_kg: one unit of mass [kg]; None: force · s² / length
     """
 
     length_m: float = 1.0
@@ -31,7 +31,7 @@ class Units:
 
 POUND_FORCE_N = 4.4482216152605  # exact
 INCH_M = 0.0254  # exact
-# Usual ones first: among equally plausible ones, the first is chosen.
+# Common systems first: the first of several equally plausible ones is chosen.
 SYSTEMS = {
     "SI": Units(), "mm-N": Units(1e-3), "in-lbf": Units(INCH_M, POUND_FORCE_N), "mm-kg-s": Units(1e-3, 1e-3),
     "mm-kN-t": Units(1e-3, 1e3, 1e3),
@@ -39,5 +39,5 @@ SYSTEMS = {
 
 
 def in_units(value: float, unit: float) -> float:
-    """Return a number of a deck in the units of cases, rounded to the digits of a deck: 50 mm2 are 5e-05 m2."""
+    """Return a number of a deck in the units of cases, rounded to the digits of a deck: 50 mm2 is 5e-05 m2."""
     return value if unit == 1 else float(f"{value * unit:.15g}")

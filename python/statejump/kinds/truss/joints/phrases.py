@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Numbers of many items in sentences and legends."""
+"""Formatting of numbers of many items for sentences and legends."""
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
@@ -18,13 +18,13 @@ def count(items: Sequence[object], one: str) -> str:
 
 
 def spread(values: Iterable[float], unit: str = "-", digits: int = 4) -> str:
-    """Return the common value of many items, or the range of their values."""
+    """Return the common value of many items or, if they differ, their range."""
     known = [float(value) for value in values]
     low, high = min(known), max(known)
     return text(low, unit, digits) if low == high else f"{text(low, unit, digits)} to {text(high, unit, digits)}"
 
 
 def scaled(values: np.ndarray, scale: float, unit: str) -> str:
-    """Return one value or the range of several, in a readable unit of the values times ``scale``."""
+    """Return the common value or the range of several values times ``scale``, in a readable unit."""
     low, high = values.min() * scale, values.max() * scale
     return f"{low:.4g} {unit}" if high - low <= 1e-9 * abs(high) else f"{low:.3g} to {high:.3g} {unit}"

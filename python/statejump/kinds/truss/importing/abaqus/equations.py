@@ -8,7 +8,7 @@ from statejump.kinds.truss.importing.model import Equation
 
 
 def equation(model: Model, block: Block, scope: Scope) -> None:
-    """Equations of one block: a number of terms, then node, direction and factor of each."""
+    """Read the equations of one block: number of terms, then node, direction and factor of each term."""
     rest = [(line, words) for line, words in block.data]
     while rest:
         begun, words = rest.pop(0)

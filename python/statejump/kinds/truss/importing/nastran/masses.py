@@ -9,7 +9,7 @@ from statejump.kinds.truss.importing.supports import is_held
 
 
 def cmass(reader: Reader, card: Card) -> None:
-    """CMASS1 and CMASS2: a mass of one component of one node."""
+    """Read a mass of one component of one node (CMASS1, CMASS2)."""
     name = element(reader, card, "mass ")
     if card.name == "CMASS2":
         mass = reader.number(card, 1, 0.0)
@@ -34,7 +34,7 @@ def cmass(reader: Reader, card: Card) -> None:
 
 
 def take_components(reader: Reader) -> None:
-    """Give nodes the masses of their components, which must be equal in all directions that are not held."""
+    """Convert component masses to nodal masses; they must be equal in all directions that are not held."""
     for node, masses in reader.component_masses.items():
         card = reader.component_cards[node]
         axes = reader.frames[reader.displacement_frame[node]].directions(reader.deck.nodes[node])

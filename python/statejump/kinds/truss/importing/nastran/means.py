@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""RBE3: a node whose motion is a mean of others, as equations between translations.
+"""RBE3, a node that follows the mean motion of others, as equations between translations.
 
-The node moves as the rigid body whose motion is nearest to that of the others, by weighted least squares: u = ū + θ ×
-d, with θ = I⁻¹ Σ w r × u about their weighted centre. This is linear in the translations of the others and needs no
-rotations.
+The node moves with the rigid-body motion that fits the others best, by weighted least squares: u = ū + θ × d, with θ =
+I⁻¹ Σ w r × u about their weighted centre. This is linear in the translations of the others and needs no rotations.
 """
 from __future__ import annotations
 
@@ -20,7 +19,7 @@ MOVES = "123"
 
 
 def equations(reader: Reader, card: Card) -> list[Equation]:
-    """Return the equations of the translations in REFC; none if the card needs rotations or has weights by components.
+    """Return the equations of the translations in REFC; empty if the card needs rotations or has weights by components.
 
     :raises Unreadable: a field is no number, or a node does not exist
     """

@@ -11,7 +11,7 @@ from statejump.kinds.truss.importing.nastran.reader import Reader
 
 
 def read_nodes(reader: Reader) -> None:
-    """Read GRID in systems that may be defined by other GRIDs, in any order."""
+    """Read GRID cards. Their coordinate systems may refer to other GRIDs, in any order."""
     defaults = (reader.cards.get("GRDSET") or [Card(0, "GRDSET")])[0]
     reader.frames["0"] = BASIC
     grids: dict[str, Card] = {}
@@ -30,7 +30,7 @@ def read_nodes(reader: Reader) -> None:
 
 
 class _Places:
-    """Finds positions of nodes and systems, which may depend on each other in a chain without a loop."""
+    """Computes positions of nodes and systems, which may depend on each other in a chain without a loop."""
 
     def __init__(self, reader: Reader, grids: dict[str, Card], defaults: Card) -> None:
         self.reader, self.grids = reader, grids
@@ -70,7 +70,7 @@ class _Places:
                         on_way.add(needed[0])
 
     def _needed(self, kind: str, name: str) -> list[tuple[str, str]]:
-        """Return the nodes and systems whose positions are needed first."""
+        """Return the nodes and systems whose positions must be known first."""
         reader = self.reader
         if kind == "node":
             card = self.grids[name]
@@ -113,7 +113,7 @@ class _Places:
 
 
 def fix(reader: Reader, card: Card, components: str, nodes: list[str]) -> None:
-    """Hold nodes in components of their displacement systems; blanks may separate the components."""
+    """Hold nodes in components of their displacement systems; components may be separated by blanks."""
     components = "".join(components.split())
     if not set(components) <= set("0123456"):
         raise reader.fail(card, "deck_bad_value",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""AUTOSPC of Nastran: components of a node without stiffness are held."""
+"""AUTOSPC of Nastran: components of a node without stiffness are held automatically."""
 from __future__ import annotations
 
 from collections.abc import Iterator
@@ -10,12 +10,12 @@ from statejump.kinds.truss.importing.model import Deck
 from statejump.kinds.truss.importing.nastran.reader import Reader
 from statejump.kinds.truss.importing.supports import SAME, basis_of, held_directions
 
-# EPZERO of Nastran: a smaller fraction of the node's largest stiffness counts as zero.
+# EPZERO of Nastran: stiffness below this fraction of the largest one of the node counts as zero.
 EPZERO = 1e-8
 
 
 def hold_singular(reader: Reader) -> None:
-    """Hold components of displacement systems without stiffness, except at ends of beams, which are stiff in
+    """Hold components without stiffness, in displacement systems, except at ends of beams, which are stiff in
     Nastran."""
     deck = reader.deck
     stiffness: dict[str, np.ndarray] = {}
@@ -48,7 +48,7 @@ def hold_singular(reader: Reader) -> None:
 
 
 def _left_free(deck: Deck, node: str, axes: np.ndarray, tied: list[np.ndarray]) -> Iterator[np.ndarray]:
-    """Yield the directions of axes, without those that supports hold and equations couple."""
+    """Yield those axes that neither supports hold nor equations couple."""
     basis = basis_of(np.vstack([held_directions(deck, node), *tied]))
     for axis in axes:
         free = axis - basis.T @ (basis @ axis)
