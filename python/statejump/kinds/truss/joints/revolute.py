@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Clearance revolutes: a journal with clearance in a bearing, with Coulomb friction."""
+"""Clearance revolutes: a journal with clearance and Coulomb friction in a bearing."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -64,7 +64,7 @@ class Revolutes:
     program: np.ndarray  # int, index into ResolvedTruss.programs
     young_modulus_Pa: np.ndarray
     poisson_ratio: np.ndarray
-    rigid: np.ndarray  # bool: contact = "rigid" in the reduced model
+    rigid: np.ndarray  # bool: contact = "rigid" of the reduced model
 
     @property
     def bearing_radius_m(self) -> np.ndarray:
