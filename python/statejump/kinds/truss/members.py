@@ -24,8 +24,8 @@ def warnings(links: Links, time_s: np.ndarray, temperature_change_K: np.ndarray,
     places = np.arange(len(links.names))
 
     def sentence(at: np.ndarray, load: np.ndarray, parts: Sequence[str]) -> list[str]:
-        """Return the sentence about links whose load is above 1 at these samples. ``parts`` has the load of the worst
-        link, the exceeded limit, and the behaviour of the models."""
+        """Return the sentence about links whose load ratio exceeds 1 at these samples. ``parts``: load of the worst
+        link, exceeded limit, behaviour of the models."""
         beyond = np.flatnonzero(load > 1)
         if not len(beyond):
             return []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Notes of a quasi-static path as sentences: warnings of a run that did not fail."""
+"""Notes of a quasi-static path as sentences: warnings of a successful run."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -9,7 +9,7 @@ import numpy as np
 
 from statejump.kinds.truss.resolved import ResolvedTruss
 
-MOST_NAMED = 8  # names in a sentence; it also gives the number of further ones
+MOST_NAMED = 8  # largest number of names in a sentence, followed by the number of further names
 
 
 def sentences(truss: ResolvedTruss, notes: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:
@@ -40,6 +40,6 @@ def _named(joints: Sequence[tuple[str, str]]) -> str:
 
 
 def listed(names: Sequence[str]) -> str:
-    """Return the first names, and the number of the others."""
+    """Return the first names and the number of the others."""
     first = ", ".join(names[:MOST_NAMED])
     return first if len(names) <= MOST_NAMED else f"{first} and {len(names) - MOST_NAMED} more"
