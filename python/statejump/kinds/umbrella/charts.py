@@ -7,8 +7,7 @@ from statejump.kinds.umbrella.case import UmbrellaCase
 
 
 def charts(case: UmbrellaCase) -> list[Chart]:
-    """Return both deflections over temperature, the trajectory of the journal in its clearance, and the contact
-    force."""
+    """Return charts: both deflections over temperature, trajectory of the journal in its clearance, contact force."""
     return [
         Chart(TEMPERATURE, Axis("theta2_rad", "Deflection of AB, θ2 − θ2(0)", from_start=True),
               "Deflection-temperature loop", marks=True),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The joint of an umbrella case, for the curves of the contact laws."""
+"""Parameters of the joint of an umbrella case for the curves of contact laws."""
 from __future__ import annotations
 
 from statejump.kinds.umbrella.case import UmbrellaCase

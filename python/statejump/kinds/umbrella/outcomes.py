@@ -16,7 +16,7 @@ ANGLES = ("theta2", "theta4")
 def outcomes(case: UmbrellaCase, run: Run) -> dict[str, float]:
     """Return jumps and ranges of both angles, first contact, contacts and energy residue; NaN: it did not happen."""
     said = run.summary
-    # The reduced model accounts for energy in every step, the DEM at its samples.
+    # The reduced model sums energy in every step, the DEM only at its samples.
     residue = said["energy_residue_J"] if "energy_residue_J" in said else energy_residual(run)
     return {
         **{f"{angle}_jump_rad": said[f"{angle}_jump_rad"] for angle in ANGLES},

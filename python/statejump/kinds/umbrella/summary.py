@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Texts of an ``umbrella`` case, and what a command prints of its runs."""
+"""Texts of an ``umbrella`` case, and the output of commands about its runs."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -20,7 +20,7 @@ LABELS = {
 
 
 def describe(case: UmbrellaCase) -> list[str]:
-    """Return the case in sentences, without its temperature program, which all kinds describe alike."""
+    """Return the description of the case in sentences, without the temperature program, common to all kinds."""
     ab, bc, joint = case.link_ab, case.link_bc, case.joint
     sentences = [
         f"One rib of an umbrella antenna: link AB, {text(ab.stress_free_length_m, 'm')}, {ab.mass_kg:g}\u202fkg, "
@@ -37,8 +37,7 @@ def describe(case: UmbrellaCase) -> list[str]:
 
 
 def summary_lines(case: UmbrellaCase, runs: Mapping[str, Run]) -> list[Shown | str]:
-    """Return the lines that a command prints of a single model: first contact, jump, and remarks of the reduced
-    model."""
+    """Return the lines that a command prints for a single model: first contact, jump, remarks of the reduced model."""
     if len(runs) > 1:
         return []
     found: list[Shown | str] = []
