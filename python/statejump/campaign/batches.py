@@ -2,15 +2,15 @@
 """Size of the batches of samples."""
 from __future__ import annotations
 
-BATCH_S = 0.5  # duration of a task [s]: long against the millisecond that Dask needs for it
+BATCH_S = 0.5  # duration of a task [s], long compared with Dask's overhead of a millisecond
 MOST_IN_BATCH = 20_000
 
 
 class Batches:
-    """Distributes the missing samples in batches of about BATCH_S, and learns their size.
+    """Distributes the missing samples in batches of about BATCH_S seconds, and adapts their size.
 
     :param missing: numbers of the samples
-    :param model: samples of the DEM are run one by one
+    :param model: ``reduced`` or ``dem``; DEM samples are run one by one
     :param queued: tasks per worker
     """
 
@@ -25,14 +25,14 @@ class Batches:
 
     def next(self, workers: int) -> list[int]:
         """Return the next batch; empty at the end."""
-        # The last batches are smaller, so that all workers end at the same time.
+        # The last batches are smaller, so that all workers finish at about the same time.
         size = 1 if self.one_by_one else max(1, min(self.size, -(-self.left // (self.queued * workers))))
         batch = self.missing[self.given : self.given + size]
         self.given += len(batch)
         return batch
 
     def learn(self, count: int, seconds: float) -> None:
-        """Update the batch size, to at most four times the timed one: the first sample of a worker is not
-        representative."""
+        """Update the batch size from a timed batch, at most to four times its size: the first sample of a worker is
+        slower than the others."""
         fitting = int(BATCH_S / max(seconds / count, 1e-9))
         self.size = max(1, min(fitting, 4 * count, MOST_IN_BATCH))

@@ -41,7 +41,7 @@ def montecarlo(
 
 
 def _values(values: Any) -> Any:
-    """Return values as a list of Python numbers, also from an array; a single number gives a list of one."""
+    """Return a list of Python numbers from a list, an array or a single number."""
     if isinstance(values, Iterable) and not isinstance(values, (str, np.ndarray)):
         values = list(values)
     found = plain(values)

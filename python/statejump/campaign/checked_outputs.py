@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Check of the outputs of a campaign on a run of the case, before the campaign begins."""
+"""Check of the requested outputs with a run of the case, before a campaign begins."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from statejump.core.errors import NotAllowed
 
 
 def checked(given: Sequence[str], case: Case) -> tuple[str, ...]:
-    """Return the outputs, after computing them once for a run of the reduced model of the case itself.
+    """Return the outputs after computing them for a run of the reduced model. :raises NotAllowed: one is invalid
 
     :raises NotAllowed: one of them is invalid
     """
