@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The work of a worker: it runs some samples. Every sample ends with outcomes or with a sentence."""
+"""Runs samples in a worker. Every sample ends with outcomes or with an error message."""
 from __future__ import annotations
 
 import time
@@ -22,7 +22,7 @@ from statejump.kinds.protocol import DemModel, QuickModel, ReducedModel
 
 @dataclass(frozen=True)
 class Sample:
-    """A finished sample: either values, or an error and its kind."""
+    """A finished sample: either values, or an error message and its kind."""
 
     index: int
     values: tuple[float, ...] | None
@@ -31,7 +31,8 @@ class Sample:
 
 
 def sampled(case: Case, model: str, outputs: Sequence[str]) -> Run:
-    """Run one sampled case. All samples in time are kept only if an output needs them.
+    """Run one sampled case; keep the complete history only if an output needs it. :raises StatejumpError: the run
+    failed
 
     :raises StatejumpError: the run failed
     """
@@ -50,19 +51,19 @@ def outcome(case: Case, model: str, outputs: Sequence[str] = ()) -> dict[str, fl
     :raises StatejumpError: the run failed
     """
     run = sampled(case, model, outputs)
-    # A program that ends at the reference temperature lacks these outcomes, although other samples may have them.
+    # Outcomes at the end of the program are NaN for a sample whose program ends at the reference temperature.
     nothing = dict.fromkeys(of(case).AT_PROGRAM_END, nan)
     return nothing | of(case).recorded(case, run) | values(outputs, run)
 
 
 def run_sample(recipe: Recipe, index: int) -> Sample:
-    """Run one sample; any failure becomes its error, in one sentence."""
+    """Run one sample; a failure becomes its error message."""
     try:
         found = outcome(parse_case(recipe.data(index)), recipe.model, recipe.outputs)
         return Sample(index, tuple(float(found[name]) for name in recipe.outcomes))
     except StatejumpError as problem:
         return Sample(index, None, _one_line(str(problem)), _one_line(problem.general()))
-    except Exception as problem:  # a failed sample does not end the campaign
+    except Exception as problem:  # any exception: a failed sample must not end the campaign
         said = _one_line(f"the run failed: {type(problem).__name__}: {problem}")
         return Sample(index, None, said, said)
 
@@ -76,8 +77,8 @@ class Batch:
     """Several finished samples.
 
     :param values: outcomes (samples, outcomes); NaN for a failed sample
-    :param errors: sentences of the failed samples, by index
-    :param error_kinds: the sentences without the parts that differ between failures of one kind
+    :param errors: error messages of the failed samples, by index
+    :param error_kinds: error messages without the parts that differ between failures of one kind
     """
 
     indices: tuple[int, ...]
@@ -98,7 +99,7 @@ def batch_of(samples: Sequence[Sample], outcomes: int) -> Batch:
 
 
 def run_samples(recipe: Recipe, indices: Sequence[int]) -> tuple[float, Batch]:
-    """Run several samples; return the seconds that they took, and the samples."""
+    """Run several samples; return the time [s] that they took, and the samples."""
     started = time.perf_counter()
     for place in recipe.kinds:
         if place not in KINDS.values():
