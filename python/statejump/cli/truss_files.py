@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shared by commands that write a case file of a truss."""
+"""Code shared by commands that write a case file of a truss."""
 from __future__ import annotations
 
 import os
@@ -19,9 +19,9 @@ TABLES: dict[str, Any] = {
 
 
 def new_files(output: Path, tables: bool, force: bool) -> tuple[str, ...]:
-    """Return the lists that go into files beside the case.
+    """Return the lists that are written to files beside the case.
 
-    :param tables: whether there are such files
+    :param tables: whether to write such files
     :param force: whether files may be overwritten
     :raises StatejumpError: a file exists already, or cannot be written
     """
