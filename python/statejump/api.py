@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The functions of the public interface: ``import statejump as sj`` offers them as ``sj.load`` and so on."""
+"""Functions of the public interface: ``import statejump as sj`` provides them as ``sj.load`` and so on."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -31,7 +31,7 @@ def load(source: str | Path | Mapping[str, Any]) -> Case:
     """Return a checked case.
 
     :param source: path of a case file; name of a shipped case, for example ``table1``; or sections and keys as a dict
-    :raises StatejumpError: the file does not exist, or the case is invalid: file, key, value, range
+    :raises StatejumpError: the file does not exist, or the case is invalid; the message has file, key, value and range
     """
     return load_case(source)
 
@@ -39,8 +39,8 @@ def load(source: str | Path | Mapping[str, Any]) -> Case:
 def compare(first: Run, second: Run) -> Comparison:
     """Compare two runs of a case with the tolerances of the case.
 
-    :param first: a run of the reduced model and
-    :param second: a run of the DEM, in either order; or two runs of one model
+    :param first: a run of the reduced model or of the DEM
+    :param second: a run of the other model, or of the same model
     :raises StatejumpError: the runs belong to different cases, or one of them is incomplete
     """
     if first.definition != second.definition:
@@ -67,11 +67,10 @@ def read(path: str | Path) -> Result:
 
 
 def statics(case: Case, friction_coefficient: float | None = None) -> RestSets:
-    """Return the rest positions of a loaded joint: under the forces of a ``statics`` case, or against the bar of a
-    ``spring_slider`` case.
+    """Return the rest positions of a loaded joint, for a ``statics`` case or the block of a ``spring_slider`` case.
 
     :param friction_coefficient: replaces that of the case
-    :raises StatejumpError: the kind of case has no rest positions, or its mesh is unusable
+    :raises StatejumpError: the kind has no rest positions, or its mesh is unusable
     """
     return require(case, JointStatics).statics(case, friction_coefficient)
 
@@ -85,7 +84,7 @@ def bore(
     :param unit_m: length of one unit of the file [m]: 0.001 for millimetres
     :param journal_radius_m: radius of the journal in the bore [m]
     :param flip: reverse every face, for a file whose normals point into the material
-    :raises StatejumpError: the file is no bore; the sentence gives reason and position
+    :raises StatejumpError: the file is not a bore; the message has reason and position
     """
     found: Bore = _BORE(Path(path), unit_m=unit_m, journal_radius_m=journal_radius_m, flip=flip)
     return found
@@ -102,17 +101,17 @@ def identify(
     BIC selects the joint. Notes list the parameters that the loop does not determine.
 
     :param source: a table, or columns: ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``, or
-        the same in other units, row by row as measured. A force is positive where it resists a positive displacement
+        the same in other units, row by row as measured. The force is positive if it resists a positive displacement
     :param model: a joint, several, or ``auto``: all of :data:`statejump.identification.models.MODELS`
     :param start: friction before the first row: ``fresh``: zero; ``cycled``: the path was traversed before;
         ``unknown``: it is a parameter
-    :param confidence: of the intervals, 0.5 to 0.999
-    :param target: item of a case that the joint becomes: ``spring_slider`` (default), ``slider``, ``revolute``,
-        ``umbrella`` (default of rotations), ``torsion_spring``, ``iwan_joint``
+    :param confidence: confidence level of the intervals, 0.5 to 0.999
+    :param target: item of a case for the joint: ``spring_slider`` (default), ``slider``, ``revolute``, ``umbrella``
+        (default of rotations), ``torsion_spring``, ``iwan_joint``
     :param normal_force_N: normal force in the test [N]; converts friction to a coefficient
     :param journal_radius_m: radius of the journal [m]; converts a moment of friction to a coefficient
     :param ignored: names of columns of a table that are not used
-    :raises StatejumpError: the file is no loop, or the joint is unknown
+    :raises StatejumpError: the file is not a loop, or the joint is unknown
     """
     found: Identification = _IDENTIFIED(
         source, model=model, start=start, confidence=confidence, target=target, normal_force_N=normal_force_N,
@@ -126,14 +125,14 @@ def sweep(
 ) -> Campaign:
     """Run a case on a grid of its parameters.
 
-    :param values: values by key. Keys are ``section.key``, ``section.item.key`` of one item of a list,
+    :param values: values by key. Keys are ``section.key``, ``section.item.key`` of one item of a list, or
         ``section.*.key`` or ``section.joint*.key`` of all matching items. A value is a list, or the fields of a
         ``[[vary]]`` table: ``{"start": 0.1, "stop": 1, "count": 10, "spacing": "log"}``
     :param model: ``reduced`` or ``dem``
     :param workers: number of processes; None: one for each core, or no separate process if the grid is small
     :param outputs: further outputs to record of every run, for example ``jump:displacement_m[P].x``: end, jump, max,
         min or range of any column of a run at one item; see :mod:`statejump.campaign.outputs`
-    :raises StatejumpError: a key is unknown, or the kind of case has no outcomes
+    :raises StatejumpError: a key is unknown, or the kind has no outcomes
     """
     found: Campaign = _SWEEP(case, values, model=model, workers=workers, progress=progress, outputs=outputs)
     return found
@@ -148,7 +147,7 @@ def montecarlo(
     :param distributions: for each key the fields of a ``[[vary]]`` table, for example ``{"distribution": "normal",
         "relative": 0.1}``
     :param samples: number of samples
-    :param seed: of the random numbers: the same seed gives the same samples
+    :param seed: seed of the random numbers; the same seed gives the same samples
     :param model: ``reduced`` or ``dem``
     :param workers: as for :func:`sweep`
     :param outputs: as for :func:`sweep`

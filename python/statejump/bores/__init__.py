@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measured bores, given as triangle meshes. The function ``statejump.bore`` is in :mod:`statejump.api`."""
+"""Measured bores as triangle meshes; :mod:`statejump.api` defines ``statejump.bore``."""
 from __future__ import annotations
 
 from statejump.bores.measure import Bore, measured

@@ -73,7 +73,7 @@ def make_console(quiet: bool) -> Console:
 def since_start_s() -> float:
     """Return the wall time since the start of the process [s], including the start of Python."""
     fields = Path("/proc/self/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
-    started_s = int(fields[19]) / os.sysconf("SC_CLK_TCK")  # field 22 of proc(5): start in ticks since the system was started
+    started_s = int(fields[19]) / os.sysconf("SC_CLK_TCK")  # field 22 of proc(5), in ticks since system start
     return time.clock_gettime(time.CLOCK_BOOTTIME) - started_s
 
 
