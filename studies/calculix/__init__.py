@@ -18,11 +18,10 @@ def check(case: Case) -> None:
 
 
 def answer(case: Case) -> Answer:
-    """Run a case in CalculiX and compare it with the reduced model. :raises NotAllowed: the kind or a value has no deck
-    :raises StatejumpError: CalculiX is missing or failed
+    """Run a case in CalculiX and compare it with the reduced model.
 
-    :raises NotAllowed: there is no deck for the case, or not for a value
-    :raises StatejumpError: there is no CalculiX, or it failed
+    :raises NotAllowed: the kind or a value has no deck
+    :raises StatejumpError: CalculiX is missing or failed
     """
     check(case)
     return truss.answer(case) if isinstance(case, TrussCase) else spring_slider.answer(case)

@@ -30,11 +30,10 @@ TIP = 5
 
 
 def answer(case: SpringSliderCase) -> ccx.Answer:
-    """Run the case in CalculiX beside the reduced model. :raises NotAllowed: the deck does not support the case :raises
-    StatejumpError: CalculiX is missing or failed
+    """Run the case in CalculiX beside the reduced model.
 
-    :raises NotAllowed: what the deck does not have
-    :raises StatejumpError: there is no CalculiX, or it failed
+    :raises NotAllowed: the deck does not support the case
+    :raises StatejumpError: CalculiX is missing or failed
     """
     joint = case.joint
     if case.expansion is not None:

@@ -39,11 +39,10 @@ LARGEST_HELD = 1e12  # N: what holds a locked slider
 
 
 def answer(case: TrussCase) -> ccx.Answer:
-    """Run the truss with locked joints in CalculiX and compare it with the solver. :raises NotAllowed: the deck does
-    not support the case :raises StatejumpError: CalculiX is missing or failed
+    """Run the truss with locked joints in CalculiX and compare it with the solver.
 
-    :raises NotAllowed: what the deck does not have
-    :raises StatejumpError: there is no CalculiX, or it failed
+    :raises NotAllowed: the deck does not support the case
+    :raises StatejumpError: CalculiX is missing or failed
     """
     truss = case.resolve()
     _refuse(truss)

@@ -147,8 +147,7 @@ def plan_for(
 
 
 def vary_tables(path: Path) -> list[tuple[str, Mapping[str, Any]]]:
-    """Return the ``[[vary]]`` tables of a file without other content, as ``statejump identify`` writes it. :raises
-    StatejumpError: the file does not exist, has other sections, or has no such table
+    """Return the ``[[vary]]`` tables of a file without other content, as ``statejump identify`` writes it.
 
     :raises StatejumpError: the file does not exist, has other sections, or has no such table
     """

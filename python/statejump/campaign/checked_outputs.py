@@ -11,9 +11,9 @@ from statejump.core.errors import NotAllowed
 
 
 def checked(given: Sequence[str], case: Case) -> tuple[str, ...]:
-    """Return the outputs after computing them for a run of the reduced model. :raises NotAllowed: one is invalid
+    """Return the outputs after computing them for a run of the reduced model.
 
-    :raises NotAllowed: one of them is invalid
+    :raises NotAllowed: one is invalid
     """
     names = tuple(given)
     for place, name in enumerate(names):

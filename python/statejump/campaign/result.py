@@ -156,7 +156,7 @@ def run(plan: Plan, workers: int | None, on_progress: OnProgress) -> Campaign:
 def run_in(
     plan: Plan, folder: Path, scheduler: str | None, workers: int | None, restart: bool, on_progress: OnProgress
 ) -> Campaign:
-    """Run the samples that the journal in a folder lacks. :raises Interrupted: Ctrl-C; finished samples are stored
+    """Run the samples that the journal in a folder lacks.
 
     :raises Interrupted: Ctrl-C; finished samples are stored
     """

@@ -31,8 +31,7 @@ class Sample:
 
 
 def sampled(case: Case, model: str, outputs: Sequence[str]) -> Run:
-    """Run one sampled case; keep the complete history only if an output needs it. :raises StatejumpError: the run
-    failed
+    """Run one sampled case; keep the complete history only if an output needs it.
 
     :raises StatejumpError: the run failed
     """

@@ -57,10 +57,9 @@ def result_of(
 def save_as(
     path: Path, command: str, case: Case, runs: Mapping[str, Run], comparison: Comparison | None = None
 ) -> Path:
-    """Write the result file of runs under a name; return its path. :raises NotAllowed: the name ends with another
-    suffix
+    """Write the result file of runs under a name; return its path.
 
-    :raises NotAllowed: its name ends with another suffix
+    :raises NotAllowed: the name ends with another suffix
     """
     check_suffix("path", path, SUFFIX)
     path = path if path.suffix else path.with_suffix(SUFFIX)
