@@ -4,11 +4,11 @@
 
     PYTHONPATH=build/python scripts/decks.py FOLDER [-o TABLE.md] [--beams-as-bars] [--ignore CARD ...] [--circ radius]
 
-A row for each deck of Nastran, CalculiX or Abaqus: its units, imported, ran, why not, largest displacement in metres.
-Where ``ccx`` is installed and the deck is CalculiX's, also the largest difference of a displacement to that of
-CalculiX, over the largest one. Both are linear then: loads are multiplied by a small factor, and *STEP, NLGEOM is left
-out for CalculiX. A deck without temperatures is run at that of ``--temperature-change``. Every deck runs in a process
-of its own. Exit status 1: an import or a run ended otherwise than with a result or a sentence.
+A row for each deck of Nastran, CalculiX or Abaqus: units, whether it was imported and run, cause of a failure, largest
+displacement [m]. If ``ccx`` is installed, decks of CalculiX also have the largest difference of a displacement from
+that of CalculiX, relative to the largest one. Both programs are then linear: loads are multiplied by a small factor,
+and *STEP, NLGEOM is removed for CalculiX. ``--temperature-change`` sets ΔT for decks without temperatures. Every deck
+runs in a separate process. Exit status 1: an import or a run ended with neither a result nor a message.
 """
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".inp", ".bdf", ".nas", ".dat")
 HEADER = ("deck", "units", "imported", "ran", "why not", "largest displacement [m]", "difference to ccx")
-# Strains of structures are below 1e-2: what is not linear is then below 1e-7 of the displacement, as ccx prints it.
+# Factor on loads. Strains are below 1e-2, so nonlinear parts are below 1e-7 of the displacement, the precision of ccx.
 SMALL = 1e-5
 FAULT = "fault"
 
 
 @dataclass
 class Row:
-    """What became of a deck; a cause is a sentence."""
+    """Result of a deck; a cause is a sentence."""
 
     deck: str
     units: str = ""
@@ -91,8 +91,8 @@ def one(path: Path, name: str, options: argparse.Namespace) -> Row:
 
 
 def _plausible(documents: dict[str, dict]) -> tuple[str, dict, object, str | None]:
-    """Return the units of a deck, which says nothing of them, its document, its case and why it cannot run: of those
-    that are a case the units with the fewest implausible numbers."""
+    """Return units, document, case and failure of a deck, which does not state its units. Among units that give a case,
+    those with the fewest implausible numbers are chosen."""
     import statejump as sj
     from statejump.core.errors import StatejumpError
     from statejump.kinds.truss.importing import checked, hints
@@ -129,10 +129,10 @@ def _displacements(run: object) -> np.ndarray:
 
 
 def _small(made: dict) -> dict[str, np.ndarray]:
-    """Return the displacements of a case whose loads are small, multiplied to those of the loads."""
+    """Return the displacements of a case for small loads, divided by the factor of the loads."""
     import statejump as sj
 
-    factor = 1.0 if "expansion" in made else SMALL  # coefficients that follow the temperature are not linear
+    factor = 1.0 if "expansion" in made else SMALL  # temperature-dependent coefficients are not linear
     small = json.loads(json.dumps(made))
     for node in small["node"]:
         if "force_N" in node:
@@ -146,7 +146,7 @@ def _small(made: dict) -> dict[str, np.ndarray]:
 
 
 def in_process(path: Path, folder: Path, arguments: Sequence[str], seconds: float) -> Row:
-    """Import and run a deck in a process of its own, which may die."""
+    """Import and run a deck in a separate process, which may crash."""
     name = str(path.relative_to(folder))
     command = [sys.executable, __file__, str(folder), "--one", str(path), *arguments]
     try:
@@ -161,7 +161,7 @@ def in_process(path: Path, folder: Path, arguments: Sequence[str], seconds: floa
 
 
 def arguments_of(options: argparse.Namespace) -> list[str]:
-    """Return the options of a deck as words."""
+    """Return the options for a deck as command-line arguments."""
     words = ["--temperature-change", str(options.temperature_change)]
     words += ["--beams-as-bars"] if options.beams_as_bars else []
     words += ["--step", str(options.step)] if options.step else []

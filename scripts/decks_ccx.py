@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs a deck of CalculiX, linear, and compares its displacements with others."""
+"""Runs a deck of CalculiX as a linear analysis and compares displacements."""
 from __future__ import annotations
 
 import re
@@ -24,11 +24,11 @@ def installed() -> bool:
 
 
 def difference(path: Path, step: int, ours: Mapping[str, np.ndarray], names: Mapping[str, str]) -> str:
-    """Return the largest difference of a displacement over the largest one, or why there is none.
+    """Return the largest difference of a displacement relative to the largest one, or why it is missing.
 
     :param step: number of the step that was imported
-    :param ours: displacements by the names of nodes in a case
-    :param names: these names by numbers of the deck
+    :param ours: displacements by node name in the case
+    :param names: node names in the case by node number in the deck
     """
     if not step:
         return "no static step"
@@ -55,7 +55,7 @@ def difference(path: Path, step: int, ours: Mapping[str, np.ndarray], names: Map
 
 
 def printing(text: str, step: int, nodes: list[int]) -> str:
-    """Return a deck that ends with a step, prints its displacements and is linear."""
+    """Return a linear deck that ends with a given step and prints its displacements."""
     made: list[str] = []
     number, skips = 0, False
     for line in text.splitlines():
@@ -75,7 +75,7 @@ def printing(text: str, step: int, nodes: list[int]) -> str:
 
 
 def printed(path: Path) -> dict[str, np.ndarray]:
-    """Return the displacements of the last increment by the number of their node."""
+    """Return the displacements of the last increment by node number."""
     found: dict[str, np.ndarray] = {}
     reads = False
     for line in path.read_text().splitlines() if path.is_file() else ():

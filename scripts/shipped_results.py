@@ -5,11 +5,11 @@
     PYTHONPATH=build/python scripts/shipped_results.py run FOLDER [--model dem] [--case NAME ...] [--yade-loop]
     PYTHONPATH=build/python scripts/shipped_results.py compare FIRST SECOND
 
-``run`` leaves a result file of every shipped case that the model can run in FOLDER/MODEL/CASE. A case whose result is
-there is left out, so an interrupted call goes on. With ``--yade-loop`` YADE's own loop steps the DEM, else what the
-case asks for. ``compare`` prints a Markdown table: a row for each case and model,
-how many numbers there are, how many differ in a bit, and of those the column with the largest difference beside the
-largest value of that column. Exit status 1: a number differs, or a file stands on one side alone.
+``run`` writes a result file of every shipped case that the model supports to FOLDER/MODEL/CASE. Existing results are
+kept, so an interrupted call can be continued. With ``--yade-loop`` YADE's own loop makes the steps of the DEM,
+otherwise the stepper of the case. ``compare`` prints a Markdown table with a row per case and model: count of numbers,
+count of numbers that differ in any bit, and the column with the largest difference, with this difference and the
+largest value. Exit status 1: a number differs, or a file is missing on one side.
 """
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def shipped() -> list[Path]:
 
 
 def run(folder: Path, models: list[str], names: list[str], changes: dict[str, str]) -> None:
-    """Run the shipped cases that a model can run, one after the other."""
+    """Run the shipped cases that a model supports, one after the other."""
     for path in shipped():
         case = sj.load(path)
         if changes and case.definition.behaviour.has_model("dem"):
@@ -66,7 +66,7 @@ def numbers(made: Run) -> dict[str, np.ndarray]:
 
 
 def row(name: str, first: Run, second: Run) -> tuple[list[str], bool]:
-    """Return what a comparison says of a case and model, by :data:`HEADER`, and whether all bits are the same."""
+    """Return the comparison of a case and model as a row of :data:`HEADER`, and whether all bits are equal."""
     one, other = numbers(first), numbers(second)
     count = differing = 0
     worst, worst_column = 0.0, ""

@@ -10,7 +10,7 @@
     run.frame(), run.events, run.summary, run.plot()
     sj.compare(run, case.dem(progress=True)).passed
 
-What is listed in ``__all__`` is the public interface; it is loaded when it is first used.
+``__all__`` lists the public interface; its members are imported at their first use.
 """
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The functions of the public interface: ``import statejump as sj`` offers them as ``sj.load`` and so on."""
+"""Functions of the public interface: ``import statejump as sj`` provides them as ``sj.load`` and so on."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -20,7 +20,7 @@ def load(source: str | Path | Mapping[str, Any]) -> Case:
     """Return a checked case.
 
     :param source: path of a case file; name of a shipped case, for example ``table1``; or sections and keys as a dict
-    :raises StatejumpError: the file does not exist, or the case is invalid: file, key, value, range
+    :raises StatejumpError: the file does not exist, or the case is invalid; the message has file, key, value and range
     """
     return load_case(source)
 
@@ -28,8 +28,8 @@ def load(source: str | Path | Mapping[str, Any]) -> Case:
 def compare(first: Run, second: Run) -> Comparison:
     """Compare two runs of a case with the tolerances of the case.
 
-    :param first: a run of the reduced model and
-    :param second: a run of the DEM, in either order; or two runs of one model
+    :param first: a run of the reduced model or of the DEM
+    :param second: a run of the other model, or of the same model
     :raises StatejumpError: the runs belong to different cases, or one of them is incomplete
     """
     if first.definition != second.definition:
@@ -47,10 +47,9 @@ def compare(first: Run, second: Run) -> Comparison:
 
 
 def statics(case: Case, friction_coefficient: float | None = None) -> RestSets:
-    """Return the rest positions of a loaded joint: under the forces of a ``statics`` case, or against the bar of a
-    ``spring_slider`` case.
+    """Return the rest positions of a loaded joint, for a ``statics`` case or the block of a ``spring_slider`` case.
 
     :param friction_coefficient: replaces that of the case
-    :raises StatejumpError: the kind of case has no rest positions, or its mesh is unusable
+    :raises StatejumpError: the kind has no rest positions, or its mesh is unusable
     """
     return require(case, JointStatics).statics(case, friction_coefficient)

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Temperatures of members over an orbit with shadow, for examples and first estimates. Every member has one temperature
-and is independent of the others; a thermal analysis would couple them.
+and is independent of the others, without the couplings of a thermal analysis.
 
 For a member with radiating area A, in sunlight (s = 1) or shadow (s = 0)::
 
     c dT/dt = s absorptivity sun_view S - emissivity sigma (T^4 - T_sink^4)
 
-c is the heat capacity by radiating area [J/(m2 K)], ``sun_view`` the area that the Sun sees over A (1/pi for a round
-bar across the rays), S the solar constant. The orbit is repeated until its end equals its beginning; this periodic
-state is returned.
+c is the heat capacity per radiating area [J/(m2 K)], ``sun_view`` the ratio of the projected area towards the Sun to A
+(1/pi for a round bar across the rays), S the solar constant. The orbit is repeated until its end equals its beginning;
+this periodic state is returned.
 """
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ from statejump.schema.rules import NUMBER, Rule
 STEFAN_BOLTZMANN_W_PER_M2_K4 = 5.670374419e-8  # CODATA 2018, exact
 SOLAR_CONSTANT_W_PER_M2 = 1361.0  # Kopp and Lean, Geophys. Res. Lett. 38, L01706, 2011
 MOST_MEMBERS, MOST_ORBITS = 10_000, 1000
-MOST_HALVINGS = 100  # bisections of an interval of temperatures; 53 reach rounding
+MOST_HALVINGS = 100  # largest number of bisections of a temperature interval; 53 reach rounding
 ROUNDING = 1e-14  # relative accuracy of temperatures
-PERIODIC_K = 1e-6  # an orbit whose end is this close to its start is periodic
+PERIODIC_K = 1e-6  # largest difference between end and start of a periodic orbit [K]
 SECTION = {
     "absorptivity": Range(0, 1), "emissivity": Range(0, 1, above=True), "sun_view": Range(0, 1),
     "heat_capacity_J_per_m2_K": Range(0, 1e9, "J/(m2 K)", above=True),
@@ -44,9 +44,9 @@ class Member:
     """A member with one temperature.
 
     :param absorptivity: absorbed fraction of sunlight, 0 to 1
-    :param emissivity: relative to a black body, above 0 to 1
-    :param sun_view: area that the Sun sees over radiating area, 0 to 1
-    :param heat_capacity_J_per_m2_K: by radiating area, above 0
+    :param emissivity: emissivity relative to a black body, above 0, at most 1
+    :param sun_view: projected area towards the Sun over radiating area, 0 to 1
+    :param heat_capacity_J_per_m2_K: heat capacity per radiating area, above 0
     """
 
     name: str
@@ -68,8 +68,8 @@ class Member:
 class Temperatures:
     """Result of :func:`temperatures`.
 
-    :param time_s: from 0 (n)
-    :param temperature_K: of every member (n, members)
+    :param time_s: times from 0 (n)
+    :param temperature_K: temperatures of every member (n, members)
     """
 
     names: tuple[str, ...]
@@ -92,10 +92,10 @@ def temperatures(
     :param period_s: duration of the orbit [s]
     :param shadow_s: begin and end of each shadow [s], within the orbit, in order
     :param orbits: number of returned orbits
-    :param samples_per_orbit: equal steps of an orbit; begin and end of every shadow are further times
-    :param sink_K: temperature of everything that the members see except the Sun [K]
-    :param solar_constant_W_per_m2: sunlight across the rays [W/m2]
-    :param within_K: returns only as many times as linear interpolation with this error needs [K]; None: all
+    :param samples_per_orbit: number of equal steps per orbit; begin and end of every shadow are further times
+    :param sink_K: temperature of the surroundings except the Sun [K]
+    :param solar_constant_W_per_m2: solar flux on an area across the rays [W/m2]
+    :param within_K: largest error of linear interpolation between the returned times [K]; None: all times are returned
     :raises StatejumpError: a number is out of its range, shadows overlap, or no periodic orbit is reached
     """
     for key, value, allowed in (
@@ -119,8 +119,8 @@ def temperatures(
         found = orbit.run(start)
         if np.abs(found[-1] - start).max() <= PERIODIC_K:
             break
-        # Each orbit reduces the distance to the periodic one by a nearly constant factor. Aitken's step eliminates this
-        # distance.
+        # Each orbit reduces the difference from the periodic state by a nearly constant factor; Aitken's step
+        # extrapolates to the limit.
         first, second = found[-1] - start, orbit.run(found[-1])[-1] - found[-1]
         left = np.divide(second, first, out=np.zeros_like(first), where=first != 0)
         start = found[-1] + np.where(np.abs(left) < 1, second / (1 - np.minimum(left, 1 - 1e-9)), second)
@@ -135,8 +135,8 @@ def temperatures(
 
 
 def _needed(time_s: Numbers, values: Numbers, within: float, corners: np.ndarray) -> list[int]:
-    """Return the rows (n) of values (n, m) that are needed. From each row it selects the farthest one for which linear
-    interpolation is close enough to all rows between. Corners are kept."""
+    """Return the rows (n) of values (n, m) for piecewise linear interpolation with the allowed error. From each row,
+    the farthest admissible row is next. Corners are kept."""
     kept, fixed = [0], set(corners.tolist())
     last = 1
     for row in range(2, len(time_s)):
@@ -150,7 +150,7 @@ def _needed(time_s: Numbers, values: Numbers, within: float, corners: np.ndarray
 
 
 class _Orbit:
-    """One orbit of all members, from given temperatures."""
+    """One orbit of all members from given initial temperatures."""
 
     def __init__(
         self, members: Sequence[Member], times: Numbers, shadow_s: Sequence[tuple[float, float]], sink_K: float,
@@ -167,12 +167,12 @@ class _Orbit:
         self._lit = np.array([not any(begin <= time <= end for begin, end in shadow_s) for time in middle])
 
     def mean_K(self) -> Numbers:
-        """Return the temperatures at which the mean sunlight equals the radiated power."""
+        """Return the equilibrium temperatures at the mean sunlight over the orbit."""
         share = float(np.diff(self._times) @ self._lit / self._times[-1])
         return np.asarray((self._sink**4 + share * self._gain / self._loss) ** 0.25)
 
     def run(self, start_K: Numbers) -> Numbers:
-        """Return the temperatures (times, members) from those at the start."""
+        """Return the temperatures (times, members) for given initial temperatures."""
         found = [start_K]
         for length, lit in zip(np.diff(self._times), self._lit):
             balance = (self._sink**4 + float(lit) * self._gain / self._loss) ** 0.25
@@ -181,11 +181,11 @@ class _Orbit:
 
 
 def _stepped(start_K: Numbers, balance_K: Numbers, loss_times_step: Numbers) -> Numbers:
-    """Return T after a step of dT/dt = k (B^4 - T^4), from the closed form of the time as a function of T.
+    """Return T after a time step of dT/dt = k (B^4 - T^4), by solving the closed form of the time as a function of T.
 
     With u = T/B the time since the start is [artanh(u)/2 + arctan(u)/2]/(k B^3), with arcoth above the balance. Without
-    balance (B = 0) it is 1/(3 k T^3). T approaches B and never passes it. A Newton step that would pass B is replaced
-    by half of the remaining distance.
+    balance (B = 0) it is 1/(3 k T^3). T approaches B without reaching it. A Newton step beyond B is replaced by half of
+    the remaining distance.
     """
     low, high = np.minimum(start_K, balance_K), np.maximum(start_K, balance_K)
     settled = high - low <= 1e-13 * high
@@ -197,7 +197,7 @@ def _stepped(start_K: Numbers, balance_K: Numbers, loss_times_step: Numbers) -> 
             u, u0 = at / balance_K, start_K / balance_K
             turned = (np.log(np.abs((1 + u) / (1 - u))) - np.log(np.abs((1 + u0) / (1 - u0)))) / 4
             passed = np.where(warms, turned + (np.arctan(u) - np.arctan(u0)) / 2, (at**-3.0 - start_K**-3.0) / 3)
-            # If the time at a temperature exceeds the step, the solution is between this temperature and the start.
+            # If the time at which T has a value exceeds the step, the solution lies between this value and the start.
             below = (passed > wanted) == rising
             high, low = np.where(below, at, high), np.where(below, low, at)
             newton = at + (wanted - passed) * np.where(warms, balance_K * (1 - u**4), -at**4)

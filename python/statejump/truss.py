@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Trusses: cases of any size made by functions, drawings, and what a designer asks of them.
+"""Trusses: generated cases of any size, drawings, and design questions.
 
 ::
 
@@ -10,8 +10,8 @@
     found = sj.truss.answers(case, cycles=3)
     found.verdict, found.frame("contributions")
 
-Every function that makes a truss takes the number of its bays, ribs or blocks first, then keys with defaults; the
-commands of ``statejump truss`` have the same ones.
+Every generator of a truss takes the number of its bays, ribs or blocks first, then keys with defaults, like the
+commands of ``statejump truss``.
 """
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ __all__ = ["answers", "chain", "control", "creak", "draw", "iwan", "mast", "ring
 
 Keys = ParamSpec("Keys")
 LARGEST = 1_000_000
-# Smallest number of bays, ribs or blocks of each.
+# Smallest number of bays, ribs or blocks of each generator.
 LEAST = {"chain": 1, "iwan": 1, "umbrella": 1, "ring": 3, "mast": 1}
 
 
 def _making(document: Callable[Keys, Document]) -> Callable[Keys, Case]:
-    """Return the function that makes a case from the document of a generator."""
+    """Return a function that makes a case from the document of a generator."""
     name = document.__name__
     number = Rule(WHOLE, allowed=Range(LEAST[name], LARGEST))
 
@@ -74,21 +74,21 @@ MAKERS = dict[str, Callable[..., Case]](chain=chain, iwan=iwan, umbrella=umbrell
 
 
 def draw(case: Case, axes: Axes | None = None, names: bool = False) -> Figure:
-    """Draw a truss before anything is solved: nodes, links by temperature, supports, joints, springs, loads.
+    """Draw a truss without solving it: nodes, links by temperature, supports, joints, springs, loads.
 
     :param case: a case of kind ``truss``
     :param axes: axes to draw into, with projection ``3d`` for a spatial truss; None: a new figure
-    :param names: write the names of all nodes, whatever their number
+    :param names: write the names of all nodes, for any number of nodes
     :raises StatejumpError: the case is of another kind, or the axes are not three-dimensional
     """
     return require(case, CaseDrawing).draw(case, axes, names)
 
 
 def creak(case: Case, node: str, *, progress: Progress = False) -> Creak:
-    """Return slips and acceleration of a truss in motion: slips of the joints with their heat, and the acceleration of
-    a node with its spectrum, peak and RMS in octaves.
+    """Return results of a truss in motion: slips of the joints with their heat, and the acceleration of a node with its
+    spectrum, peak and RMS in octaves.
 
-    :param case: a case of kind ``truss``; its ``[motion]`` gives the steps
+    :param case: a case of kind ``truss``; its section ``[motion]`` sets the time steps
     :param node: name of the node
     :param progress: True: show it on standard error; or a function of the finished fraction, 0 to 1
     :raises StatejumpError: the case is of another kind, the node does not exist, or a step has no solution
@@ -109,8 +109,8 @@ def answers(
     :param output: the output whose jump is divided among the joints: ``node`` (the one that moves most), ``node:NAME``,
         ``rms`` or ``tilt`` of the reflector
     :param cycles: replaces those of the case
-    :param each: sensitivities to every single item, besides those to all of a kind together
-    :param step: of the sensitivities, relative
+    :param each: also compute the sensitivity to every single item
+    :param step: relative change of parameters for sensitivities
     :param sensitivity: whether to compute sensitivities
     :param progress: True: show it on standard error; or a function of the finished fraction of each part
     :raises StatejumpError: the case is of another kind, the output does not exist, or the solver finds no path
@@ -126,15 +126,15 @@ def control(
     case: Case, *, node: str | None = None, jump_below: float | None = None,
     add_spring: Sequence[tuple[str, str]] = (), scale: Sequence[str] = (), progress: Progress = False,
 ) -> Study:
-    """Return the smallest springs, preloads, frictions or other parameters that keep the jump of a node at or below a
-    value: for each candidate alone, and the best of them.
+    """Return the smallest change of springs, preloads, friction or other parameters that keeps the jump of a node at or
+    below a value, for each candidate by itself, and the best of them.
 
     :param case: a case of kind ``truss``
     :param node: name of the node; None: the one that moves most
     :param jump_below: largest allowed jump over all cycles [m]; None: half of that of the case
     :param add_spring: pairs of nodes between which a spring may be added, without force in the reference configuration
-    :param scale: keys whose values may be scaled: ``section.item.key``, or ``section.*.key`` for all items; without
-        candidates all keys that may affect a jump
+    :param scale: keys whose values may be scaled: ``section.item.key``, or ``section.*.key`` for all items; if no
+        candidate is given, all keys that may affect a jump
     :param progress: True: show it on standard error; or a function of the finished fraction, 0 to 1
     :return: ``sentences`` and ``remarks`` have the result as text, ``recommendation`` as numbers, ``frame()`` the whole
         scan

@@ -13,7 +13,7 @@ _RELOCATION_TO_SYMBOL, _RELOCATION_TO_ADDRESS = 1, 8  # R_X86_64_64, R_X86_64_RE
 
 @dataclass
 class Symbol:
-    """A dynamic symbol; address 0 where it is only needed."""
+    """A dynamic symbol; address 0 if the library only requires it."""
 
     name: str
     address: int
@@ -56,14 +56,14 @@ class Library:
         return result
 
     def bytes_at(self, address: int, size: int) -> bytes:
-        """Return what is loaded at the address, empty where nothing is."""
+        """Return the loaded bytes at an address; empty if nothing is loaded there."""
         for begin, place, length in self.mapped:
             if begin <= address < begin + length:
                 return self.data[place + address - begin: place + min(address - begin + size, length)]
         return b""
 
     def build_id(self) -> str:
-        """Return the GNU build identifier, empty when there is none."""
+        """Return the GNU build identifier; empty if there is none."""
         _, place, size = self.sections.get(".note.gnu.build-id", (0, 0, 0))
         return self.data[place + 16: place + size].hex()
 
@@ -96,7 +96,7 @@ class Libraries:
         return None
 
     def allocated_size(self, class_name: str) -> int | None:
-        """Return the size in bytes that Create<Class> gives to operator new.
+        """Return the size [bytes] that Create<Class> passes to operator new.
 
         It is the operand of the last ``mov edi, constant`` before the first call.
         """
@@ -110,13 +110,13 @@ class Libraries:
         return int.from_bytes(code[begin + 1: begin + 5], "little")
 
     def table(self, class_name: str) -> list[str]:
-        """Return the entries of the table of virtual functions of a class of YADE's."""
+        """Return the entries of the virtual function table of a class of YADE."""
         found = self.find(f"_ZTVN4yade{len(class_name)}{class_name}E")
         return self.entries(*found) if found else []
 
     @staticmethod
     def entries(library: Library, symbol: Symbol) -> list[str]:
-        """Return the entries of a table: symbols, or numbers where there is none."""
+        """Return the entries of a table: symbols, or numbers if there is no symbol."""
         entries = []
         for address in range(symbol.address, symbol.address + symbol.size, 8):
             kind, index, addend = library.relocations().get(address, (0, 0, 0))
@@ -131,8 +131,8 @@ class Libraries:
     def stored_names(self, class_name: str) -> list[str]:
         """Return the names under which O.save writes the members of a class to XML.
 
-        Boost.Serialization's code for the class loads the address of each name. Where the code was moved
-        out of line, its first call leads to it.
+        The code of Boost.Serialization for the class loads the address of each name. If the compiler moved the code out
+        of line, the first call leads to it.
         """
         found = self.find("_ZNK5boost7archive6detail11oserializerINS0_12xml_oarchiveEN4yade"
                           f"{len(class_name)}{class_name}EE16save_object_dataERNS1_14basic_oarchiveEPKv")
@@ -169,7 +169,7 @@ class Libraries:
         return names
 
     def forces_offset(self) -> int | None:
-        """Return the place of the forces in a scene: what ForceResetter::action adds to the scene's address."""
+        """Return the offset of the forces in a scene, which ForceResetter::action adds to the address of the scene."""
         found = self.find("_ZN4yade13ForceResetter6actionEv")
         if not found:
             return None
@@ -179,7 +179,7 @@ class Libraries:
         return (match[1] or match[2])[0] if match else None
 
     def missing_symbols(self, plugin: Path) -> list[str]:
-        """Return the symbols of YADE's that a built plugin needs and no library here has."""
+        """Return the symbols of YADE that a built plugin requires and no library here defines."""
         mine = Library(plugin)
         return sorted(one.name for one in mine.symbols
                       if not one.defined and "4yade" in one.name and not self.find(one.name))

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs inside YADE: offsets and types of data members, printed as one line of JSON.
 
-Ways: pointers to member behind Boost.Python's getters (for plain attributes), and words of live objects
-that hold what is known to be in them (for members that Python does not show). Nothing is written into
-YADE's objects but through Python.
+Offsets of plain attributes come from the member pointers in Boost.Python's getters. Offsets of members without Python
+access come from a search of live objects for words with known values. YADE's objects are modified only through Python.
 """
 from __future__ import annotations
 
@@ -25,7 +24,7 @@ _libc = ctypes.CDLL(None, use_errno=True)
 
 
 def read(address: int, size: int) -> bytes | None:
-    """Bytes of this process; None where nothing can be read (the kernel refuses, nothing crashes)."""
+    """Return bytes of this process; None if the kernel refuses to read them (without a crash)."""
     if address <= 0 or _libc.write(_pipe[1], ctypes.c_void_p(address), ctypes.c_size_t(size)) <= 0:
         return None
     data = os.read(_pipe[0], size)
@@ -33,13 +32,13 @@ def read(address: int, size: int) -> bytes | None:
 
 
 def word(address: int) -> int:
-    """The word at the address, 0 where nothing can be read."""
+    """Return the word at an address; 0 if it cannot be read."""
     data = read(address, WORD)
     return int.from_bytes(data, "little") if data else 0
 
 
 def text(address: int) -> str:
-    """The text at the address, up to its end."""
+    """Return the text at an address, up to its terminator."""
     result = b""
     while b"\0" not in result and len(result) < 8192:
         part = read(address + len(result), 64 - (address + len(result)) % 64)
@@ -50,19 +49,19 @@ def text(address: int) -> str:
 
 
 def type_name(thing: int) -> str:
-    """Mangled class of an object with virtual functions; empty when it has none."""
+    """Return the mangled class name of an object with virtual functions; empty for other objects."""
     table = word(thing) if thing % WORD == 0 else 0
     information = word(table - WORD) if table else 0
     return text(word(information + WORD)) if information else ""
 
 
 def is_a(thing: int, class_name: str) -> bool:
-    """Whether the thing at the address is of exactly this class of YADE's."""
+    """Return whether the object at an address is of exactly this class of YADE."""
     return type_name(thing) == f"N4yade{len(class_name)}{class_name}E"
 
 
 def demangled(names: list[str]) -> list[str]:
-    """Names of types as they are written in C++."""
+    """Return names of types in the notation of C++."""
     runtime = ctypes.CDLL("libstdc++.so.6")
     runtime.__cxa_demangle.restype = ctypes.c_void_p
     runtime.__cxa_demangle.argtypes = [ctypes.c_char_p, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p]
@@ -74,7 +73,7 @@ def demangled(names: list[str]) -> list[str]:
 
 
 def getters() -> tuple[list[list[Any]], int]:
-    """Class, name, offset and type of every plain attribute of the classes looked at, and how many were read."""
+    """Return class, name, offset and type of every plain attribute of the examined classes, and their number."""
     found, count = [], 0
     for class_name, python_class in sorted(vars(wrapper).items()):
         if not isinstance(python_class, type):
@@ -98,13 +97,13 @@ def getters() -> tuple[list[list[Any]], int]:
 
 
 def place_of(thing: Any) -> int:
-    """Address of the object of YADE's behind a Python object (held by a shared pointer)."""
+    """Return the address of the YADE object behind a Python object (held by a shared pointer)."""
     holder = word(id(thing) + 40)
     return word(holder + 2 * WORD)
 
 
 def size_of(class_name: str) -> int:
-    """Size that Create<Class> gives to operator new [byte]."""
+    """Return the size that Create<Class> passes to operator new [bytes]."""
     function = getattr(ctypes.CDLL(None), f"_ZN4yade{len(class_name) + 6}Create{class_name}Ev")
     code = ctypes.string_at(ctypes.cast(function, ctypes.c_void_p).value, 64)
     place = code.index(b"\xbf")
@@ -112,14 +111,14 @@ def size_of(class_name: str) -> int:
 
 
 def places(start: int, class_name: str, holds: Callable[[int], bool], step: int = WORD) -> list[int]:
-    """Offsets in an object at which a word (or a part of one) holds what is asked."""
+    """Return the offsets in an object at which a word (or a part of one) satisfies ``holds``."""
     size = size_of(class_name)
     data = read(start, size) or b""
     return [i for i in range(0, size - step + 1, step) if holds(int.from_bytes(data[i: i + step], "little"))]
 
 
 def values() -> list[list[Any]]:
-    """Class, name, offset and type of the members that only values show; those found more than once are left out."""
+    """Return class, name, offset and type of members that only values reveal, if found exactly once."""
     functors = {"bound": Bo1_Sphere_Aabb(), "geometry": Ig2_Sphere_Sphere_ScGeom(),
                 "physics": Ip2_FrictMat_FrictMat_FrictPhys(), "law": Law2_ScGeom_FrictPhys_CundallStrack()}
     O.engines = [ForceResetter(), InsertionSortCollider([functors["bound"]]),
@@ -170,7 +169,7 @@ def values() -> list[list[Any]]:
     container = parts["interactions"]
     only("InteractionContainer", "linIntrs",
          places(container, "InteractionContainer", lambda one: is_list(one, [interaction])), list_of("Interaction"))
-    # Counts its one interaction; none after they were cleared.
+    # Number of interactions: 1 here, 0 after they are cleared.
     ones = places(container, "InteractionContainer", lambda one: one == 1)
     O.interactions.clear()
     zeros = places(container, "InteractionContainer", lambda one: one == 0)
@@ -178,7 +177,7 @@ def values() -> list[list[Any]]:
     if os.environ.get("STATEJUMP_FORCES_AT"):
         forces = int(os.environ["STATEJUMP_FORCES_AT"])
         result.append(["Scene", "forces", forces, "yade::ForceContainer"])
-        # The number of the step that forces were reset for: the only other place that counts with O.iter.
+        # Number of the step for which forces were reset, the only other counter that equals O.iter.
         counted = None
         for _ in range(3):
             now = O.iter

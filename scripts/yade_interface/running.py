@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Starts a YADE on in_yade.py of this folder and takes what it measured."""
+"""Starts YADE with in_yade.py of this folder and reads its measurements."""
 from __future__ import annotations
 
 import json
@@ -17,7 +17,7 @@ TIMEOUT_S = 300
 
 
 class NotMeasured(Exception):
-    """YADE did not answer; the sentence says why."""
+    """YADE returned no measurement; the message has the reason."""
 
 
 @dataclass
@@ -34,7 +34,7 @@ class Found:
 
 
 def command_of(folder: Path) -> str | None:
-    """Return the command that is installed with the libraries of this folder, if there is one."""
+    """Return the command installed with the libraries of a folder, if any."""
     command = folder.resolve().parents[2] / "bin" / "yade"
     return str(command) if command.exists() else None
 
@@ -54,7 +54,7 @@ def measure(command: str, libraries: Libraries) -> Found:
         words = (done.stdout + done.stderr).strip().splitlines()[-1:]
         raise NotMeasured(f"{command} ended without an answer: {' '.join(words)}")
     said = json.loads(line.removeprefix("MEASURED "))
-    # What was unpacked into a folder starts with the paths of the system.
+    # A copy that was unpacked into a folder uses the paths of the system.
     if not Path(said["library"]).samefile(libraries.folder / "libyade.so"):
         raise NotMeasured(f"{command} runs with {said['library']}")
     members = {(row[0], row[1]): (row[2], row[3]) for row in said["getters"] + said["values"]}

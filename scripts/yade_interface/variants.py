@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measured interfaces as tables, and what differs between two of them."""
+"""Measured interfaces as tables, and the differences between two of them."""
 from __future__ import annotations
 
 import csv
@@ -24,7 +24,7 @@ class Interface:
     binaries: list[str] = field(default_factory=list)
 
     def title(self) -> str:
-        """Return the name and which binaries have it."""
+        """Return the name of the interface, and the binaries that have it."""
         return f"{self.name} ({'; '.join(self.binaries)})" if self.binaries else self.name
 
 
@@ -67,7 +67,7 @@ def known_binary(build_ids: dict[str, str]) -> str | None:
 
 
 def differences(measured: Interface, reference: Interface) -> list[str]:
-    """Return sentences: what the measured interface has otherwise than the reference."""
+    """Return sentences on differences of the measured interface from the reference."""
     result = []
     for name, size in reference.sizes.items():
         found = measured.sizes.get(name)

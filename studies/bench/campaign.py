@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Throughput of a campaign: 10 000 samples of the single joint, and two workers beside one; 200 trusses of 100 joints
-from the first sample to the last. Writes results/bench/campaign.md and campaign.csv.
+"""Throughput of campaigns: 10 000 samples of a single joint, scaling from one to two workers, and a whole campaign of
+200 trusses with 100 joints. Writes results/bench/campaign.md and campaign.csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/campaign.py
 """
@@ -25,14 +25,14 @@ from statejump.core.errors import StatejumpError
 CAMPAIGN = REPOSITORY / "cases" / "campaigns" / "table1_tolerances.toml"
 TRUSSES = REPOSITORY / "cases" / "campaigns" / "umbrella_100_tolerances.toml"
 SAMPLES = 10_000
-SCALED = 60_000  # one worker is busy for seconds, so that the last batch counts little
+SCALED = 60_000  # one worker takes seconds, so that the last batch hardly matters
 COLUMNS = ("what", "repetition", "workers", "samples", "wall_time_s", "worker_time_s", "samples_per_second", "load")
 
 
 def measured(what: str, repetition: int, campaign: Plan, workers: int | None) -> dict[str, object]:
-    """Run the campaign on a fresh cluster and journal; return the wall time without the start of the cluster.
+    """Run the campaign with a new cluster and journal; return the wall time without the start of the cluster.
 
-    :param workers: None: as the command does, with the start of the cluster
+    :param workers: number of workers; None: as in the command, including the start of the cluster
     """
     load = os.getloadavg()[0]
     with tempfile.TemporaryDirectory(prefix="statejump-bench-") as folder:
@@ -47,7 +47,7 @@ def measured(what: str, repetition: int, campaign: Plan, workers: int | None) ->
 
 
 def bare(repetition: int, campaign: Plan) -> dict[str, object]:
-    """Run the same samples in a loop of this process, without Dask and journal."""
+    """Run the same samples in a loop of this process, without Dask and without journal."""
     load, started = os.getloadavg()[0], time.perf_counter()
     for index in range(campaign.samples):
         work.run_sample(campaign, index)

@@ -77,7 +77,7 @@ def percent(values: Sequence[bool]) -> str:
 
 
 def ours(number: int, seed: int, workers: int, most_seconds: float) -> list[str]:
-    """Return the table of our solver: fraction of problems solved within a time."""
+    """Return the table of this project's solver: fraction of problems solved within a time."""
     end = time.monotonic() + most_seconds
     batches = range(seed, seed + -(-number // (2 * len(FAMILIES))))
     found: list[Run] = []
@@ -108,7 +108,7 @@ def _row(name: str, dimension: str, runs: Sequence[Run]) -> str:
 
 
 def beside_siconos(number: int, seed: int) -> list[str]:
-    """Return the table of Siconos' solvers for some of the problems."""
+    """Return the table of the solvers of Siconos for some of the problems."""
     import siconos.numerics as sn
 
     named = {2: {"NSGS": sn.SICONOS_FRICTION_2D_NSGS, "Lemke": sn.SICONOS_FRICTION_2D_LEMKE},

@@ -1,15 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the checks of numbers cost in the inner loop, and what a command's start costs; counted in instructions.
+"""Cost of the checks of numbers in the inner loop, and of the start of a command, in instructions.
 
     cost_of_checks.py steps                        a step of the JointStepper with its checks and without them
     cost_of_checks.py start BEFORE AFTER           the start of the command in two builds (folders for PYTHONPATH)
 
-Instructions are those of callgrind, which no other work of the machine changes. Steps: the difference of two runs, the
-second twice as long; without checks means that every check of checks.hpp in every step passes. What the
-compiler makes of either differs by more than the checks themselves: leaving out a single one may cost instructions.
-Contacts that are stepped four at once are asked in lanes, by a question of their own.
-Start: ``--version`` and ``reduced table1``, with the bytecode that an installation has.
+callgrind counts the instructions, so that other load of the machine does not matter. ``steps``: difference of two runs,
+the second twice as long. Without checks, the functions of checks.hpp, and that of contacts in lanes of four, always
+return success. Compiler optimisation may change the count by more than the checks do. ``start``: ``--version`` and
+``reduced table1``, with bytecode as in an installation.
 """
 from __future__ import annotations
 
@@ -24,10 +23,10 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PYTHON = "/usr/bin/python3"
-# As the plugin is compiled, without optimisation at link time.
+# Flags of the plugin, without link-time optimisation.
 FLAGS = ("-std=c++17", "-O3", "-DNDEBUG", "-ffp-contract=off", "-fno-math-errno", "-DEIGEN_DONT_ALIGN",
          "-DEIGEN_DONT_VECTORIZE", "-Wno-psabi", "-isystem", "/usr/include/eigen3")
-QUESTIONS = {  # of every step, by header, with what says yes
+QUESTIONS = {  # checks of every step by header, with the value that means success
     "checks.hpp": {"inline bool is_finite_fast(const Vector3& v)": "true", "inline bool is_below(": "true"},
     "contact_lanes.hpp": {"inline Mask are_below(": "~Mask{}"},
 }
@@ -41,7 +40,7 @@ main()
 
 
 def instructions(*command: str, **environment: str) -> int:
-    """Return the number of instructions of a command. :raises SystemExit: it fails"""
+    """Return the number of instructions of a command. :raises SystemExit: the command fails"""
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run(
             ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/out", *command], text=True,

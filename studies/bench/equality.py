@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Final states by the JointStepper and by YADE's loop, as hashes; writes results/bench/equality.md.
+"""Hashes of final states computed by the JointStepper and by YADE's loop; writes results/bench/equality.md.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/equality.py --build build
 
-Shipped cases by every number of their results, one thread; the scenes and laws of tests/yade/test_stepper.py and
-test_stepper_bores.py by all that O has: positions, velocities, orientations, forces, contacts, links, springs,
-energies, bounds. Exit status 2 with
-one sentence when something fails, 1 when a pair of hashes differs.
+For shipped cases the hash covers all numbers of the results, with one thread. For the scenes and laws of
+tests/yade/test_stepper.py and test_stepper_bores.py it covers everything in O: positions, velocities, orientations,
+forces, contacts, links, springs, energies, bounds. Exit status: 2 with a message if a run fails, 1 if a pair of hashes
+differs.
 """
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ CASES = ("table1", "table1_frictionless", "table1_wide", "umbrella_damped", "tru
 SCRIPTS = REPOSITORY / "tests" / "yade" / "scripts"
 SCENES = {"stepper.py": "joint", "stepper_bores.py": "journal in a bore of triangles"}  # what has laws
 DIGITS = 12
-Row = tuple[str, str, int, str, str]  # what, law, steps, hash of YADE's loop, hash of the stepper
+Row = tuple[str, str, int, str, str]  # name, law, steps, hash of YADE's loop, hash of the stepper
 
 
 def of_case(name: str) -> Row:
@@ -47,7 +47,7 @@ def of_case(name: str) -> Row:
 
 
 def of_scenes(build: Path, script: str, joint: str, part: str) -> list[Row]:
-    """Return the scenes of one part of a script of the tests."""
+    """Return the rows of one part of a test script."""
     paths = [build / "python", SCRIPTS, *(REPOSITORY / "yade_scripts" / name for name in ("examples", "runner"))]
     done = subprocess.run(
         ["yade", "-n", "-x", "-j1", str(SCRIPTS / script), part], stdin=subprocess.DEVNULL, capture_output=True,

@@ -46,7 +46,7 @@ def row(name: str, period_s: float) -> dict[str, Any]:
 
 
 def picture(rows: list[dict[str, Any]], path: Any) -> None:
-    """Draw the quantities that fall with the rate, and those that do not."""
+    """Draw the quantities that decrease with the heating rate, and those that do not."""
     with figures.style():
         figure, places = figures.panels(1, 2, (10.0, 4.2))
         for (name, marker, color) in (("chain_10", "o-", "#0072B2"), ("two_bar_snap", "s--", "#D55E00")):

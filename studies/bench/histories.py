@@ -7,7 +7,7 @@ There are two trusses. The umbrella has cables between its ribs, two members and
 slip at once. The mast is a double-layer grid, two bays of 0.2 m across, whose length depends on the number of members
 (125 m for 10 000). At every tenth bay its chords have latches: sliders with friction and free play. `statejump.orbit`
 gives every member its temperatures over ten orbits, each with its own sunlit fraction. They are written as HDF5 for the
-case. Every row is read, checked and solved in its own process, so that the memory is its own. Writes
+case. Every row is read, checked and solved in a separate process, so that its memory can be measured. Writes
 results/bench/histories.md.
 """
 from __future__ import annotations
@@ -32,7 +32,7 @@ from statejump.kinds.truss import generate, solve
 from statejump.kinds.truss.sections import TrussThermal
 
 ORBITS, PERIOD_S, SHADOW_S = 10, 5400.0, (1800.0, 3900.0)
-# The mast: bays across, length of a bay, bays from fold to fold and from support to support.
+# The mast: number of bays across, length of a bay [m], bays from latch to latch and from support to support.
 ACROSS, BAY_M, FOLD, MOUNT = 2, 0.2, 10, 25
 TUBE = {"young_modulus_Pa": 1.2e11, "cross_section_area_m2": 6e-5, "thermal_expansion_per_K": 0.5e-6}
 LATCH = {"axis": [1.0, 0.0, 0.0], "normal_force_N": 60.0, "friction_coefficient": 0.2, "clearance_minus_m": 5e-5,
@@ -49,8 +49,8 @@ def umbrella(members: int) -> dict[str, Any]:
 
 def mast(members: int) -> dict[str, Any]:
     """Return a double-layer grid with 16 members in every bay of its length: two layers of squares, the upper one
-    shifted by half a bay, and four diagonals from each of its nodes downwards. Its edges are held at every 25th bay,
-    free along it."""
+    shifted by half a bay, and four diagonals from each of its nodes downwards. Supports hold its edges at every 25th
+    bay, free in its direction."""
     bays = members // (8 * ACROSS)
     places = {f"B{i}_{j}": (i * BAY_M, j * BAY_M, 0.0) for i in range(bays + 1) for j in range(ACROSS + 1)}
     places |= {f"T{i}_{j}": ((i + 0.5) * BAY_M, (j + 0.5) * BAY_M, BAY_M / 2**0.5)

@@ -27,7 +27,7 @@ COLUMNS = ("case", "increments", "balance", "displacement", "solves")
 
 
 def residue(path: solve.TrussPath) -> float:
-    """Return the largest energy residue at any state over the largest work of the temperature."""
+    """Return the largest energy residue at any state, divided by the largest work of the temperature."""
     states = path.states
     stored = states["elastic_energy_J"] + states["load_potential_J"]
     left = states["thermal_work_J"] - (stored - stored[0]) - solve.heat_of_joints_J(states).sum(axis=1)

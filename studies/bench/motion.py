@@ -51,8 +51,8 @@ COLUMNS = ("case", "model", "jump_m", "jump_node", "jump_difference_m", "rms_ove
 
 
 def peak_acceleration(run: Any) -> float:
-    """Return the largest second difference of a node's displacement at the samples [m/s²]. Changes faster than two
-    samples are lost, in both models."""
+    """Return the largest second difference of a node's displacement at the samples [m/s²]. Changes within two samples
+    are lost in both models."""
     moved, interval = run["displacement_m"], run.time_s[1] - run.time_s[0]
     return float(np.linalg.norm(moved[2:] - 2 * moved[1:-1] + moved[:-2], axis=2).max() / interval**2)
 
@@ -76,7 +76,7 @@ def row(case: Any, name: str, model: str, run: Any, dem: Any, steps: float, seco
 
 
 def explicit(case: Any) -> Any:
-    """Return the case with penalty contact, with equally many steps between two samples."""
+    """Return the case with penalty contact, with equally many steps between any two samples."""
     least, samples = stable_steps.least_steps_per_cycle(case.definition), case.output.samples_per_cycle
     return case.changed({"motion.scheme": "regularised",
                          "motion.steps_per_cycle": ceil(EXPLICIT_STEPS * least / samples) * samples})

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Undamped trusses in motion and in the DEM as ensembles; writes results/motion/ensembles.md, .csv and .png.
+"""Ensembles of undamped trusses in motion and in the DEM; writes results/motion/ensembles.md, .csv and .png.
 
     PYTHONPATH=build/python:. /usr/bin/python3 studies/bench/motion_ensembles.py [--case NAME]
 
-Without dashpots the ringing after an impact never decays, and runs with small differences diverge. Distributions can
-still be compared. Both models run many times, with random heating periods from a narrow range, drawn separately for
-each model. The tests are those of `statejump figures`.
+Without dashpots the vibration after an impact never decays, and runs with small differences diverge, but distributions
+can be compared. Both models run many times with random heating periods from a narrow range, drawn separately for each
+model. The tests are those of `statejump figures`.
 """
 from __future__ import annotations
 
@@ -33,8 +33,7 @@ UNDAMPED = {"dem.link_damping_ratio": 0.0, "dem.contact_damping_ratio": 0.0, "de
 
 @dataclass(frozen=True)
 class Ensemble:
-    """One ensemble: load, period [s], implicit steps per cycle, and the unit of heat: its number per joule, and its
-    name."""
+    """One ensemble: load, period [s], implicit steps per cycle, and unit of heat as number per joule and name."""
 
     load: Callable[[], Any]
     period_s: float
@@ -58,7 +57,7 @@ COLUMNS = ("case", "model", "period_s", *QUANTITIES)
 
 
 def drawn_periods(period_s: float, model: int, count: int) -> np.ndarray:
-    """Return heating periods [s], evenly spread; the same for the same seed, different for each model."""
+    """Return evenly distributed heating periods [s], reproducible by the seed and different for each model."""
     generator = np.random.default_rng([SEED, model])
     return period_s * (1 + SPREAD * (2 * generator.random(count) - 1))
 
@@ -68,7 +67,7 @@ def measure(name: str, count: int) -> list[dict[str, Any]]:
     ensemble = CASES[name]
     case = ensemble.load().changed({**UNDAMPED, "motion.steps_per_cycle": ensemble.steps,
                                     "thermal.period_s": ensemble.period_s})
-    # The node and the direction of the jump are those of the quasi-static path.
+    # The quasi-static path determines the node and the direction of the jump.
     jumps = compare.jumps_m(case.reduced())
     node = int(np.argmax(np.linalg.norm(jumps, axis=1)))
     along = jumps[node] / np.linalg.norm(jumps[node])
@@ -80,7 +79,7 @@ def measure(name: str, count: int) -> list[dict[str, Any]]:
 
 
 def drawn(case: Any, model: str, count: int) -> Iterator[Any]:
-    """Yield the case for a model, with all its periods."""
+    """Yield the case for a model, with each of its periods."""
     if model == REGULARISED:
         case = explicit(case)
     elif model != SETS:

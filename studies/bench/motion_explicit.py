@@ -19,7 +19,7 @@ from statejump.core.errors import StatejumpError
 from statejump.kinds.truss import stable_steps
 
 SAMPLES = 200  # of a cycle
-REFERENCE = 40.0  # times as many steps as are just stable
+REFERENCE = 40.0  # number of steps, over the smallest stable number
 EXPLICIT = (1.0, 2.0, 4.0, 8.0)
 FRACTIONS = (0.4, 0.2, 0.1, 0.05, 0.025)  # of the DEM's stable step
 IMPLICIT = (5_000, 10_000, 20_000, 40_000, 80_000)
@@ -31,7 +31,7 @@ COLUMNS = ("case", "model", "steps", "rms_over_largest", "friction_J")
 
 
 def runs(case: Any) -> Iterator[tuple[str, int, Any]]:
-    """Yield model, steps and run; the reference first."""
+    """Yield model, steps and run, the reference first."""
     least = stable_steps.least_steps_per_cycle(case.definition)
     for times in (REFERENCE, *EXPLICIT):
         steps = ceil(times * least / SAMPLES) * SAMPLES

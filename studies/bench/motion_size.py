@@ -24,7 +24,7 @@ SAMPLES = 20  # of a cycle
 STEPS = 2000  # of a cycle, where they are equal
 SIZES = (10, 100, 1000, 10_000)
 EQUAL = {"motion.steps_per_cycle": STEPS}
-# Blocks of a chain of 100 move by up to a decimetre; joints of the umbrella have a clearance of 0.1 mm.
+# A block of a chain of 100 moves by up to a decimetre; joints of the umbrella have a clearance of 0.1 mm.
 CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "chain": ("chain", EQUAL),
     "umbrella": ("umbrella", EQUAL),
@@ -55,7 +55,7 @@ def row(name: str, joints: int) -> dict[str, Any]:
 
 
 def power(rows: list[dict[str, Any]]) -> str:
-    """Return the power of the number of joints with which the cost of a step grows, from 100 on."""
+    """Return the exponent with which the cost of a step grows with the number of joints, from 100 joints on."""
     first = next((one for one in rows if one["joints"] == 100), None)
     last = rows[-1]
     if first is None or last["joints"] <= 100:

@@ -25,15 +25,15 @@ SAMPLES = 200  # of a cycle
 BLOCKS = 100
 PERIODS_S = {"10": 10.0, "100": 100.0, "1000": 1000.0, "100 damped": 100.0, "1000 damped": 1000.0}
 CRITICAL = 1.0  # dem.link_damping_ratio
-# Fraction of the stable step. The shorter step would take up to an hour for the other cases.
+# Fractions of the stable step. Only short cases use the shorter step, which would take an hour for the others.
 FRACTIONS = {"10": (0.9, 0.1), "100": (0.9, 0.1), "1000": (0.9,), "100 damped": (0.9,), "1000 damped": (0.9,)}
 TOLERANCES_M = (1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11)
-REFERENCE_M = 1e-12  # of the motion that all are measured by
+REFERENCE_M = 1e-12  # tolerance of the motion that is the reference of all errors [m]
 COLUMNS = ("case", "model", "steps", "rms_over_largest", "largest_over_largest", "cpu_time_s", "us_per_step")
 
 
 def case(period: str) -> Any:
-    """Return the chain, with the DEM's masses and sticking."""
+    """Return the chain with the masses and the sticking of the DEM."""
     damped = {"dem.link_damping_ratio": CRITICAL} if "damped" in period else {}
     return sj.truss.chain(BLOCKS).changed({
         "thermal.period_s": PERIODS_S[period], "reduced.sticking": "elastic", "motion.masses": "lumped",
@@ -64,7 +64,7 @@ def moved(period: str, tolerance_m: float) -> dict[str, Any]:
 
 
 def row(period: str, model: str, run: dict[str, Any], reference: np.ndarray) -> dict[str, Any]:
-    """Return the cost of one run, and its error against the reference."""
+    """Return the cost of one run and its error relative to the reference."""
     apart = np.linalg.norm(run["d"] - reference, axis=2)
     largest = np.linalg.norm(reference, axis=2).max()
     return {

@@ -4,8 +4,8 @@
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/motion_speed.py [--case NAME]
 
-Both models run with several steps. The reference is the DEM with its default step, to which both converge. CPU time of
-the steps, one thread. Chains of 100 to 10 000 blocks show how the cost of a step grows.
+Both models run with several time steps, on one thread. The reference is the DEM with its default step, to which both
+converge. Times are CPU times of the steps. Chains of 100 to 10 000 blocks show how the cost of a step grows.
 """
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ COLUMNS = ("case", "model", "steps", "theta", "rms_over_largest", "jump_error_m"
 
 
 def moved(case: Any) -> tuple[Any, float]:
-    """Return a motion as a run and the CPU time of its stepping [s]."""
+    """Return a motion as a run, and the CPU time of its steps [s]."""
     definition = case.definition
     definition.resolve()
     begun = process_time()
@@ -45,7 +45,7 @@ def moved(case: Any) -> tuple[Any, float]:
 
 
 def row(name: str, model: str, run: Any, reference: Any, steps: int, theta: Any, seconds: float) -> dict[str, Any]:
-    """Return the cost of one run, and its error against the reference."""
+    """Return the cost of one run and its error relative to the reference."""
     apart = np.linalg.norm(run["displacement_m"] - reference["displacement_m"], axis=2)
     jumps, exact = compare.jumps_m(run), compare.jumps_m(reference)
     return {

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Common input of all programs in these benchmarks: n contacts of the same bodies under the same load.
 
-Also read in YADE. Table 2 of Chen et al. (2021): radius and clearance of the joint, material.
+Scripts in YADE import it too. Joint radius, clearance and material are those of Table 2 of Chen et al. (2021).
 """
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ YOUNG, POISSON, FRICTION = 70e9, 0.3, 0.3  # Pa, -, -
 EXPANSION_JOURNAL, EXPANSION_BEARING = 23.75e-6, 22e-6  # 1/K; different, so the clearance changes
 RADIUS, CLEARANCE, MASS = 5e-3, 1e-4, 0.01  # m, m, kg
 BEARING_RADIUS = RADIUS + CLEARANCE
-JOINT_RADIUS = RADIUS * BEARING_RADIUS / CLEARANCE  # effective, of a journal in its bearing [m]
-LOAD, INCLINATION = 10.0, 0.5 * FRICTION  # normal force [N], tangential over normal force [-]
-SPACING, SEARCHED = 0.03, 0.5e-3  # m; how much further than they reach bodies are searched
+JOINT_RADIUS = RADIUS * BEARING_RADIUS / CLEARANCE  # effective radius of a journal in its bearing [m]
+LOAD, INCLINATION = 10.0, 0.5 * FRICTION  # normal force [N]; tangential over normal force [-]
+SPACING, SEARCHED = 0.03, 0.5e-3  # distance of pairs, and margin of the contact search beyond the bodies [m]
 TIME_STEP = 1e-6  # s
 EFFECTIVE_MODULUS = YOUNG / (2 * (1 - POISSON**2))  # Pa
 
@@ -25,7 +25,7 @@ def depth(effective_radius: float) -> float:
 
 
 def places(size: int) -> Iterator[tuple[float, float, float]]:
-    """Yield the positions of the fixed bodies: a cubic grid."""
+    """Yield the positions of the fixed bodies on a cubic grid."""
     edge = ceil(size ** (1 / 3))
     for i in range(size):
         x, rest = i % edge, i // edge

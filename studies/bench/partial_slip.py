@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cost of the friction law mindlin_deresiewicz over that of mindlin, both by name, in YADE and by the JointStepper.
+"""Cost of friction law mindlin_deresiewicz over that of mindlin, both by name, in YADE's loop and in the JointStepper.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/partial_slip.py --build build
 
-Contacts of yade_joints.py that stick after a ringing start, which leaves some forty points in the memory; CPU time,
-ratios of two runs that follow each other. Prints a table. Exit status 2 with one sentence when something is missing.
+Prints ratios of CPU times of two successive runs. The contacts of yade_joints.py stick after an initial vibration that
+leaves about forty points in their memory. Exit status 2 with a message if a program is missing.
 """
 from __future__ import annotations
 

@@ -1,16 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cost of a contact and step: our joints beside the spheres of YADE, LAMMPS and LIGGGHTS.
+"""Cost of a contact per step: joints of this project beside spheres of YADE, LAMMPS and LIGGGHTS.
 
     /usr/bin/python3 studies/bench/peers.py --build build
 
-Every program follows the same n contacts of the same material, load and step (studies/bench/yade_joints.py says which),
-one process per run, one thread, in turn. Processor time of the process from its first step to its last: that of a run
-less that of one that ends after the warm-up. ``lammps_bore`` does the same work as a joint under expansion: n spheres
-in one bore, the radii of spheres and bore new in every step. A program that is not installed is left out with a
-sentence. ``bare_loop`` is the same kernel in a loop of its own (studies/bench/stepper), by itself: the least that it
-can cost.
-Exit status 2 with one sentence when something fails.
+Every program computes the same n contacts with the material, load and time step of studies/bench/yade_joints.py, on one
+thread, in a new process per run. The time is the processor time of a run minus that of a run that ends after the
+warm-up. ``lammps_bore`` corresponds to joints under expansion: n spheres in one bore, all radii updated in every step.
+``bare_loop`` runs the kernel of the joints in a loop without anything else (studies/bench/stepper), the lower bound of
+the cost. A program that is not installed is reported and omitted. Exit status 2 with a message if a run fails.
 """
 from __future__ import annotations
 
@@ -33,7 +31,7 @@ from pairs import (
 from run import REPOSITORY, BenchError, parse, publish, run_yade, start
 
 STEPS = {1: 1_000_000, 100: 50_000, 10_000: 300}  # of one run, by number of contacts
-STEPPER_STEPS = {**STEPS, 10_000: 3000}  # three times what it makes between two steps of YADE's loop
+STEPPER_STEPS = {**STEPS, 10_000: 3000}  # three times the number of its steps between two steps of YADE's loop
 SUBSTEPS = 1000
 WARM_UP = 300
 NAME = {
@@ -47,7 +45,7 @@ NAME = {
 }
 PAIRS = (("joint_stepper", "bare_loop"), ("joint_stepper", "joint"), ("joint_stepper", "lammps_bore"),
          ("joint", "lammps_bore"), ("sphere", "lammps_sphere"))
-# Largest allowed cost of the JointStepper over that of another scene in the same run, and the meaning of this number.
+# Largest allowed ratio of the cost of the JointStepper to that of another scene in the same run, and its meaning.
 GOALS = (
     ("joint", 1, 120 / 1666, "120 ns where YADE's loop takes 1666"),
     ("joint", 100, 60 / 180, "60 ns where YADE's loop takes 180"),
@@ -88,13 +86,13 @@ HEAD = ("newton off", f"neighbor {SEARCHED} bin", "neigh_modify delay 0 every 1 
 
 
 def pairs(size: int) -> list[tuple[int, float, float, float]]:
-    """A fixed and a free sphere at each place of a cubic grid."""
+    """Return a fixed and a free sphere at each position of a cubic grid, as bodies of a deck."""
     offset = 2 * RADIUS - depth(RADIUS / 2)
     return [atom for x, y, z in places(size) for atom in ((1, x, y, z), (2, x + offset, y, z))]
 
 
 def lammps(style: str, atoms: list[tuple[int, float, float, float]], more: list[str]) -> Deck:
-    """Deck of Hertz' law, K_n in F = K_n sqrt(R d) d, with Mindlin's spring, K_t = 8 G*."""
+    """Return a deck with Hertz' law, K_n in F = K_n sqrt(R d) d, and Mindlin's spring, K_t = 8 G*."""
     normal, tangential = 4 / 3 * EFFECTIVE_MODULUS, 8 * YOUNG / (4 * (1 + POISSON) * (2 - POISSON))
     law = f"{normal} {tangential} 0.0 0.0 {FRICTION} 0"
     return Deck("lmp", [
@@ -171,7 +169,7 @@ def steps_of(scene: str, size: int) -> int:
 
 
 def cost(build: Path, scene: str, size: int) -> float:
-    """Processor time of a contact and step [ns]."""
+    """Return the processor time of a contact per step [ns]."""
     steps = steps_of(scene, size)
     if scene == "bare_loop":
         done = subprocess.run(

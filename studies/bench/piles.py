@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random frictional contact problems like those of granular and masonry mechanics: piles of rigid bodies.
+"""Random frictional contact problems of piles of rigid bodies, as in granular and masonry mechanics.
 
-Each has W = H M^-1 H^T and q = H v, so that u = 0 is possible and a solution exists (Acary and Cadoux 2013). If
-contacts outnumber the degrees of freedom, W is rank-deficient.
+With W = H M^-1 H^T and q = H v, u = 0 is possible, so a solution exists (Acary and Cadoux 2013). If contacts outnumber
+the degrees of freedom, W is rank-deficient.
 """
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Pile:
         self.contacts.append((below, above, point, normal))
 
     def rows(self) -> Array:
-        """Return H: the map from velocities of the bodies to relative velocities of the contacts."""
+        """Return H, which maps velocities of bodies to relative velocities at contacts."""
         freedoms = 3 if self.dimension == 2 else 6
         h = np.zeros((self.dimension * len(self.contacts), freedoms * len(self.centres)))
         for k, (below, above, point, normal) in enumerate(self.contacts):
@@ -93,7 +93,7 @@ def friction(random: Random, contacts: int) -> Array:
 
 
 def random_bodies(dimension: int, contacts: int, random: Random) -> tuple[Problem, int]:
-    """Bodies of random masses that touch each other or the ground at random points."""
+    """Return a problem of bodies with random masses that touch each other or the ground at random points."""
     pile = Pile(dimension)
     freedoms = 3 if dimension == 2 else 6
     bodies = max(1, round(random.uniform(0.3, 1.5) * contacts * dimension / freedoms))
@@ -109,7 +109,7 @@ def random_bodies(dimension: int, contacts: int, random: Random) -> tuple[Proble
 
 
 def random_rows(dimension: int, contacts: int, random: Random) -> tuple[Problem, int]:
-    """H of independent numbers: every contact affects every other."""
+    """Return a problem with independent random entries of H, so that every contact affects every other."""
     size = contacts * dimension
     h = random.normal(size=(size, max(1, round(random.uniform(0.2, 1.5) * size))))
     problem = Problem(h @ h.T, h @ random.normal(size=h.shape[1]), friction(random, contacts), dimension)
@@ -117,7 +117,7 @@ def random_rows(dimension: int, contacts: int, random: Random) -> tuple[Problem,
 
 
 def spheres(dimension: int, contacts: int, random: Random) -> tuple[Problem, int]:
-    """Equal balls in a close packing on the ground."""
+    """Return a problem of equal balls in a close packing on the ground."""
     pile = Pile(dimension)
     # About three contacts per ball in the plane, six in space.
     side = max(1, round((contacts / (2.5 if dimension == 2 else 4.5)) ** (1.0 / dimension)))
@@ -142,13 +142,13 @@ def spheres(dimension: int, contacts: int, random: Random) -> tuple[Problem, int
 
 
 def _face(pile: Pile, below: int, above: int, low: Array, high: Array, height: float) -> None:
-    """Contacts at the corners of a horizontal rectangle, in the plane at the ends of a line."""
+    """Add contacts at the corners of a horizontal rectangle, or in the plane at the ends of a line."""
     for corner in product(*zip(low, high)):
         pile.contact(below, above, np.array([*corner, height]), np.eye(pile.dimension)[-1])
 
 
 def bricks(dimension: int, contacts: int, random: Random) -> tuple[Problem, int]:
-    """A wall of bricks in bond: four contacts per face, forces not unique."""
+    """Return a problem of a brick wall in bond, with four contacts per face, so that forces are not unique."""
     pile = Pile(dimension)
     per_face = 2 if dimension == 2 else 4
     courses = max(1, round((contacts / per_face / 2.0) ** 0.5))
@@ -172,7 +172,7 @@ def bricks(dimension: int, contacts: int, random: Random) -> tuple[Problem, int]
 
 
 def tower(dimension: int, contacts: int, random: Random) -> tuple[Problem, int]:
-    """Planks laid crosswise, two a level, in space; a column of blocks in the plane."""
+    """Return a problem of crosswise planks, two per level, in space, or of a column of blocks in the plane."""
     pile = Pile(dimension)
     if dimension == 2:
         below = GROUND
@@ -199,7 +199,7 @@ def tower(dimension: int, contacts: int, random: Random) -> tuple[Problem, int]:
 
 
 def chain(dimension: int, contacts: int, random: Random) -> tuple[Problem, int]:
-    """Balls in a row, pressed between two walls and hit in the middle."""
+    """Return a problem of balls in a row, pressed between two walls and hit in the middle."""
     pile = Pile(dimension)
     axis = np.eye(dimension)[0]
     below = GROUND

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cost of a joint contact beside YADE's own sphere-sphere Hertz-Mindlin law, in one YADE each.
+"""Cost of a joint contact beside YADE's sphere-sphere Hertz-Mindlin law, each in a new YADE process.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/run.py --build build
 
 Runs the variants of yade_joints.py in turn, several times, and writes results/bench/joints.csv and
-results/bench/README.md. Ratios are of two runs that follow each other, so that what disturbs the
-machine disturbs both. Exit status 2 with one sentence when something is missing.
+results/bench/README.md. Ratios are those of successive runs, because load of the machine then affects both. Exit status
+2 with a message if a program is missing.
 """
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class BenchError(Exception):
 
 
 def run_yade(build: Path, variant: str, size: int, threads: int, **settings: int | str) -> dict[str, Any]:
-    """Run one measurement in its own YADE and return what it reports."""
+    """Run one measurement in a new YADE process and return its report."""
     environment = {
         name: value for name, value in os.environ.items() if not name.startswith("STATEJUMP_BENCH_")
     }
@@ -110,7 +110,7 @@ def column(rows: list[dict[str, Any]], scene: str, size: int, key: str) -> list[
 def ratios(
     rows: list[dict[str, Any]], size: int, key: str, scenes: tuple[str, str] = (OURS, YADES)
 ) -> list[float]:
-    """Return first over second scene, sorted, one ratio per repetition."""
+    """Return the ratios of the first to the second scene, one per repetition, sorted."""
     first, second = (column(rows, scene, size, key) for scene in scenes)
     return sorted(a / b for a, b in zip(first, second))
 
@@ -216,11 +216,11 @@ def as_csv(rows: list[dict[str, Any]], columns: Sequence[str] = COLUMNS) -> str:
     return stream.getvalue()
 
 
-# The main function of the other benchmarks: umbrella.py, campaign.py, truss_dem.py, peers.py, yade_import.py.
+# The following functions are shared by umbrella.py, campaign.py, truss_dem.py, peers.py and yade_import.py.
 
 
 def start(main: Callable[[], None], *failures: type[Exception]) -> None:
-    """Run a benchmark. A BenchError, an OSError or one of the given errors ends it with status 2 and one sentence."""
+    """Run a benchmark. A BenchError, an OSError or one of the given errors ends it with status 2 and a message."""
     told: tuple[type[Exception], ...] = (BenchError, OSError, *failures)
     try:
         main()
@@ -230,7 +230,7 @@ def start(main: Callable[[], None], *failures: type[Exception]) -> None:
 
 
 def parse(parser: argparse.ArgumentParser, repetitions: int) -> argparse.Namespace:
-    """Return the options, --repetitions and --output among them."""
+    """Return the command-line options, including --repetitions and --output."""
     parser.add_argument(
         "--repetitions", type=int, default=repetitions, help=f"of every run (default {repetitions})"
     )
@@ -242,7 +242,7 @@ def parse(parser: argparse.ArgumentParser, repetitions: int) -> argparse.Namespa
 
 
 def parse_cases(description: str, cases: Iterable[str], **more: dict[str, Any]) -> argparse.Namespace:
-    """Return the options of a benchmark of trusses in motion: ``case``, those to run, and the results folder.
+    """Return the options of a benchmark of trusses in motion: cases to run (``case``) and results folder.
 
     :param more: further options by name, as ``add_argument`` takes them
     """

@@ -56,7 +56,7 @@ def case(friction: float) -> Any:
 
 
 def here(steps: int, friction: float) -> tuple[np.ndarray, float, list[float]]:
-    """Return positions (steps + 1, 5) [m], the CPU time of the steps [s] and the times of impacts [s]."""
+    """Return positions (steps + 1, 5) [m], CPU time of the steps [s] and times of impacts [s] of this project."""
     definition = case(friction).changed({"motion.steps_per_cycle": steps, "output.samples_per_cycle": steps}).definition
     definition.resolve()
     begun = process_time()
@@ -68,7 +68,7 @@ def here(steps: int, friction: float) -> tuple[np.ndarray, float, list[float]]:
 
 
 def there(steps: int, friction: float) -> tuple[np.ndarray, float]:
-    """Return the same positions by Siconos, and the CPU time of its steps [s]."""
+    """Return the same positions computed by Siconos, and the CPU time of its steps [s]."""
     import siconos.kernel as kernel
     import siconos.numerics as numerics
 
@@ -102,7 +102,7 @@ def there(steps: int, friction: float) -> tuple[np.ndarray, float]:
     stepping.setNewtonMaxIteration(20)
     places, seconds = np.zeros((steps + 1, 5)), 0.0
     for k in range(1, steps + 1):
-        # Gaps and directions at the middle of the step, as in this project.
+        # Gaps and directions are those at the middle of the step, as in this project.
         middle = body.q() + 0.5 * step * body.velocity()
         borrowed = []
         for relation, interaction, apart in bores:
@@ -179,7 +179,7 @@ PYTHONPATH=build/python /usr/bin/python3 studies/bench/siconos_moreau_jean.py
 
 
 def version() -> str:
-    """Return the version of Siconos as Debian tells it."""
+    """Return the version of Siconos in Debian's package."""
     found = run(["dpkg-query", "-W", "-f=${Version}", "python3-siconos"], capture_output=True, text=True, check=False)
     return found.stdout or "of unknown version"
 

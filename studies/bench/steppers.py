@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Steps of cases by the JointStepper beside YADE's loop; writes results/bench/steppers.md and steppers.csv.
+"""Cost of time steps by the JointStepper and by YADE's loop; writes results/bench/steppers.md and steppers.csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/steppers.py
 
-A chain of 1000 joints, the damped rib and Table 1, in turn, one thread: CPU time of the steps without YADE's start.
-The steps of the chain are those between two samples; rib and Table 1 are run with their samples and with few.
+CPU time of the steps, without the start of YADE, on one thread: a chain of 1000 joints, the damped rib and Table 1. The
+chain is run without samples; rib and Table 1 with the samples of the case and with few.
 """
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from run import REPOSITORY, parse, publish, start
 from statejump.core.errors import StatejumpError
 
 JOINTS = 1000
-CHAIN_STEPS = 2000  # of the shorter run; the longer one has three times as many
+CHAIN_STEPS = 2000  # number of steps of the shorter run; the longer one has three times as many
 FEW_SAMPLES = 20
 STEPPERS = ("joint", "yade")
 COLUMNS = ("scene", "stepper", "repetition", "steps", "cpu_time_s", "ns_per_step")
-Measure = Callable[[str], tuple[int, float]]  # by the name of the stepper: steps, and their CPU time [s]
-Scenes = dict[str, tuple[Measure, str, float]]  # how, what has to be reached, and that as a ratio to YADE's loop
+Measure = Callable[[str], tuple[int, float]]  # returns steps and CPU time [s] for the name of a stepper
+Scenes = dict[str, tuple[Measure, str, float]]  # measurement, target in words, target as a ratio to YADE's loop
 
 
 def case(name: str, **changes: Any) -> Measure:

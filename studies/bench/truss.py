@@ -6,8 +6,8 @@
 Two trusses run through one temperature cycle with ten points per branch: the ring of `statejump truss ring` with
 preload, and the umbrella with cables between its ribs. Its friction is scattered, so that every joint slips at its own
 temperature. Items come from HDF5 tables beside the case file; for 100 000 joints also as Python objects.
-OMP_NUM_THREADS sets the number of threads. Every row is measured in its own process, so that the memory is its own;
-another process makes the tables. Writes results/bench/truss.md after every row.
+OMP_NUM_THREADS sets the number of threads. Every row is measured in a separate process, so that its memory can be
+measured; another process makes the tables. Writes results/bench/truss.md after every row.
 """
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ from statejump.kinds.truss import generate, solve
 
 SIZES = (10, 100, 1_000, 10_000, 100_000, 1_000_000)
 AS_OBJECTS = 100_000
-REPEATED = 3  # up to that size, from tables: the run of median time
+REPEATED = 3  # number of runs from tables up to that size; the median counts
 TRUSSES = ("ring", "umbrella")
 ITEMS = ("node", "link", "revolute", "spring", "torsion_spring")
-BUSY_LOAD = 0.5  # above it others have their share of the cores
+BUSY_LOAD = 0.5  # load average above which other programs take a part of the cores
 HEAD = """# Quasi-static truss solver against the number of joints
 
 `PYTHONPATH=build/python /usr/bin/python3 studies/bench/truss.py`: one cycle, ten points a branch, with
@@ -67,7 +67,7 @@ def document(truss: str, joints: int) -> dict[str, Any]:
 
 
 def column(items: Sequence[Mapping[str, Any]], key: str) -> Any:
-    """Return a key of every item for a data set: NaN or empty texts if missing."""
+    """Return a key of every item as a data set; NaN or empty text for a missing value."""
     given: Any = next(item[key] for item in items if key in item)
     if not isinstance(given, list):
         none: Any = "" if isinstance(given, str) else np.nan
@@ -87,14 +87,14 @@ def write(truss: str, joints: int, folder: Path) -> None:
             for key in dict.fromkeys(key for item in items for key in item):
                 file[key] = column(items, key)
         beside[section] = f"{section}.h5"
-    made.pop("reflector", None)  # lists a node of every rib, and the path does not need it
+    made.pop("reflector", None)  # it lists a node of every rib, and the path does not need it
     (folder / "case.toml").write_text(tomli_w.dumps({**made, "tables": beside}), encoding="utf-8")
 
 
 def measure(truss: str, joints: int, folder: Path | None) -> tuple[float, str]:
     """Return the time of a path [s], and a row of the table.
 
-    :param folder: of the case file with tables; None: the items are Python objects
+    :param folder: folder of the case file with tables; None: items as Python objects
     """
     given = document(truss, joints) if folder is None else {}
     started = time.process_time()
@@ -113,7 +113,7 @@ def measure(truss: str, joints: int, folder: Path | None) -> tuple[float, str]:
 
 
 def alone(function: Callable[..., Any], *arguments: Any) -> Any:
-    """Call a function in a process of its own."""
+    """Call a function in a separate process."""
     with multiprocessing.get_context("spawn").Pool(1) as pool:
         return pool.apply(function, arguments)
 

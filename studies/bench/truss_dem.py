@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cost of a joint and step of trusses in the DEM; writes results/bench/truss_dem.md and truss_dem.csv.
+"""Cost of a joint per step of trusses in the DEM; writes results/bench/truss_dem.md and truss_dem.csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/truss_dem.py
 
-Chains of blocks with friction from 100 to 10 000 joints, one thread, with energy account. Two runs of different
-length each: their difference has neither start nor samples.
+Chains of blocks with friction from 100 to 10 000 joints, one thread, with energy account. The cost is the difference of
+two runs of different length, which excludes start and samples.
 """
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from statejump.kinds.truss import KIND, dem, generate
 from statejump.kinds.truss.solve import path
 
 SIZES = (100, 1_000, 10_000)  # joints
-JOINT_STEPS = 3_000_000  # of the shorter run; the longer one has three times as many
-# The blocks stick, so that the solver, which computes the start, need not locate slip in 10 000 of them.
+JOINT_STEPS = 3_000_000  # joints times steps of the shorter run; the longer one has three times as many
+# The blocks stick, so that the path, from which the DEM starts, has no slips of 10 000 joints to locate.
 CASES = {"chain": lambda joints: generate.chain(joints, temperature_change_K=1.0, friction_force_N=1e3)}
 COLUMNS = ("truss", "joints", "links", "repetition", "steps", "cpu_time_s", "ns_per_joint_and_step")
 

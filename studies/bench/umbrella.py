@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Speed of the umbrella rib in both models; writes results/bench/umbrella.md and umbrella.csv.
+"""Speed of both models of the umbrella rib; writes results/bench/umbrella.md and umbrella.csv.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/umbrella.py --build build
 """
@@ -16,7 +16,7 @@ from run import REPOSITORY, TIMEOUT_S, BenchError, parse, publish, start
 import statejump
 from statejump.core.errors import StatejumpError
 
-STEPS = 100_000  # of one run of the reduced model, the paper's number
+STEPS = 100_000  # steps of one run of the reduced model, as in the paper
 DEM_STEPS = 400_000
 NAMES = {
     "bare_loop": "bare hand-written loop, frictionless",
@@ -29,7 +29,7 @@ COLUMNS = ("model", "scene", "repetition", "steps", "time_s", "ns_per_step")
 
 
 def reduced_rows(build: Path, repetitions: int) -> list[dict[str, object]]:
-    """Run the engine's benchmarks in random order; CPU time."""
+    """Run the engine's benchmarks in random order; return CPU times."""
     done = subprocess.run(
         [build / "bench" / "engine" / "engine_bench", "--benchmark_filter=bare_loop|engine|adaptive",
          f"--benchmark_repetitions={repetitions}", "--benchmark_enable_random_interleaving=true",
@@ -48,7 +48,7 @@ def reduced_rows(build: Path, repetitions: int) -> list[dict[str, object]]:
 
 
 def dem_rows(repetitions: int) -> list[dict[str, object]]:
-    """Run the DEM scene; wall time of the steps, start of YADE excluded."""
+    """Run the DEM scene; return the wall time of the steps without the start of YADE."""
     rows = []
     for name in ("umbrella_damped", "umbrella"):
         case = statejump.load(REPOSITORY / "cases" / f"{name}.toml").changed({"dem.steps_per_cycle": DEM_STEPS})

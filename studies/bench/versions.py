@@ -4,9 +4,9 @@
     PYTHONPATH=build/python /usr/bin/python3 studies/bench/versions.py OLD NEW [--structures 60] [--repeat 5]
         [--limit 20]
 
-OLD and NEW are folders that hold a built package `statejump` each. The cases are the shipped trusses and ordinary
-structures of tests/ordinary; a case counts if it finishes with both. Each version runs in a process of its own, both in
-turn, and only the engine's path is timed. Prints a table with medians, their ratio, and what was solved.
+OLD and NEW are folders with a built package `statejump` each. Cases are the shipped trusses and structures of
+tests/ordinary; only cases that both versions finish count. The versions run alternately in separate processes, and only
+the path of the engine is timed. Prints medians, their ratio, and the solved cases.
 """
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ for line in sys.stdin:
 class Version:
     """A process that solves case files with a built package.
 
-    :param package: the folder that contains it
+    :param package: folder with the package
     :param limit_s: CPU seconds after which a path is cancelled
     """
 
@@ -71,7 +71,7 @@ class Version:
 
 
 def ordinary(folder: Path, count: int) -> Iterator[Path]:
-    """Write ordinary structures, one family after the other; yield their files."""
+    """Write ordinary structures, one of each family in turn; yield their files."""
     sys.path.insert(0, str(ROOT / "tests" / "ordinary"))
     import structures
     from statejump.kinds.truss.generate.document import to_toml

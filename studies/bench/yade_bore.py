@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cost of a contact step in a bore of triangles beside the analytic bearing, and by the JointStepper.
+"""Cost of a contact step in a bore of triangles, by YADE's loop and the JointStepper, beside the analytic bearing.
 
     yade -n -x -j1 studies/bench/yade_bore.py                   # prints a table, writes results/bench/bore.md
     FACETS=1000,10000 REPORT=bore.md yade -n -x -j1 studies/bench/yade_bore.py
 
-100 journals, each in its bearing, one wall for all. Three loads: at rest under a slowly rising
-temperature; and sliding, slowly or fast, where the force on the journals turns by 30 degrees per
-second or once in 20 ms, so that every contact runs around its bore. CPU time per contact and step,
-medians of five; bearing and bore by YADE's loop and bore by the JointStepper in turn in one process.
+100 journals, each in its bearing, all with one wall mesh, under three loads: at rest under a slowly rising temperature,
+and sliding slowly or fast around the bore, because the force on the journals rotates by 30 degrees per second or once
+in 20 ms. Prints CPU times per contact and step, medians of five. The variants run in turn in one process.
 """
 import os
 import sys
@@ -22,8 +21,8 @@ from statejump_yade import *
 
 R1, R2, load, dt, joints = 5e-3, 5.1e-3, 10.0, 1e-6, 100
 steps, warm_up, repetitions = 2000, 500, 5
-# Rotations of the force per second, and the friction coefficient: one that holds at rest, and one that lets the journal
-# slide.
+# Rotations of the force per second, and the friction coefficient: large enough to hold the journal, or small enough to
+# let it slide.
 loads = {"at rest": (0.0, 0.3), "sliding slowly": (30 / 360, 1e-3), "sliding fast": (50.0, 0.1)}
 
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Processor time of ``import statejump_yade`` in a YADE that has just started.
+"""Processor time of ``import statejump_yade`` in a new YADE process.
 
     /usr/bin/python3 studies/bench/yade_import.py --build build [--build OTHER] [--repetitions 20]
 
-Of several builds, one YADE of each in turn. Setting up is what follows the loading of the library: the guard, which
-compares the declared interface with that YADE, and the registration of classes. Medians, lowest and highest. Exit
-status 2 with one sentence when something is missing.
+Several builds run in turn. "Setting up" is the time after the loading of the library: the guard, which compares the
+declared interface with that of YADE, and the registration of classes. Prints medians, minima and maxima. Exit status 2
+with a message if a file is missing.
 """
 from __future__ import annotations
 
@@ -19,8 +19,7 @@ from statistics import median
 
 from run import BenchError, start
 
-# The script for YADE. It loads the library separately first, to distinguish the time of the loader from that of the
-# plugin.
+# The script for YADE. It first loads the library by itself, to separate the time of the loader from that of the plugin.
 SCRIPT = """
 import importlib.util
 import sys
@@ -37,7 +36,7 @@ print("spent", time.process_time() - start, time.process_time() - loaded)
 
 
 def spent(build: Path, script: Path) -> tuple[float, float]:
-    """Processor time in one YADE [s]: of the whole import, of setting up."""
+    """Return the processor time in one YADE [s] of the whole import, and of setting up."""
     done = subprocess.run(
         ["yade", "-n", "-x", "-j1", str(script)], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False,
         env={**os.environ, "PYTHONPATH": str(build / "python"), "PYTHONDONTWRITEBYTECODE": "1"},

@@ -5,20 +5,19 @@
 
 Variants, all with 2 n bodies, n contacts, the same collider and integrator:
 
-- ``joint``: revolute joints (journal in a fixed bearing) under thermal expansion, in every step
-  another temperature
-- ``joint_stepper``: the same by the JointStepper, every ``SUBSTEPS`` steps one by YADE's loop
+- ``joint``: revolute joints (journal in a fixed bearing) under thermal expansion; the temperature changes in every step
+- ``joint_stepper``: the same by the JointStepper, with one step of YADE's loop every ``SUBSTEPS`` steps
 - ``joint_isothermal``: the same without the ThermalExpansionEngine
 - ``sphere``: pairs of spheres, one fixed, with YADE's own Law2_ScGeom_MindlinPhys_Mindlin
-- ``table1``: yade_scripts/examples/table1.py as it stands, from its first line to its last (one contact)
+- ``table1``: the whole script yade_scripts/examples/table1.py, without changes (one contact)
 
-The free body is pressed on the fixed one with a constant force inclined to the normal, below the
-friction limit, so that both laws carry a normal and a tangential force. Rotations are blocked, or
-a sphere would roll off. It starts at the depth at which the contact carries the load.
+The free body is pressed on the fixed one with a constant force inclined to the normal, below the friction limit, so
+that both laws carry a normal and a tangential force. Rotations are blocked, because a sphere would roll off. The body
+starts at the depth at which the contact carries the load.
 
-Environment: STATEJUMP_BENCH_VARIANT, _SIZE (n), _STEPS, _SUBSTEPS, _WARM_UP (steps), _TIMING (1: share of each
-engine by O.timingEnabled, which slows the run itself down), _ENERGY (1: O.trackEnergy), _FRICTION_LAW (of the joints,
-by name; without it they have Law2_JointGeom_JointPhys_HertzMindlin).
+Environment: STATEJUMP_BENCH_VARIANT, _SIZE (n), _STEPS, _SUBSTEPS, _WARM_UP (steps), _TIMING (1: time of each engine by
+O.timingEnabled, which slows the run down), _ENERGY (1: O.trackEnergy), _FRICTION_LAW (name of the friction law of
+joints; default: Law2_JointGeom_JointPhys_HertzMindlin).
 """
 import contextlib
 import io
@@ -47,7 +46,7 @@ steps = setting("STEPS", 1000)
 warm_up = setting("WARM_UP", 300)
 timing = bool(setting("TIMING", 0))
 friction_law = setting("FRICTION_LAW", "")
-bystanders = setting("BYSTANDERS", 0)  # 0 to 3 for each pair of spheres
+bystanders = setting("BYSTANDERS", 0)  # number per pair of spheres, 0 to 3
 
 
 def body(shape, material, position, is_fixed):
@@ -88,7 +87,7 @@ def joints(is_thermal):
         O.forces.setPermF(free, Vector3(1, INCLINATION, 0) * LOAD)
     thermal = []
     if is_thermal:
-        # Slow enough to stay close to equilibrium, rising during the whole measurement.
+        # Slow enough to stay close to equilibrium; the temperature rises during the whole measurement.
         program = sj.ThermalProgram(
             shape="triangle", temperatureChangeMax=10, period=4 * (steps + warm_up) * TIME_STEP + 1
         )
@@ -112,7 +111,7 @@ def spheres():
         body(Sphere(radius=RADIUS), material, centre, True)
         free = body(Sphere(radius=RADIUS), material, centre + Vector3(offset, 0, 0), False)
         O.forces.setPermF(free, Vector3(-1, INCLINATION, 0) * LOAD)
-        # Fixed bodies that the free one could touch next, as the stops of a slider. Their boxes overlap.
+        # Fixed bodies that the free body could touch next, like the stops of a slider; their bounding boxes overlap.
         near = 2 * RADIUS + 0.4 * SEARCHED
         for direction in (Vector3(0, -1, 0), Vector3(0, 1, 0), Vector3(1, 0, 0))[:bystanders]:
             body(Sphere(radius=RADIUS), material, centre + Vector3(offset, 0, 0) + near * direction, True)
@@ -125,7 +124,7 @@ def spheres():
 
 
 def check(when):
-    """Check that every pair touches, carries both forces without slip, and that nothing else touches."""
+    """Check that every pair touches and carries both forces without slip, and that no other bodies touch."""
     contacts = [contact for contact in O.interactions if contact.isReal]
     carrying = sum(
         contact.phys.normalForce.norm() > 0.5 * LOAD
@@ -168,13 +167,13 @@ def measure():
 
 
 def table1():
-    import statejump_yade  # noqa: F401  the one of PYTHONPATH, whatever the script looks for
+    import statejump_yade  # noqa: F401 from PYTHONPATH, wherever the script searches
 
     script = Path(sys.argv[0]).resolve().parents[2] / "yade_scripts" / "examples" / "table1.py"
     output = io.StringIO()
     start_wall, start = time.perf_counter(), time.process_time()
     with contextlib.redirect_stdout(output):
-        # The script reads its own path and uses YADE's names.
+        # The script uses its own path and names of YADE.
         runpy.run_path(str(script), init_globals=dict(globals()))
     elapsed, elapsed_wall = time.process_time() - start, time.perf_counter() - start_wall
     if "state jump" not in output.getvalue():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cases in CalculiX beside the reduced model: validation against a program that shares no code with this project."""
+"""Validation of cases against CalculiX, a finite-element program that shares no code with this project."""
 from __future__ import annotations
 
 from statejump.core.case import Case
@@ -11,17 +11,17 @@ from studies.calculix.ccx import Answer
 
 
 def check(case: Case) -> None:
-    """Refuse cases of kinds that have no deck. :raises NotAllowed: it is one"""
+    """Raise NotAllowed if the kind of a case has no deck."""
     if not isinstance(case, (SpringSliderCase, TrussCase)):
         raise NotAllowed("case.kind", case.kind, code="command_not_for_kind", command="fe", file=case.origin.file,
                          kinds=f"{SpringSliderCase.KIND!r} and {TrussCase.KIND!r}")
 
 
 def answer(case: Case) -> Answer:
-    """Run a case in CalculiX and return it beside the reduced model.
+    """Run a case in CalculiX and compare it with the reduced model.
 
-    :raises NotAllowed: there is no deck for the case, or not for a value
-    :raises StatejumpError: there is no CalculiX, or it failed
+    :raises NotAllowed: the kind or a value has no deck
+    :raises StatejumpError: CalculiX is missing or failed
     """
     check(case)
     return truss.answer(case) if isinstance(case, TrussCase) else spring_slider.answer(case)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs CalculiX on a deck and reads back what it printed."""
+"""Runs CalculiX on a deck and reads its output."""
 from __future__ import annotations
 
 import re
@@ -22,11 +22,11 @@ _HEAD = re.compile(r"displacements \(vx,vy,vz\) for set (\S+) and time +(\S+)")
 
 @dataclass(frozen=True)
 class Answer:
-    """What a finite-element model of a case says.
+    """Comparison of a finite-element model of a case with the reduced model.
 
-    :param deck: the deck as CalculiX took it
-    :param rows: by quantity, of the reduced model and of CalculiX
-    :param notes: what the model leaves out, in sentences
+    :param deck: the deck for CalculiX
+    :param rows: rows by quantity, with values of the reduced model and of CalculiX
+    :param notes: notes on omissions of the finite-element model
     """
 
     deck: str
@@ -73,6 +73,6 @@ def _read(path: Path, set_name: str) -> list[dict[int, np.ndarray]]:
 
 
 def number(value: float) -> str:
-    """Return a number as a deck takes it: CalculiX reads 20 characters."""
+    """Return a number in the format of a deck: CalculiX reads 20 characters."""
     whole = repr(float(value))
     return whole if len(whole) <= 20 else f"{value:.13E}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``statejump fe``: a case in CalculiX beside the reduced model."""
+"""``statejump fe``: comparison of a case in CalculiX with the reduced model."""
 from __future__ import annotations
 
 from pathlib import Path

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A ``spring_slider`` case in CalculiX: a bar of one brick that pushes a block, the block pressed on a floor with
-frictional contact, two stops in frictionless contact.
+"""A ``spring_slider`` case in CalculiX: a bar of one brick element pushes a block, which is pressed on a floor with
+frictional contact and may touch two stops with frictionless contact.
 
-What is rigid in the reduced model is stiff here: the floor sticks with STICK times the stiffness of the bar, floor and
-stops push with PUSH times it. Events are where straight pieces of displacement over temperature meet, so they do not
-depend on the increment, and an error of 1/PUSH of a penetration is all that the contacts leave.
+Contacts that are rigid in the reduced model are stiff here: relative to the bar, STICK times in tangential direction,
+PUSH times in normal direction. Events are the intersections of straight pieces of displacement over temperature, so
+they do not depend on increments. The remaining error is the penetration, of relative size 1/PUSH.
 """
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from studies.calculix.ccx import number
 STICK, PUSH = 1e4, 1e3
 INCREMENTS = 50  # of a branch of the program
 MOST_BRANCHES = 40
-TOLERANCE = 1e-3  # relative: the paper's models differ by 2.5 %, contacts as stiff as these by less than 1e-4
+TOLERANCE = 1e-3  # relative; the paper's models differ by 2.5 %, contacts of this stiffness by less than 1e-4
 HOLDS = ("S1", "S3", "S4", "at_stop_plus", "at_stop_minus")
 BAR, PAD, FLOOR, PLUS, MINUS = 1, 11, 21, 31, 41  # first node of each brick
 TIP = 5
 
 
 def answer(case: SpringSliderCase) -> ccx.Answer:
-    """Run the case in CalculiX and return it beside the reduced model.
+    """Run the case in CalculiX beside the reduced model.
 
-    :raises NotAllowed: what the deck does not have
-    :raises StatejumpError: there is no CalculiX, or it failed
+    :raises NotAllowed: the deck does not support the case
+    :raises StatejumpError: CalculiX is missing or failed
     """
     joint = case.joint
     if case.expansion is not None:
@@ -66,7 +66,7 @@ def _slope(case: SpringSliderCase) -> float:
 
 
 def _corners(case: SpringSliderCase) -> list[float]:
-    """Return the temperature changes at which the program turns, from 0."""
+    """Return the temperature changes at which the program reverses, from 0."""
     program, thermal = case.thermal_program(), case.thermal
     if thermal.shape == "table":
         cycle = rows(thermal, case.period_s)[1].tolist()
@@ -88,7 +88,7 @@ def _corners(case: SpringSliderCase) -> list[float]:
 
 
 def _events(case: SpringSliderCase, corners: Sequence[float]) -> list[tuple[str, float]]:
-    """Return where the block begins to slide and comes to rest between the corners, in order."""
+    """Return the temperature changes between the corners at which the block begins to slide or stops, in order."""
     found = []
     for event in reduced.solve(case).events:
         before, after = event.stage_before in HOLDS, event.stage_after in HOLDS
@@ -98,17 +98,17 @@ def _events(case: SpringSliderCase, corners: Sequence[float]) -> list[tuple[str,
 
 
 def kinks(change: np.ndarray, moved: np.ndarray, slope: float) -> list[tuple[str, float]]:
-    """Return where a path of straight pieces begins and ceases to slide: where the pieces meet.
+    """Return the temperature changes at which a piecewise linear path begins or ends to slide.
 
-    :param change: temperatures, in order
+    :param change: temperature changes, in order of time
     :param moved: displacement at each
-    :param slope: of a slide
+    :param slope: slope of a sliding piece
     """
     slides = np.abs(np.diff(moved) / np.diff(change)) > 0.5 * abs(slope)
     found = []
     place = 0
     for at in np.flatnonzero(slides[1:] != slides[:-1]):
-        # The increment with the kink is of either sort: the lines are those of the increments around it.
+        # The increment that contains the kink is on neither line, so the lines are those of the increments around it.
         first, second = max(at - 1, place), min(at + 2, len(slides) - 1)
         lines = [np.polyfit(change[one:one + 2], moved[one:one + 2], 1) for one in (first, second)]
         found.append(("slide" if slides[at + 1] else "rest",
@@ -128,7 +128,7 @@ def _rows(case: SpringSliderCase, ours: Sequence[tuple[str, float]], theirs: Seq
 
 
 def row(name: str, unit: str, own: float, other: float, tolerance: float) -> Quantity:
-    """Return a row whose difference is relative to the reduced model."""
+    """Return a row with the difference relative to the reduced model."""
     difference = abs(other - own) / abs(own) if own else abs(other)
     return Quantity(name, unit, {"reduced": own, "fe": other}, difference, tolerance, bool(difference <= tolerance))
 
@@ -161,7 +161,7 @@ def deck(case: SpringSliderCase, corners: Sequence[float]) -> list[str]:
               "*NSET, NSET=PADN", ", ".join(str(node) for node in range(PAD, PAD + 8)),
               "*NSET, NSET=TOP", ", ".join(str(node) for node in range(PAD + 4, PAD + 8)),
               "*NSET, NSET=FIXED", *(f"{node}," for node in fixed)]
-    # The bar carries axial force only: without Poisson's ratio, its sides held.
+    # The bar carries axial force only: Poisson's ratio 0 and held sides.
     lines += ["*MATERIAL, NAME=BAR", "*ELASTIC", f"{number(link.young_modulus_Pa)}, 0.", "*EXPANSION, ZERO=0.",
               number(case.thermal_expansion_per_K), "*MATERIAL, NAME=BLOCK", "*ELASTIC",
               f"{number(joint.young_modulus_Pa)}, {number(max(joint.poisson_ratio, 0.0))}"]
@@ -189,7 +189,7 @@ def deck(case: SpringSliderCase, corners: Sequence[float]) -> list[str]:
 
 
 def _nodes(first: int, low: Sequence[float], high: Sequence[float]) -> list[str]:
-    """Return the eight nodes of a brick: those of the bar by its ends, of others from below."""
+    """Return the eight nodes of a brick. Those of the bar are ordered by its ends, those of other bricks from below."""
     x, y, z = zip(low, high)
     corners = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
     if first == BAR:

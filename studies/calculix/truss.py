@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A truss with every joint locked in CalculiX: bars of type T3D2, small displacements. Where its only joints are
-sliders they slip in a second deck, see :mod:`studies.calculix.truss_sliding`.
+"""A truss with locked joints in CalculiX: bars of type T3D2, small displacements. If all joints are sliders, they slip
+in a second deck, see :mod:`studies.calculix.truss_sliding`.
 
-CalculiX linearizes and the solver does not, so what is compared is the rate of the solver's path at ΔT = 0, of
-temperatures and loads together, times their full size: r(h) = (u(h) - u(-h))/(2 h), extrapolated as
-(4 r(h/2) - r(h))/3 with h = STEP. What is left is of order (h u/height)⁴, where a shallow truss has little height.
-CalculiX prints seven digits; of a second run, in which every displacement is told as its difference from the first (an
-equation with two nodes that nothing else holds), seven more.
+CalculiX is linear, the solver is not. Its path is therefore linearised at ΔT = 0 and zero load: r(h) = (u(h) -
+u(-h))/(2 h) with temperatures and loads scaled by h, extrapolated as (4 r(h/2) - r(h))/3 with h = STEP. The error is of
+order (h u/height)⁴, with a small height for a shallow truss. CalculiX prints seven digits. A second run gives seven
+more: equations with two auxiliary nodes make it print differences from the displacements of the first run.
 """
 from __future__ import annotations
 
@@ -34,16 +33,16 @@ from studies.calculix.ccx import number
 Numbers = NDArray[np.float64]
 
 STEP = 1e-3
-TOLERANCE = 1e-8  # of the largest displacement and of the largest force
-UNSTRESSED = 1e-12  # relative: a drawn length that differs by less from the stress-free one is the same
+TOLERANCE = 1e-8  # relative to the largest displacement, or to the largest force
+UNSTRESSED = 1e-12  # relative difference below which the length in the reference configuration is stress-free
 LARGEST_HELD = 1e12  # N: what holds a locked slider
 
 
 def answer(case: TrussCase) -> ccx.Answer:
-    """Run the truss with every joint locked in CalculiX and return it beside the solver.
+    """Run the truss with locked joints in CalculiX and compare it with the solver.
 
-    :raises NotAllowed: what the deck does not have
-    :raises StatejumpError: there is no CalculiX, or it failed
+    :raises NotAllowed: the deck does not support the case
+    :raises StatejumpError: CalculiX is missing or failed
     """
     truss = case.resolve()
     _refuse(truss)
@@ -77,7 +76,7 @@ def answer(case: TrussCase) -> ccx.Answer:
 
 
 def _sliding(case: TrussCase, truss: ResolvedTruss) -> tuple[list[str], tuple[Quantity, ...]]:
-    """Return the deck in which sliders slip, and what it says.
+    """Return the deck with slipping sliders, and its rows.
 
     :raises NotAllowed: there are other joints, or something else that this deck does not have
     """
@@ -91,7 +90,7 @@ def _sliding(case: TrussCase, truss: ResolvedTruss) -> tuple[list[str], tuple[Qu
 
 
 def _refuse(truss: ResolvedTruss) -> None:
-    """Raise NotAllowed for what the deck does not have."""
+    """Raise NotAllowed for items that the deck does not support."""
     if not truss.links.names:
         raise NotAllowed("link", code="fe_no_links")
     of_angles = [(joint.section, truss.joints[joint.section].names) for joint in JOINTS
@@ -109,15 +108,15 @@ def _refuse(truss: ResolvedTruss) -> None:
 
 
 def _hottest(case: TrussCase, truss: ResolvedTruss) -> Numbers:
-    """Return the ΔT [K] of every link that is the largest of its program."""
+    """Return the ΔT [K] of every link with the largest absolute value in its program."""
     ranges = truss.temperature_ranges_K[truss.links.program]
     largest = np.where(np.abs(ranges[:, 0]) > np.abs(ranges[:, 1]), ranges[:, 0], ranges[:, 1])
     return np.asarray(largest * truss.links.temperature_fraction)
 
 
 def pinned(truss: ResolvedTruss) -> ResolvedTruss:
-    """Return the truss with a pin in place of every joint with clearance (the inner part's node is the outer one's),
-    and a slider in place of whatever moves along an axis."""
+    """Return the truss with pins instead of joints with clearance (both nodes become one), and sliders instead of all
+    joints along an axis."""
     place, none = np.arange(len(truss.nodes.names)), {}
     for joint in JOINTS:
         if not isinstance(joint, AlongAxis) or joint is SLIDER:
@@ -149,7 +148,8 @@ def pinned(truss: ResolvedTruss) -> ResolvedTruss:
 
 
 def _rate(truss: ResolvedTruss, changes: Numbers) -> Numbers:
-    """Return the rate of the solver's displacements (n, 3) [m] with temperatures and loads at nothing, times both."""
+    """Return the derivative of the solver's displacements (n, 3) [m] by a common factor of temperatures and loads, at
+    0."""
     def moved(step: float) -> Numbers:
         count = len(truss.links.names)
         program = TrussThermal(shape="triangle", temperature_change_max_K=1.0, period_s=1.0)
@@ -170,7 +170,7 @@ def _rate(truss: ResolvedTruss, changes: Numbers) -> Numbers:
 
 
 def _forces(truss: ResolvedTruss, changes: Numbers, moved: Numbers) -> Numbers:
-    """Return the axial forces [N] of small displacements, compression positive."""
+    """Return the axial forces [N] for small displacements, compression positive."""
     links = truss.links
     ends = truss.nodes.position_m[links.nodes]
     along = (ends[:, 1] - ends[:, 0]) / links.stress_free_length_m[:, None]
@@ -195,7 +195,7 @@ def deck(truss: ResolvedTruss, changes: Numbers, reference: Numbers | None = Non
     """Return the deck of a truss with locked joints.
 
     :param changes: temperature change of every link [K]
-    :param reference: displacements (n, 3) [m] from which those of the set TOLD are counted; None: no such set
+    :param reference: displacements (n, 3) [m] to subtract from those of the node set TOLD; None: no such set
     """
     nodes, links, count = truss.nodes, truss.links, len(truss.nodes.names)
     lines = ["*HEADING", f"statejump fe {truss.name}, joints locked", "*NODE, NSET=JOINTS"]
@@ -206,8 +206,8 @@ def deck(truss: ResolvedTruss, changes: Numbers, reference: Numbers | None = Non
     for index, (first, second) in enumerate(links.nodes, start=1):
         lines += [f"*ELEMENT, TYPE=T3D2, ELSET=E{index}", f"{index}, {first + 1}, {second + 1}"]
     poisson = links.poisson_ratio
-    # A node has one temperature, bars have each their own: all nodes are as hot as the hottest bar, and the expansion
-    # of a cooler one is less in proportion.
+    # A node has one temperature, but bars have different ones. All nodes get the ΔT of the hottest bar, and the
+    # expansion of cooler bars is scaled down.
     hot = max(changes, key=abs, default=0.0) or 1.0
     for index in range(len(links.names)):
         lines += [f"*MATERIAL, NAME=M{index + 1}", "*ELASTIC",
@@ -238,7 +238,7 @@ def _points(position_m: Numbers, offset: int) -> list[str]:
 
 
 def _locks(truss: ResolvedTruss) -> list[str]:
-    """Return the equations of guides and of locked sliders. The first term is eliminated: it must be free."""
+    """Return the equations of guides and of locked sliders. CalculiX eliminates the first term, so it must be free."""
     lines: list[str] = []
     fixed, axes = truss.nodes.fixed, np.eye(3)
 
@@ -253,7 +253,7 @@ def _locks(truss: ResolvedTruss) -> list[str]:
     for (first, second), along in zip(truss.sliders.nodes, truss.sliders.axis):
         if second == GROUND:
             tie([(int(first), axis, float(along[axis])) for axis in range(3)])
-        else:  # two nodes are held together across the axis too
+        else:  # between two nodes, all components are equal
             for one in axes:
                 tie([(int(node), axis, sign * float(one[axis])) for node, sign in ((first, 1.0), (second, -1.0))
                      for axis in range(3)])

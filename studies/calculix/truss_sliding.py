@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A truss whose sliders slip in CalculiX, along its temperature program; small displacements.
+"""A truss with slipping sliders in CalculiX along its temperature program, for small displacements.
 
-Bars and sliders are bricks along x that lie by themselves; an equation makes the end of each move as far as the ends
-of its bar come apart along it, or as the slider slides. Friction is a brick of an ideally plastic metal: stiff until
-its bound, then it flows at that force and keeps how far it went. A stop is a spring that begins at the clearance.
-Bricks are STRETCH times as long as what they stand for, of a modulus that gives the same stiffness: so are their own
-strains, which CalculiX takes as large with plasticity, STRETCH times smaller.
+Every bar and every slider is a separate brick along x. An equation sets the displacement of its end to the elongation
+of the bar, or to the slide. The brick of a slider is ideally plastic: it is stiff up to the friction limit and then
+yields at this force. A stop is a spring that acts beyond the clearance. Bricks are STRETCH times as long as their bars,
+with a modulus that keeps the stiffness. Their strains are thus STRETCH times smaller, because CalculiX treats strains
+as large if plasticity is used.
 """
 from __future__ import annotations
 
@@ -29,23 +29,23 @@ from studies.calculix.ccx import number
 Numbers = NDArray[np.float64]
 
 STRETCH = 1000.0
-STICK = 1e5  # stiffness of friction that sticks and of stops, over that of the stiffest bar
+STICK = 1e5  # stiffness of sticking friction and of stops, over that of the stiffest bar
 INCREMENTS = 20  # of a branch
-# Corners of a brick in the order of its nodes.
+# Corners of a brick in the order of its nodes in CalculiX.
 CORNERS = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
 MOST_BRANCHES = 40
-STEP = 1e-3  # of the solver's temperatures, loads, friction and play, so that its displacements are small as well
-# Displacements that are small are so to STEP of strains of a few thousandths, friction sticks to 1/STICK.
+STEP = 1e-3  # factor of the solver's temperatures, loads, friction and clearances, which makes its displacements small
+# Displacements scaled by STEP are small to about STEP times strains of a few thousandths; sticking is rigid to 1/STICK.
 TOLERANCE = 1e-4
 LEAST_JUMP = 1e-2
 
 
 def rows(case: TrussCase, truss: ResolvedTruss) -> tuple[list[str], tuple[Quantity, ...]]:
-    """Run a truss of links and sliders in CalculiX; return the deck and what both say of its path.
+    """Run a truss of links and sliders in CalculiX; return the deck and the rows of the comparison.
 
-    :param truss: without revolutes, springs and stress as drawn
-    :raises NotAllowed: a program without straight pieces, or too long
-    :raises StatejumpError: there is no CalculiX, or it failed
+    :param truss: a truss without revolutes and springs, stress-free in the reference configuration
+    :raises NotAllowed: a program is not piecewise linear, or has too many pieces
+    :raises StatejumpError: CalculiX is missing or failed
     """
     times = corners(case, truss)
     lines = deck(truss, times)
@@ -68,14 +68,14 @@ def rows(case: TrussCase, truss: ResolvedTruss) -> tuple[list[str], tuple[Quanti
     found_rows = [row("largest_displacement_sliding", own, other)]
     if not np.any(start):
         what = "jump" if case.has_jump else "displacement_at_program_end"
-        # CalculiX prints seven digits: of the largest displacement, TOLERANCE · LEAST_JUMP are left.
+        # CalculiX prints seven digits, so the scale of a small jump is at least LEAST_JUMP of the displacement.
         least = LEAST_JUMP * float(np.linalg.norm(own, axis=-1).max())
         found_rows.append(row(f"largest_{what}_sliding", own[-1], other[-1], least))
     return lines, tuple(found_rows)
 
 
 def _small(truss: ResolvedTruss) -> ResolvedTruss:
-    """Return the truss with STEP of what moves it and holds it: its path is STEP times that of small displacements."""
+    """Return the truss with temperatures, loads, friction and clearances times STEP, and so nearly its path too."""
     sliders = truss.sliders
     return replace(
         truss, nodes=replace(truss.nodes, force_N=STEP * truss.nodes.force_N),
@@ -86,7 +86,7 @@ def _small(truss: ResolvedTruss) -> ResolvedTruss:
 
 
 def corners(case: TrussCase, truss: ResolvedTruss) -> list[float]:
-    """Return the times [s] between which all programs are straight, over all cycles."""
+    """Return the times [s] between which all programs are linear, over all cycles."""
     for program in truss.programs:
         if program.shape not in ("triangle", "table") and np.any(range_K(program)):
             raise NotAllowed("thermal.shape", program.shape, code="fe_slider_shape")
@@ -106,9 +106,9 @@ def corners(case: TrussCase, truss: ResolvedTruss) -> list[float]:
 
 @dataclass
 class Bricks:
-    """Bricks of section 1 m² and equations of their ends.
+    """Bricks with a section of 1 m², and equations of their ends.
 
-    :param truss: its nodes come first
+    :param truss: the truss; its nodes have the first numbers
     """
 
     truss: ResolvedTruss
@@ -123,9 +123,9 @@ class Bricks:
         self.held += [f"{node + 1}, {axis + 1}" for node, axis in zip(*np.nonzero(self.truss.nodes.fixed))]
 
     def brick(self, length: float, modulus: float, expansion: float, bound: float | None) -> int:
-        """Add a brick; return the node at its end that is moved along x.
+        """Add a brick; return the node at its end that moves along x.
 
-        :param bound: force [N] at which it flows; None: it is elastic
+        :param bound: force [N] at which it yields; None: elastic
         """
         self.element += 1
         corner, element = self.first, self.element
@@ -146,7 +146,8 @@ class Bricks:
         return corner + 1
 
     def tie(self, end: int | None, ends: Sequence[tuple[int, float]], along: Numbers) -> None:
-        """Let the end of a brick (None: nothing) move as nodes with their signs do along a direction."""
+        """Add the equation "displacement of a brick's end (None: 0) = signed sum of node displacements along a
+        direction"."""
         terms = [(int(node) + 1, axis + 1, -sign * float(along[axis])) for node, sign in ends for axis in range(3)
                  if along[axis] and not self.truss.nodes.fixed[node, axis]]
         if end is None:
@@ -173,7 +174,7 @@ def _bars(bricks: Bricks, stiffness: Numbers) -> list[int]:
 
 
 def _sliders(bricks: Bricks, rigid: float) -> list[tuple[int, float, float]]:
-    """Add the bricks of friction; return of each slider with a stop the end of its brick and both clearances [m]."""
+    """Add the bricks of sliders; return, for each slider with a stop, the end of its brick and both clearances [m]."""
     truss, sliders = bricks.truss, bricks.truss.sliders
     friction = sliders.friction_coefficient * sliders.normal_force_N
     sticks = np.full(len(friction), rigid)
@@ -209,7 +210,7 @@ def deck(truss: ResolvedTruss, times: list[float]) -> list[str]:
             bricks.tie(None, [(place, 1.0)], normal)
     stops: list[str] = []
     for element, (end, minus, plus) in enumerate(stopped, start=bricks.element + 1):
-        # from the held end of the brick to the other
+        # spring from the held end of the brick to its other end
         stops += [f"*ELEMENT, TYPE=SPRINGA, ELSET=E{element}", f"{element}, {end - 1}, {end}",
                   f"*SPRING, ELSET=E{element}, NONLINEAR",
                   f"{number(-rigid * longest)}, {number(-minus - longest)}", f"0., {number(-minus)}",

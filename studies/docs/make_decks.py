@@ -4,7 +4,7 @@
 
     PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_decks.py
 
-A test requires that the committed page is what this writes.
+A test requires that the committed page equals the output of this program.
 """
 from __future__ import annotations
 

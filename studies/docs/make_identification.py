@@ -4,9 +4,9 @@
     PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_identification.py [--repetitions N] [--choices N]
     PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_identification.py --random N
 
-Each loop is computed once, by the contact kernel, the closed form, the truss solver or YADE; every repetition adds
-noise of its own to the force. ``--random`` draws joints with play and with soft stops, and paths of constant, growing
-or shrinking cycles, instead. 500 repetitions take some half an hour of one core, 300 random loops fifteen minutes.
+The contact kernel, the closed form, the truss solver or YADE computes each loop once; every repetition adds other noise
+to the force. ``--random`` instead draws joints with play and with soft stops, and paths of constant, growing or
+shrinking cycles. 500 repetitions take about half an hour on one core, 300 random loops fifteen minutes.
 """
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from statejump.identification.models import MODELS
 PICTURES = Path(__file__).resolve().parents[2] / "docs" / "identification"
 NOISE = 0.01  # of half of the loop's force
 CONFIDENCE = 0.95
-# Triangles to both sides: a first loading and two cycles.
+# Triangles between both signs: a first loading and two cycles.
 CORNERS_K = [0.0, 100.0, -100.0, 100.0, -100.0, 0.0]
 TABLE = {"thermal.shape": "table", "thermal.table_time_s": list(np.arange(6.0)),
          "thermal.table_temperature_change_K": CORNERS_K, "thermal.temperature_change_max_K": None}
@@ -44,8 +44,8 @@ class Known:
     """A loop of a known joint.
 
     :param name: its origin
-    :param model: the joint that fits it
-    :param true: its parameters
+    :param model: the joint to fit
+    :param true: true parameters of the joint
     """
 
     name: str
@@ -56,17 +56,17 @@ class Known:
 
     @property
     def noise(self) -> float:
-        """Standard deviation of the noise that is added."""
+        """Standard deviation of the added noise."""
         return NOISE * float(np.ptp(self.force)) / 2
 
     def measured(self, repetition: int) -> dict[str, np.ndarray]:
-        """Return the loop with the noise of a repetition."""
+        """Return the loop with the noise of one repetition."""
         drawn = np.random.default_rng(repetition).normal(0, self.noise, len(self.force))
         return {"displacement_m": self.displacement, "force_N": self.force + drawn}
 
 
 def kernel(law: str, model: str) -> Known:
-    """A contact under 10 N that slides back and forth: up to twice its slide to gross slip, and half of it more."""
+    """Return a contact under 10 N on cycles of slide with the amplitude 2.5 μN/k."""
     young, shear, radius, mu, load = 38.5e9, 7.9e9, 0.01, 0.3, 10.0
     stiffness = 8 * shear * (3 * load * radius / (4 * young)) ** (1 / 3)
     reach = 2.5 * mu * load / stiffness
@@ -79,9 +79,9 @@ def kernel(law: str, model: str) -> Known:
 
 
 def bar_on_a_slider() -> Known:
-    """Table 1 with nearer stops and a spring at its block, by the closed form: the end of the bar is moved by its
-    expansion. The bar is a hundred times as long and as thick, so that its stiffness, which falls with its length,
-    falls by 2e-5 only."""
+    """Return Table 1 with nearer stops and a spring at its block, by the closed form; the expansion of the bar is the
+    displacement. The bar is a hundred times longer and thicker, so that its expansion reduces its stiffness by only
+    2e-5."""
     case = sj.load("table1").changed({
         **TABLE, "link.stress_free_length_m": 50.0, "link.cross_section_area_m2": 9e-4,
         "link.thermal_expansion_per_K": 23.4e-8, "joint.clearance_minus_m": 5e-4, "joint.clearance_plus_m": 8e-4,
@@ -95,8 +95,8 @@ def bar_on_a_slider() -> Known:
 
 
 def sliders_of_a_truss() -> Known:
-    """A hundred sliders behind springs beside each other, by the truss solver: half of them in the density of an Iwan
-    joint, at midpoints of equal stiffness, the others at its end."""
+    """Return a hundred parallel sliders behind springs, by the truss solver: half of them with the slip density of an
+    Iwan joint, at midpoints of equal stiffness, the others at the end of the density."""
     exponent, ratio, last, count = -0.5, 1.0, 3e-4, 100
     share = (np.arange(count // 2) + 0.5) / (count // 2)
     slides = last * np.concatenate((share ** (1 / (exponent + 1)), np.ones(count - count // 2)))
@@ -114,7 +114,7 @@ def sliders_of_a_truss() -> Known:
 
 
 def slider_in_yade() -> Known:
-    """Table 1 without stops in the DEM: the pad sticks with Mindlin's stiffness behind that of the bar."""
+    """Return Table 1 without stops in the DEM: the Mindlin stiffness of the pad is in series with that of the bar."""
     case = sj.load("table1").changed({**TABLE, "joint.clearance_minus_m": 1e-2, "joint.clearance_plus_m": 1e-2,
                                       "dem.samples_per_cycle": 500, "thermal.period_s": 5.0})
     run = case.dem(progress=sys.stderr.isatty()).frame()
@@ -152,7 +152,7 @@ def count(inside: dict[str, int], true: dict[str, float], columns: dict[str, np.
 def random_loop(model: str, correlation: float, rng: np.random.Generator) -> tuple[dict[str, float], dict[
     str, np.ndarray
 ]]:
-    """Return a joint and its loop from rest: 600 rows, 2 to 5 cycles, noise of 2 % of half of the force."""
+    """Return a joint and its loop from rest: 600 rows, 2 to 5 cycles, noise of 2 % of half the force range."""
     stiffness, friction = 10 ** rng.uniform(5.5, 6.5), rng.uniform(50, 300)
     true = {"stiffness": stiffness, "friction": friction, "preload": rng.uniform(-20, 20)}
     amplitude = rng.uniform(4, 8) * friction / stiffness
@@ -174,7 +174,7 @@ def random_loop(model: str, correlation: float, rng: np.random.Generator) -> tup
 
 
 def random_joints(loops: int) -> None:
-    """Print the coverage of random loops, a ninth of each joint with each noise."""
+    """Print the coverage of intervals for random loops, a ninth of them for each combination of joint and noise."""
     rows = []
     for model in ("coulomb_play", "coulomb_soft_play", "coulomb_soft_stops"):
         for correlation in (0.0, 0.5, 0.9):
@@ -192,7 +192,7 @@ def random_joints(loops: int) -> None:
 
 
 def chosen(known: Known, choices: int) -> str:
-    """Return the joints that BIC chooses, and how often."""
+    """Return the joints chosen by BIC, and how often."""
     count = Counter(sj.identify(known.measured(repetition)).model for repetition in range(choices))
     return ", ".join(f"{name} {times}" for name, times in count.most_common())
 

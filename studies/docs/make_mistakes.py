@@ -4,7 +4,7 @@
 
     PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_mistakes.py
 
-A test requires that the committed page is what this writes.
+A test requires that the committed page equals the output of this program.
 """
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PAGE = REPOSITORY / "docs" / "reference" / "mistakes.md"
 
 @dataclass(frozen=True)
 class Mistake:
-    """One mistake: the replacement in a case file, and the command that is then run."""
+    """One mistake: the replacement in a case file, and the command to run."""
 
     what: str
     case: str  # below cases/, without suffix
@@ -137,7 +137,7 @@ Standard output does not change. In Python the fields are `StatejumpError.fields
 
 
 def edited(mistake: Mistake) -> str:
-    """Return the case file with the mistake in it."""
+    """Return the case file with the mistake."""
     text = (REPOSITORY / "cases" / f"{mistake.case}.toml").read_text(encoding="utf-8")
     if mistake.old not in text:
         raise ValueError(f"{mistake.case}.toml does not hold {mistake.old!r}")
@@ -164,7 +164,7 @@ def _code(text: str) -> str:
 
 
 def _rows(group: str, mistakes: tuple[Mistake, ...]) -> list[str]:
-    """Make the mistakes of a group in the working folder and return its section."""
+    """Make the mistakes of a group in the working folder; return the section of the page."""
     lines = [f"## {group}\n\n| mistake | command | in | instead of | message |\n|---|---|---|---|---|"]
     for mistake in mistakes:
         name = Path(mistake.case).name + ".toml"
@@ -180,7 +180,7 @@ def _rows(group: str, mistakes: tuple[Mistake, ...]) -> list[str]:
 
 
 def table() -> str:
-    """Return the page: every mistake made, run, and its message."""
+    """Return the page with the message of every mistake."""
     here = Path.cwd()
     lines = [HEAD]
     with tempfile.TemporaryDirectory(prefix="statejump-") as folder:
@@ -198,7 +198,7 @@ def table() -> str:
 
 
 def _as_json() -> list[str]:
-    """Failures as JSON: a value, a mechanism, a run in YADE."""
+    """Return failures as JSON: an invalid value, a mechanism, a run in YADE."""
     import statejump as sj
     from statejump.core.errors import to_json
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures and table of docs/validation/partial_slip.md: the eleven cases, each against closed forms and many punches.
+"""Pictures and table of docs/validation/partial_slip.md: eleven cases against closed forms and against many punches.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_partial_slip.py
 """
@@ -25,7 +25,7 @@ PUNCHES = 20000
 
 @dataclass(frozen=True)
 class Case:
-    """A branch between two points (N, T) in units of LOAD, after a path to its first point."""
+    """A branch between two points (N, T) in units of LOAD, after a path to the first point."""
 
     name: str
     path: tuple[tuple[float, float], ...]
@@ -47,17 +47,17 @@ CASES = (
 
 
 def depth_m(load: float) -> float:
-    """Return Hertz's depth under a load in units of LOAD; 0 for none."""
+    """Return the Hertz depth [m] under a load in units of LOAD; 0 for no load."""
     return (max(load, 0.0) * LOAD / (4 / 3 * YOUNG * RADIUS**0.5)) ** (2 / 3)
 
 
 def first_loading_m(load: float, force: float, before: float = 0.0) -> float:
-    """Return the slide of first loading under a load that ends as ``load``: mu kappa (delta - delta_c)."""
+    """Return the slide [m] of a first loading to ``force`` under ``load``: mu kappa (delta - delta_c)."""
     return MU * KAPPA * (depth_m(load) - depth_m(load - (force - before) / MU))
 
 
 def closed_form_m(place: int, path: tuple[tuple[float, float], ...]) -> float | None:
-    """Return the slide at the end of a case; None if the formula is a sum of cases."""
+    """Return the slide [m] at the end of a case; None if the formula is a sum of cases."""
     def masing(change: float) -> float:
         return 2 * first_loading_m(1, change / 2)
 
@@ -67,7 +67,7 @@ def closed_form_m(place: int, path: tuple[tuple[float, float], ...]) -> float | 
         return first_loading_m(1, 0.24) - masing(0.39)
     if place == 2:
         return first_loading_m(1, 0.24) - masing(0.39) + masing(0.33)
-    if place in (3, 6):  # no ring slips: the slope of both paths is dT/dN
+    if place in (3, 6):  # no annulus slips: dT/dN is equal for both paths
         (load, force), (last, end) = path[-2:]
         return (first_loading_m(load, force) if force else 0.0) + (end - force) / (last - load) * KAPPA * (
             depth_m(last) - depth_m(load))
@@ -75,7 +75,7 @@ def closed_form_m(place: int, path: tuple[tuple[float, float], ...]) -> float | 
 
 
 def punches_N(answer: dict[str, np.ndarray]) -> float:
-    """Return the force of many flat punches side by side at the end of a path of depth and slide."""
+    """Return the force [N] of many parallel flat punches at the end of a path of depth and slide."""
     depth, slide = answer["penetration_depth_m"], answer["slide_m"]
     stiffness = 8 * SHEAR * np.sqrt(RADIUS * depth.max())
     x = (np.arange(PUNCHES) + 0.5) * stiffness / PUNCHES

@@ -3,8 +3,8 @@
 
     PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_partial_slip_structures.py [--dem]
 
-With --dem bar, rib and ring run in YADE as well, some twenty minutes; without, the bar's marks and the tables of the
-other two are left out.
+With --dem, bar, rib and ring also run in YADE, for about twenty minutes. Otherwise the DEM points of the bar and the
+tables of rib and ring are omitted.
 """
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from statejump.kinds.truss import generate, solve  # noqa: E402
 from statejump.kinds.truss.generate.document import TABLE1_LENGTH_M  # noqa: E402
 
 PICTURE = Path(__file__).resolve().parents[2] / "docs" / "partial_slip" / "structures.png"
-FRICTION_N = 300.0  # of the bar: a preload that slides as a whole above 20 K or so
+FRICTION_N = 300.0  # friction limit of the bar, whose contact slides as a whole above about 20 K
 INCREMENTS = 200
 RING_CYCLES = 30
 STYLES = {
@@ -46,14 +46,14 @@ def path(document: dict[str, Any], sticking: str, increments: int = INCREMENTS, 
 
 
 def moves_m(found: solve.TrussPath) -> np.ndarray:
-    """Return the displacement of the node that moves most in every cycle [m]."""
+    """Return the displacement [m] over each cycle of the node that moves most in it."""
     moved = np.diff(found.cycle_ends["displacement_m"], axis=0)
     most: np.ndarray = np.linalg.norm(moved, axis=2).max(axis=1)
     return most
 
 
 def bar(change_K: float, **more: Any) -> dict[str, Any]:
-    """Return Table 1's bar on a slider, without stops."""
+    """Return the document of Table 1's bar on a slider, without stops."""
     return generate.chain(1, friction_force_N=FRICTION_N, temperature_change_K=change_K, **more)
 
 
@@ -67,8 +67,8 @@ def constants() -> tuple[float, float, float]:
 
 
 def closed_form_m(change_K: float) -> float:
-    """Return the jump of the bar: Cattaneo's loading and Masing's unloading, both in equilibrium with the bar, whose
-    stiffness E A/l is that of its length."""
+    """Return the jump of the bar [m] from Cattaneo's loading and Masing's unloading, both in equilibrium with the bar,
+    whose stiffness E A/l follows its length."""
     stiffness, contact, expansion = constants()
     gross, strain = 1.5 * FRICTION_N / contact, expansion / TABLE1_LENGTH_M * change_K
 
@@ -84,14 +84,14 @@ def closed_form_m(change_K: float) -> float:
 
 
 def asymptote_m(change_K: float) -> float:
-    """Return the jump of the bar for small amplitudes, k² s²/(12 f (k + K)), s the slide of the spring."""
+    """Return the jump of the bar for small amplitudes [m], k² s²/(12 f (k + K)), with s the slide of the spring."""
     stiffness, contact, expansion = constants()
     slide = expansion * change_K * stiffness / (contact + stiffness)
     return contact**2 * slide**2 / (12 * FRICTION_N * (contact + stiffness))
 
 
 def dem_m(change_K: float) -> float:
-    """Return the jump of the bar in YADE: over one cycle of 0.5 s, against the static start."""
+    """Return the jump of the bar in YADE [m], over one cycle of 0.5 s, relative to the static start."""
     made = bar(change_K, period_s=0.5)
     made |= {"reduced": {"sticking": "partial_slip"}, "dem": {"friction_law": "mindlin_deresiewicz"}}
     history = sj.load(made).dem()["displacement_m"]
@@ -116,7 +116,7 @@ def beside_the_dem(name: str, runs: Sequence[tuple[dict[str, Any], dict[str, flo
 
 
 def rib(change_K: float, **more: Any) -> dict[str, Any]:
-    """Return the rib that rolls by rigid theory."""
+    """Return the document of the rib whose joint rolls in rigid theory."""
     return generate.umbrella(1, friction_coefficient=0.45, temperature_change_K=change_K, **more)
 
 
@@ -190,7 +190,7 @@ def main() -> None:
 
 
 def told(name: str, changes_K: np.ndarray, jumps_m: np.ndarray) -> None:
-    """Print the power of the amplitude with which a jump grows at both ends of its range."""
+    """Print the exponents with which a jump grows with the amplitude at both ends of its range."""
     slopes = np.diff(np.log(jumps_m)) / np.diff(np.log(changes_K))
     print(f"\n{name}: jump grows with the power {slopes[0]:.3f} of the amplitude at {changes_K[0]:.3g} K, "
           f"{slopes[-1]:.3f} at {changes_K[-1]:.3g} K")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Table of docs/howto/surface.md: repeatability of an umbrella of eight ribs, by the days of its history.
+"""Table of docs/howto/surface.md: repeatability of an umbrella of eight ribs, by the number of days in its history.
 
     PYTHONPATH=build/python /usr/bin/python3 studies/docs/make_repeatability.py [--samples N]
 """
@@ -12,7 +12,7 @@ import numpy as np
 import statejump as sj
 
 CASE, OUTPUT = "trusses/umbrella_8", "repeat:displacement_m[B1]"
-DAYS = {  # peaks of the temperature change, which is back at 0 between them [K]
+DAYS = {  # peak temperature changes [K]; between peaks the change is 0
     "hot days, one like the other": (100, 100, 100, 100),
     "hot days, warm days": (100, 60, 100, 60),
     "hot days, cold days": (100, -80, 100, -80),
@@ -24,7 +24,7 @@ TOLERANCES = {  # as made: every joint on its own
 
 
 def days(peaks_K: tuple[int, ...]) -> sj.Case:
-    """Return the umbrella with a program of such days, one second each."""
+    """Return the umbrella with a program of days with these peaks, one second each."""
     changes = [0, *(change for peak in peaks_K for change in (peak, 0))]
     return sj.load(CASE).changed({
         "thermal.shape": "table", "thermal.temperature_change_max_K": None, "thermal.period_s": None,

@@ -15,7 +15,7 @@ from statejump.core import figures
 from statejump.kinds.truss.trace import COLUMNS
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-INCREMENTS = (19, 23)  # of 2 K: the joint slips at 42 K
+INCREMENTS = (19, 23)  # increments of 2 K each; the joint slips at 42 K
 STEPS = {"done": ("o", "#009E73", "step done"), "event_inside": ("x", "#D55E00", "step rejected: event inside")}
 DECISIONS = {
     "step": ("o", "#0072B2", "Newton step"),

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """``statejump figures``, ``slow``, ``hold`` and ``energy``: the studies of the paper's umbrella rib; ``convergence``:
-that of its spring-slider. The command finds them where the repository is; ``python3 -m studies.paper figures``
-needs no more than the package."""
+that of its spring-slider. The command finds them in the repository; ``python3 -m studies.paper figures`` needs only the
+package."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
@@ -29,12 +29,12 @@ CaseType = TypeVar("CaseType", bound=Case)
 
 
 def _case_or(shipped: str) -> Callable[[Command], Command]:
-    """Return the argument CASE with a case that comes with the program as default."""
+    """Return the argument CASE whose default is a shipped case."""
     return click.argument("case_file", metavar="[CASE]", default=f"cases/{shipped}.toml", type=CaseFile())
 
 
 def _case(kind: type[CaseType], command: str, case_file: Path) -> CaseType:
-    """Load a case. :raises NotAllowed: it is of another kind"""
+    """Load a case. :raises NotAllowed: the case is of another kind"""
     case = loaded(case_file)
     if not isinstance(case, kind):
         raise NotAllowed("case.kind", case.kind, code="command_not_for_kind", file=case.origin.file, command=command,
@@ -57,7 +57,7 @@ def _print(done: Any, console: Console) -> None:
 
 @contextmanager
 def _part(console: Console, text: str, runs: int) -> Iterator[Callable[[], None]]:
-    """Yield what to call after each run: moves a bar on a terminal; elsewhere one line per part."""
+    """Yield a function to call after each run: it moves a bar on a terminal, and elsewhere prints one line per part."""
     if not console.is_terminal:
         console.print(f"{text}: {runs} runs")
         yield lambda: None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shared by the studies of the paper: refusal of a case, and the command on each page."""
+"""Code shared by the studies of the paper: refusal of a case, and the command on each page."""
 from __future__ import annotations
 
 import os
@@ -12,7 +12,7 @@ from statejump.core.errors import NotAllowed
 
 
 def refused(case: Case, key: str, value: Any, cause: str) -> NotAllowed:
-    """Return the reason why a study does not run a case."""
+    """Return the error with the reason why a study does not support a case."""
     return NotAllowed(key, value, cause, file=case.origin.file, case=case.name)
 
 

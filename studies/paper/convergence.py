@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Convergence of the DEM to the reduced model: slower cycles, shorter time steps."""
+"""Convergence of the DEM to the reduced model for slower cycles and shorter time steps."""
 from __future__ import annotations
 
 import math
@@ -73,12 +73,12 @@ class Convergence:
 
 
 def _variant(case: SpringSliderCase, factor: float, **settings: Any) -> SpringSliderCase:
-    """Return the case with a cycle of the given relative duration, at its own fraction of the stable step."""
+    """Return the case with its cycle duration times ``factor``, and the time step as a fraction of the stable step."""
     changes = {f"dem.{key}": value for key, value in settings.items()} | {"dem.time_step_s": None}
     times = case.thermal.table_time_s
     if times is None:
         changes["thermal.period_s"] = case.period_s * factor
-    else:  # it lasts as long as its last time says
+    else:  # the duration of a table is its last time
         period = None if case.ending is None else case.period_s * factor
         changes |= {"thermal.period_s": period, "thermal.table_time_s": [time * factor for time in times]}
     changed = case.changed(changes)
@@ -93,7 +93,7 @@ def _further(values: Sequence[float], decades: int) -> list[float]:
 
 
 def variants(case: SpringSliderCase, decades: int = 0) -> tuple[list[SpringSliderCase], list[SpringSliderCase]]:
-    """Return cases to run: each period at the case's own step, and each step on a fast cycle."""
+    """Return the cases to run: each period with the time step of the case, and each step on a fast cycle."""
     return (
         [_variant(case, factor) for factor in _further(PERIOD_FACTORS, decades)],
         [_variant(case, STEP_PERIOD_FACTOR, samples_per_cycle=STEP_SAMPLES, time_step_fraction=fraction)
@@ -125,7 +125,7 @@ def compared(
     case: SpringSliderCase, cases: tuple[Sequence[SpringSliderCase], Sequence[SpringSliderCase]],
     runs: tuple[Sequence[Run], Sequence[Run]],
 ) -> Convergence:
-    """Return the errors of the runs of :func:`variants`; the last one has the finest time step."""
+    """Return the errors of the runs of :func:`variants`; the last run has the smallest time step."""
     slower = tuple(_row(variant, run) for variant, run in zip(cases[0], runs[0], strict=True))
     finest = runs[1][-1]["displacement_m"]
     finer = []
@@ -165,8 +165,8 @@ def _row(case: SpringSliderCase, run: Run) -> Row:
 
 
 def explanation(found: Convergence) -> list[str]:
-    """Return the explanation of the numbers as lines: errors that fall with slower cycles and shorter steps, and those
-    that stay."""
+    """Return lines that explain the numbers: errors that decrease with slower cycles and shorter steps, and remaining
+    errors."""
     return ["First the duration of the cycle, then the time step (on a fast cycle, where it matters most).", "",
             *_of_cycles(found.slower), *_of_steps(found), "", *_what_stays(found)]
 

@@ -87,7 +87,7 @@ class Variant:
 
 
 def variants(case: UmbrellaCase) -> list[Variant]:
-    """Return the case itself, and a variant without friction and damping whose links vibrate."""
+    """Return the case and a variant without friction and damping whose links vibrate."""
     if case.thermal.shape == "table":
         raise refused(case, "thermal.shape", "table", "'statejump energy' shortens the period")
     if case.thermal.temperature_change_max_K == 0:
@@ -117,13 +117,13 @@ def variants(case: UmbrellaCase) -> list[Variant]:
 
 
 def with_steps(case: UmbrellaCase, steps_per_second: float) -> UmbrellaCase:
-    """Return the case with steps in both models."""
+    """Return the case with this number of steps per second in both models."""
     steps = SAMPLES * max(1, round(case.period_s * steps_per_second / SAMPLES))
     return with_values(case, {"reduced.steps_per_cycle": steps, "dem.steps_per_cycle": steps})
 
 
 def residue_J(columns: Columns | Run, sample: int = -1) -> float:
-    """Return the residue of the account [J] from the start to a sample, by default the last."""
+    """Return the energy residue [J] from the start to a sample, by default the last one."""
     end = sample + 1 or None
     return energy_residue_J({name: columns[name][:end] for name in (SUPPLIED, *STORED, *DISSIPATED)}, (SUPPLIED,),
                             STORED, DISSIPATED)
@@ -152,7 +152,7 @@ def rounding_J(case: UmbrellaCase) -> float:
 
 
 def corner_W(case: UmbrellaCase) -> float:
-    """Dashpots' power [W] right after a triangle's corner, c (2 dl/dt)^2 of both links."""
+    """Return the power of the dashpots [W] right after a corner of a triangle, c (2 dl/dt)^2 of both links."""
     if case.thermal.shape != "triangle":
         return 0.0
     rate = abs(float(case.thermal_program().temperature_rate(0.0)))
@@ -167,7 +167,7 @@ def corner_W(case: UmbrellaCase) -> float:
 
 
 def with_orders(rows: Sequence[Row], floor: float) -> list[Row]:
-    """Add the orders to rows of one model at one instant, from coarse to fine."""
+    """Add the orders of convergence to rows of one model at one instant, from coarse to fine."""
     above = [row for row in rows if abs(row.residue_over_thermal_work) > floor]
     fit = None
     if len(above) > 1:
@@ -181,7 +181,7 @@ def with_orders(rows: Sequence[Row], floor: float) -> list[Row]:
         order = None
         if result and row in above and result[-1].residue_J:
             octaves = math.log2(row.steps_per_second / result[-1].steps_per_second)
-            if octaves > 0.2:  # an adaptive run may take as many steps for another tolerance
+            if octaves > 0.2:  # an adaptive run may have the same number of steps for two tolerances
                 order = math.log2(abs(result[-1].residue_J / row.residue_J)) / octaves
         result.append(replace(row, order=order, fit=fit))
     return result
@@ -286,7 +286,7 @@ def figure(case: UmbrellaCase, results: Sequence[Result], folder: Path) -> list[
         grid[0, 0].set_xlim(9e3, 2.2e6)
         for line, result in zip(grid, results):
             for panel, instant in zip(line, names):
-                # Before contact nothing happens if the links follow their expansion.
+                # Before contact there is no residue if the links follow their expansion.
                 mine = [row for row in result.rows if row.instant == instant]
                 panel.set_visible(any(abs(row.residue_over_thermal_work) > result.floor for row in mine))
                 if not panel.get_visible():
@@ -326,7 +326,7 @@ def _draw(panel: Axes, result: Result, instant: str) -> None:
 def write(case: UmbrellaCase, results: Sequence[Result], command: str, folder: Path) -> list[Path]:
     """Write ``energy.csv`` and ``energy.md``.
 
-    :param command: that makes them
+    :param command: command that writes these files
     """
     table = write_rows(folder / "energy.csv", [asdict(row) for result in results for row in result.rows],
                        [field.name for field in fields(Row)])
@@ -377,8 +377,8 @@ class Accounts:
 def make(case: UmbrellaCase, results: Results, on_progress: OnProgress) -> Accounts:
     """Run all variants of a case and write figure and tables.
 
-    :param results: gets a folder of the case's name
-    :param on_progress: takes the finished share
+    :param results: root of the results; gets a folder named after the case
+    :param on_progress: receives the finished fraction, 0 to 1
     :raises NotAllowed: the study does not fit the case
     """
     chosen = variants(case)

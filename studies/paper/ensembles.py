@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ensembles of the rib: the same case from starts within a small disc, in both models, on all cores."""
+"""Ensembles of the rib on all cores: the same case from initial positions in a small disc, in both models."""
 from __future__ import annotations
 
 import os
@@ -19,8 +19,8 @@ T, R = TypeVar("T"), TypeVar("R")
 
 
 def start_offsets(case: UmbrellaCase, count: int) -> Iterator[np.ndarray]:
-    """Yield positions of the journal near the start (2) [m], evenly spread over a disc. They depend on the seed alone,
-    and each is independent of their number."""
+    """Yield positions of the journal near the start (2) [m], evenly spread over a disc. They depend only on the seed;
+    the first positions are the same for any count."""
     for index in range(count):
         generator = np.random.default_rng([case.ensemble.seed, index])
         radius = case.ensemble.start_spread_m * np.sqrt(generator.random())
@@ -44,7 +44,7 @@ class EnsembleOfRuns:
 
     @property
     def range_rad(self) -> np.ndarray:
-        """Largest less smallest θ2 of every run (runs)."""
+        """Largest minus smallest θ2 of every run (runs)."""
         return np.ptp(self.theta2_rad, axis=1)
 
     @property
@@ -54,7 +54,7 @@ class EnsembleOfRuns:
 
 
 def for_ensemble(case: UmbrellaCase) -> UmbrellaCase:
-    """Return the case with the steps of its ensemble in both models."""
+    """Return the case with the time steps of its ensemble in both models."""
     return with_values(
         case,
         {
@@ -76,9 +76,9 @@ def gather(runs: Sequence[Columns | Run]) -> EnsembleOfRuns:
 
 
 def _at_once(items: Iterable[T], run: Callable[[T], R], progress: Callable[[], None]) -> list[R]:
-    """Run each item, as many at a time as there are cores; results in the given order, whatever ends first.
+    """Run each item, as many at a time as there are cores; results are in the given order.
 
-    :param progress: called after each
+    :param progress: called after each item
     """
 
     def one(item: T) -> R:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A loaded joint left alone at constant temperature, by two friction laws: ``statejump hold``."""
+"""A loaded joint at constant temperature with two friction laws: ``statejump hold``."""
 from __future__ import annotations
 
 import math
@@ -26,13 +26,12 @@ from studies.paper import ensembles
 
 PERIOD_s = 10.0
 STEPS_PER_SECOND = (50_000, 100_000, 200_000)
-SHOWN = 100_000  # of these, in the figure and in hold.csv
+SHOWN = 100_000  # number of steps per second in the figure and in hold.csv
 SAMPLES_PER_SECOND = 2000
 LAWS = ("mindlin", "ambrosio")
-# The creep rate is measured after the start, in which the joint gathers speed, and before the
-# contact angle has changed much.
+# Interval for the creep rate [s]: after the initial acceleration, before the contact angle has changed much.
 RATE_FROM_s, RATE_TO_s = 2e-3, 12e-3
-SETTLED_s = 0.1  # the DEM's fresh contact has found its friction by then
+SETTLED_s = 0.1  # time after which the fresh contact of the DEM has reached its friction [s]
 ROWS = 160  # of hold.csv, logarithmic in time
 
 EXPLANATION = """\
@@ -52,7 +51,7 @@ The torsion spring presses the joint; its contact sits aside of the line of the 
 
 @dataclass(frozen=True)
 class Hold:
-    """One run, reduced to what is asked of it."""
+    """One run, reduced to the quantities of this study."""
 
     law: str
     model: str
@@ -74,14 +73,14 @@ class Hold:
 
     @property
     def creep_rate_m_per_s(self) -> float:
-        """Mean rate of slide at the start, without its sign."""
+        """Mean absolute rate of slide at the start."""
         first, last = np.searchsorted(self.time_s, np.array([RATE_FROM_s, RATE_TO_s]) - 1e-9)
         return float(abs(self.slide_m[last] - self.slide_m[first]) / (self.time_s[last] - self.time_s[first]))
 
 
 def held(case: UmbrellaCase, period_s: float = PERIOD_s) -> UmbrellaCase:
-    """Return the case at constant temperature; the contact at half the friction angle unless it says
-    otherwise. :raises NotAllowed: nothing loads its joint"""
+    """Return the case at constant temperature. The contact is at half the friction angle unless the case sets it.
+    :raises NotAllowed: the joint is unloaded"""
     if case.start.mode != "loaded":
         raise refused(case, "start.mode", case.start.mode,
                       "'statejump hold' needs 'loaded', with a biased torsion spring")
@@ -102,7 +101,7 @@ def held(case: UmbrellaCase, period_s: float = PERIOD_s) -> UmbrellaCase:
 
 
 def by_law(case: UmbrellaCase, law: str, steps_per_second: int) -> UmbrellaCase:
-    """Return the held case with a friction law and steps."""
+    """Return the held case with a friction law and a number of steps."""
     samples = case.output.samples_per_cycle
     steps = samples * math.ceil(case.period_s * steps_per_second / samples)
     return with_values(
@@ -124,7 +123,7 @@ def _measure(case: UmbrellaCase, name: str, steps_per_second: int, history: Run)
 
 
 def _arc(case: UmbrellaCase, angle: np.ndarray, theta2: np.ndarray, theta4: np.ndarray) -> np.ndarray:
-    """Slide from the first entry [m]: differences first, so that they are not rounded away."""
+    """Return the slide since the first entry [m]. Differences are formed first, to avoid rounding."""
     joint = case.joint
     return (
         joint.radial_clearance_m * (angle - angle[0])
@@ -150,7 +149,7 @@ def run_dem(cases: Sequence[tuple[str, int]], case: UmbrellaCase, finished: Call
 
 @dataclass(frozen=True)
 class Prediction:
-    """Of the creep by ``ambrosio`` and of the first slide of a fresh ``mindlin`` contact."""
+    """Predicted creep with ``ambrosio`` and first slide of a fresh contact with ``mindlin``."""
 
     time_s: np.ndarray
     contact_angle_rad: np.ndarray
@@ -159,13 +158,13 @@ class Prediction:
 
     @property
     def creep_rate_m_per_s(self) -> float:
-        """Rate over the interval in which the runs' is measured, without its sign."""
+        """Absolute rate over the interval in which that of the runs is measured."""
         first, last = np.interp([RATE_FROM_s, RATE_TO_s], self.time_s, np.abs(self.slide_m))
         return float((last - first) / (RATE_TO_s - RATE_FROM_s))
 
 
 def predict(case: UmbrellaCase) -> Prediction:
-    """Creep of massless rigid links: the angle as independent variable, time by quadrature."""
+    """Predict the creep of massless rigid links: the angle is the independent variable, time follows by quadrature."""
     linkage, joint = model.linkage(case), case.joint
     start = case.start.contact_angle_rad
     state = _engine.loaded_state(linkage, start)
@@ -229,7 +228,7 @@ def figure(case: UmbrellaCase, runs: Sequence[Hold], creep: Prediction, folder: 
 
 
 def creep_rate_at_start(case: UmbrellaCase) -> float:
-    """v0 + (v1 - v0) T/(mu F_N) [m/s] at the starting angle."""
+    """Return v0 + (v1 - v0) T/(mu F_N) [m/s] at the initial angle."""
     joint = case.joint
     load = math.tan(abs(case.start.contact_angle_rad)) / joint.friction_coefficient
     return joint.friction_v0_m_per_s + (joint.friction_v1_m_per_s - joint.friction_v0_m_per_s) * load
@@ -238,7 +237,7 @@ def creep_rate_at_start(case: UmbrellaCase) -> float:
 def write(case: UmbrellaCase, runs: Sequence[Hold], creep: Prediction, command: str, folder: Path) -> list[Path]:
     """Write ``hold.csv`` and ``hold.md``.
 
-    :param command: that makes them
+    :param command: command that writes these files
     """
     shown = _shown(runs)
     times = shown[0].time_s
@@ -278,7 +277,7 @@ def write(case: UmbrellaCase, runs: Sequence[Hold], creep: Prediction, command: 
 
 @dataclass(frozen=True)
 class Held:
-    """The runs of a case left alone, and the files that were written."""
+    """Runs of a joint held at constant temperature, and the written files."""
 
     case: UmbrellaCase
     runs: Sequence[Hold]
@@ -294,12 +293,12 @@ class Held:
 
 
 def make(case: UmbrellaCase, results: Results, on_progress: OnProgress) -> Held:
-    """Run a case left alone in both models, by both laws, and write figure and tables.
+    """Run a case at constant temperature in both models with both laws; write figure and tables.
 
-    :param results: gets a folder of the case's name
-    :param on_progress: takes the finished share
-    :raises NotAllowed: nothing loads the joint of the case
-    :raises FailedRun: the joint cannot be loaded as the case wants it
+    :param results: root of the results; gets a folder named after the case
+    :param on_progress: receives the finished fraction, 0 to 1
+    :raises NotAllowed: the joint of the case is unloaded
+    :raises FailedRun: the initial load of the case is impossible
     """
     command, original, case = made_by("hold", case), case, held(case)
     with engine("the joint cannot be loaded", case=case.name):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The jump of both dynamics against the quasi-static path, ever slower cycles: ``statejump slow``."""
+"""Jump of both dynamic models compared with the quasi-static path, for slower and slower cycles: ``statejump slow``."""
 from __future__ import annotations
 
 import math
@@ -25,7 +25,7 @@ SAMPLES = 100  # only the ends of the histories are used
 REDUCED_PERIODS_s = (1, 2, 4, 8, 16, 32, 64, 128)
 DEM_PERIODS_s = (1, 2, 4, 8, 16, 32)
 DEM_PERIODS_OF_VARIANTS_s = (1, 2, 4, 8, 16)
-RAISED = 10  # factor of the variants on pin damping and spring
+RAISED = 10  # factor on pin damping and spring in the variants
 
 EXPLANATION = """\
 `difference` is the jump less that of the quasi-static path with elastic links, Hertz's contact and
@@ -55,7 +55,7 @@ Lags = tuple[float | None, float | None]  # of theta2 and theta4 [rad]
 
 @dataclass(frozen=True)
 class Block:
-    """One variant of the case, and what it tends to."""
+    """One variant of the case and the limit of its jumps."""
 
     name: str
     title: str
@@ -85,7 +85,7 @@ class Row:
 
 
 def at_period(case: UmbrellaCase, period_s: float) -> UmbrellaCase:
-    """Return the case with another period, the same steps per second in both models."""
+    """Return the case with another period and the same steps per second in both models."""
     steps = SAMPLES * math.ceil(period_s * STEPS_PER_SECOND / SAMPLES)
     return with_values(
         case,
@@ -106,7 +106,7 @@ def jumps(run: Run) -> tuple[float, float]:
 
 
 def _parts(case: UmbrellaCase) -> bool:
-    """Whether the program uses up the play, so that an unbiased joint is loaded and parts again."""
+    """Return whether the program closes the clearance, so that an unbiased joint is loaded and opens again."""
     if case.link_ab.thermal_expansion_per_K != case.link_bc.thermal_expansion_per_K:
         return False
     return model.linkage(case).first_contact_temperature_change() < case.temperature_range_K[1]
@@ -190,7 +190,7 @@ def _rows_of(block: Block, name: str, periods: Sequence[float], found: Sequence[
 def study(
     chosen: Sequence[Block], on_progress: OnProgress, reduced_periods_s: Sequence[float] = REDUCED_PERIODS_s
 ) -> list[Row]:
-    """Run all blocks in both models; the longest DEM runs first, as many at a time as cores."""
+    """Run all blocks in both models. The longest DEM runs start first, one per core."""
     pairs = [(block, period) for block in chosen for period in block.dem_periods_s]
     pairs.sort(key=lambda pair: -pair[1])
     total = sum(len(block.dem_periods_s) for block in chosen) + len(chosen) * len(reduced_periods_s)
@@ -211,7 +211,7 @@ def study(
 
 
 def figure(case: UmbrellaCase, chosen: Sequence[Block], rows: Sequence[Row], folder: Path) -> list[Path]:
-    """Write ``slow.png`` and ``slow.svg``: distance from the quasi-static jump against the period."""
+    """Write ``slow.png`` and ``slow.svg``: distance from the quasi-static jump over the period."""
     with style():
         drawing, grid = panels(2, 2, (9.5, 7.4), sharex=True, squeeze=False)
         places = list(grid.flat)
@@ -252,7 +252,7 @@ def write(
 ) -> list[Path]:
     """Write ``slow.csv`` and ``slow.md``.
 
-    :param command: that makes them
+    :param command: command that writes these files
     """
     table = write_rows(folder / "slow.csv", [asdict(row) for row in rows], [field.name for field in fields(Row)])
     lines = [
@@ -285,7 +285,7 @@ def _cells(row: Row) -> list[str]:
 
 
 def closing(block: Block, rows: Sequence[Row]) -> str:
-    """Return one sentence on the largest distance between the models and the slowest run."""
+    """Return a sentence with the largest distance between the models and the slowest run."""
     mine = {(row.model, row.period_s): row for row in rows if row.block == block.name}
     both = [period for name, period in mine if name == "DEM"]
     apart = max(
@@ -315,12 +315,12 @@ class Slow:
 
 
 def make(case: UmbrellaCase, results: Results, on_progress: OnProgress) -> Slow:
-    """Run all variants of a case in both models, ever slower, and write figure and tables.
+    """Run all variants of a case in both models with slower and slower cycles; write figure and tables.
 
-    :param results: gets a folder of the case's name
-    :param on_progress: takes the finished share
+    :param results: root of the results; gets a folder named after the case
+    :param on_progress: receives the finished fraction, 0 to 1
     :raises NotAllowed: the study does not fit the case
-    :raises FailedRun: statics leaves the path open
+    :raises FailedRun: statics does not determine the path
     """
     chosen = blocks(case)
     with results.folder(case.name, case) as folder:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What ever slower cycles tend to, and by how much a finite rate keeps them off it."""
+"""Limit of the jump for slow cycles, and the predicted deviation at a finite rate."""
 from __future__ import annotations
 
 import math
@@ -19,7 +19,7 @@ ANGLES = ("theta2", "theta4")
 
 
 def quasi_static(case: UmbrellaCase) -> _engine.ElasticLoop:
-    """Path that slow dynamics tends to. :raises FailedRun: statics leaves it open"""
+    """Return the path that is the limit of slow dynamics. :raises FailedRun: statics does not determine the path"""
     with engine("there is no quasi-static path", case=case.name):
         loop = _engine.elastic_loop(
             model.linkage(case), case.thermal_program(), case.start.contact_angle_rad, LOOP_SAMPLES,
@@ -46,9 +46,9 @@ def _cross(a: np.ndarray, b: np.ndarray) -> float:
 def equilibrium(
     case: UmbrellaCase, guess: dict[str, Any], couples_N_m: tuple[float, float]
 ) -> tuple[float, float]:
-    """theta2 and theta4 [rad] of the sliding joint at ΔT = 0 with a couple on each link.
+    """Return theta2 and theta4 [rad] of the slipping joint at ΔT = 0, with a couple on each link.
 
-    :param guess: point of the elastic loop nearby; its F_t/F_N is kept
+    :param guess: nearby point of the elastic loop; its F_t/F_N is kept
     """
     frame = np.array([case.frame.length_m, 0.0])
     links = (case.link_ab, case.link_bc)
@@ -68,7 +68,7 @@ def equilibrium(
     normal /= np.linalg.norm(normal)
     normal_force, tangential_force = guess["normal_force_N"], guess["tangential_force_N"]
     start_force = normal_force * normal - tangential_force * np.array([-normal[1], normal[0]])
-    angle = math.atan2(tangential_force, normal_force)  # from the force to the normal, kept in slip
+    angle = math.atan2(tangential_force, normal_force)  # angle from force to normal, constant during slip
     turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
 
     def residual(x: np.ndarray) -> np.ndarray:
@@ -100,9 +100,10 @@ def equilibrium(
 
 
 def lag(case: UmbrellaCase, loop: _engine.ElasticLoop) -> tuple[float | None, float | None]:
-    """Predicted difference of both jumps [rad]: the pins' couples at the end of the program.
+    """Return the predicted deviation of both jumps [rad], due to the damping couples of the pins at the end of the
+    program.
 
-    None if the joint does not slide there: what it then keeps is decided earlier.
+    None if the joint does not slip there, because an earlier state then determines the jump.
     """
     last = loop.events[-1]
     path = loop.columns()
@@ -118,12 +119,12 @@ def lag(case: UmbrellaCase, loop: _engine.ElasticLoop) -> tuple[float | None, fl
 
 
 def lag_at_parting(case: UmbrellaCase) -> tuple[float, float]:
-    """Predicted false jump [rad] of a frictionless joint whose contact force vanishes as it slides."""
+    """Return the predicted false jump [rad] of a frictionless joint whose contact force vanishes during slip."""
     linkage = model.linkage(case)
     parting = linkage.first_contact_temperature_change()
 
     def slope(change: float, angle: float) -> dict[str, float]:
-        """Half the difference of the points at ± the steps."""
+        """Return central differences from the points at ± the steps."""
         up = _engine.joint_point(linkage, parting + change, -1, angle)
         down = _engine.joint_point(linkage, parting - change, -1, -angle)
         return {k: (up[k] - down[k]) / 2 for k in ("theta2_rad", "theta4_rad", "spring_moment_N_m")}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What makes the state jump of the paper's rib smaller, its conclusion (c): the kind ``umbrella`` with a study of its
-control. The command takes it as a kind of one's own::
+"""Control of the state jump of the paper's rib (conclusion c): the kind ``umbrella`` extended by a control study. The
+command uses it as a user's kind::
 
     STATEJUMP_KINDS=studies.rib_control:KIND statejump control cases/umbrella_bias.toml
 """

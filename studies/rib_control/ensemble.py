@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Control of the state jump of a rib whose joint is free in its play: statistics of an ensemble."""
+"""Control of the state jump of a rib whose joint moves freely in its clearance: statistics of an ensemble."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
@@ -20,7 +20,7 @@ from studies.rib_control.parameters import AREA, CLEARANCE, DAMPING, FRICTION, S
 QUANTILE = 0.95
 CONFIDENCE = 0.95
 BISECTIONS = 5  # finer than the scatter of a quantile
-CHECK = 5  # a spring is checked on so many times more runs, from other starts
+CHECK = 5  # factor on the number of runs with which a spring is checked, from other initial states
 
 ENSEMBLE_RESULTS = {
     "jump_mean_rad": "mean |jump| [mrad]",
@@ -42,15 +42,15 @@ LINES: dict[str, Line] = {
 
 
 def quantile(values: np.ndarray) -> float:
-    """95 % quantile: the smallest of the values that at least 95 % do not exceed."""
+    """Return the 95 % quantile: the smallest value that at least 95 % of the values do not exceed."""
     return float(np.quantile(np.abs(values), QUANTILE, method="higher"))
 
 
 def upper_bound(values: np.ndarray) -> float:
-    """Value below which the 95 % quantile lies with 95 % confidence, whatever the distribution.
+    """Return an upper bound of the 95 % quantile with 95 % confidence, for any distribution.
 
-    It is the r-th of n sorted values, with the smallest r for which at most r − 1 of n values are
-    below the quantile with that probability; the largest value if n < 59 are too few.
+    It is the r-th of n sorted values, with the smallest r such that, with this probability, at most r − 1 of n values
+    are below the quantile; for n < 59 it is the largest value.
     """
     count = len(values)
     logarithms = [
@@ -64,9 +64,9 @@ def upper_bound(values: np.ndarray) -> float:
 def ensemble_measure(
     case: UmbrellaCase, runs: int, progress: Callable[[], None] = lambda: None
 ) -> dict[str, float]:
-    """Mean, 95 % quantile and its bound of |jump| and of the largest |deflection| of θ2 [rad].
+    """Return mean, 95 % quantile and its upper bound of |jump| and of the largest |deflection| of θ2 [rad].
 
-    The starts depend on the case's seed alone: the same numbers every time.
+    The initial states depend only on the seed of the case, so the result is reproducible.
     """
     together = ensembles.ensemble(case, runs, progress)
     jump, deflection = np.abs(together.jump_rad), np.max(np.abs(together.deflection_rad), axis=1)
@@ -83,10 +83,10 @@ def ensemble_measure(
 
 
 def static_deflection_rad(case: UmbrellaCase) -> float:
-    """Largest |θ2 − θ2(0)| that the torsion spring asks for in statics, rigid links, contact on AC.
+    """Return the largest static |θ2 − θ2(0)| [rad] under the torsion spring, for rigid links and contact on AC.
 
-    The centres of the joint are d apart, so the triangle of the links closes on a base |AC| − d: on
-    |AC| + c when the free flare angle asks for more, on |AC| − c when for less.
+    The centres of the joint are d apart, so the links form a triangle with base |AC| − d: |AC| + c if the free flare
+    angle is larger, |AC| − c if it is smaller.
     """
     largest, frame = 0.0, case.frame.length_m
     for change in case.temperature_range_K:
@@ -103,7 +103,7 @@ def static_deflection_rad(case: UmbrellaCase) -> float:
 
 
 class _Ensembles:
-    """Ensemble measures of changed cases, each computed once, with progress."""
+    """Ensemble measures of changed cases. Each is computed once, with progress."""
 
     def __init__(self, case: UmbrellaCase, runs: int, on_progress: OnProgress) -> None:
         self.case, self.runs = case, runs
@@ -111,13 +111,13 @@ class _Ensembles:
         self.expected, self.done, self.on_progress = 1, 0, on_progress
 
     def check(self, values: dict[str, Any]) -> dict[str, float]:
-        """Measure on a larger ensemble from other starts. :raises StatejumpError: a run failed"""
+        """Return the measures of a larger ensemble from other initial states. :raises StatejumpError: a run failed"""
         return self({**values, "ensemble.seed": self.case.ensemble.seed + 1}, CHECK * self.runs)
 
     def __call__(self, values: dict[str, Any], runs: int | None = None) -> dict[str, float]:
         """:raises StatejumpError: a run failed"""
         runs = runs or self.runs
-        # A change to the own value is no change: the case itself is run once.
+        # A change to the value of the case is no change, so the case is run once.
         real = {
             path: value for path, value in values.items()
             if self.case[path] != value
@@ -135,7 +135,7 @@ class _Ensembles:
 def _ensemble_plan(case: UmbrellaCase) -> list[tuple[Any, ...]]:
     joint, area = case.joint, case.link_ab.cross_section_area_m2
     friction, clearance = joint.friction_coefficient, joint.radial_clearance_m
-    # A link turned against its own axial stiffness: the largest torsion stiffness of the rib.
+    # A link rotated against its own axial stiffness gives the largest torsion stiffness of the rib.
     decade = floor(log10(case.link_ab.young_modulus_Pa * area * case.link_ab.stress_free_length_m))
     stiffness, damping = case.torsion_spring.stiffness_N_m_per_rad, case.damping.axial_damping_ratio
     springs = sorted({0.0, stiffness, *(10.0 ** (decade - 6 + half / 2) for half in range(11))})
@@ -154,7 +154,7 @@ def _ensemble_plan(case: UmbrellaCase) -> list[tuple[Any, ...]]:
 
 
 def _jump_quantile_rad(row: Row) -> float:
-    """Return the 95 % quantile of |jump|; of a row that could not be run it is infinite."""
+    """Return the 95 % quantile of |jump|, infinite for a row that failed."""
     found = row.results.get("jump_quantile_rad")
     return np.inf if found is None else found
 
@@ -162,10 +162,10 @@ def _jump_quantile_rad(row: Row) -> float:
 def study(
     case: UmbrellaCase, wanted: float | None, runs: int, with_dem: bool, on_progress: OnProgress
 ) -> Study:
-    """Study a joint that is free in its play."""
+    """Study a joint that moves freely in its clearance."""
     plan = _ensemble_plan(case)
     measured = _Ensembles(case, runs, (lambda part: on_progress(0.7 * part)) if with_dem else on_progress)
-    # Guessed: how many springs are checked shows only as they pass.
+    # Estimate, because the number of checked springs is known only at the end.
     measured.expected = sum(len(entry[5]) - 1 for entry in plan) + 1 + (10 + BISECTIONS) * CHECK
     now = measured({})
     if wanted is None and now["jump_quantile_rad"] > 0:
@@ -210,21 +210,21 @@ def study(
 
 @dataclass(frozen=True)
 class SpringFound:
-    """Smallest spring that passes on a fixed ensemble."""
+    """Smallest spring that passes on a given ensemble."""
 
     stiffness: float
-    below: float | None  # a spring just below it that fails; None: it is the smallest scanned
-    up_to: float  # every scanned spring from it to here passes
+    below: float | None  # a failing spring just below it; None: it is the smallest scanned spring
+    up_to: float  # every scanned spring from it up to this stiffness passes
     passes_all_stiffer: bool
 
 
 def smallest_spring(
     passes: Callable[[float], bool], scanned: Iterable[float]
 ) -> SpringFound | None:
-    """Scan, then bisect below the first spring that passes; None: none does.
+    """Scan springs, then bisect below the first one that passes; None: no spring passes.
 
-    A statistic of chaotic runs need not fall with the spring: what is found is the edge next to the
-    first scanned spring that passes.
+    A statistic of chaotic runs need not decrease with the spring, so the result is the edge next to the first scanned
+    spring that passes.
     """
     springs = sorted(scanned)
     flags = [passes(spring) for spring in springs]
@@ -246,7 +246,7 @@ def smallest_spring(
 
 def _ensemble_springs(measured: _Ensembles, result: Study, wanted: float) -> None:
     sweep = result.sweep(SPRING)
-    # Those that the sweep could not run fail; the recommended one is not scanned.
+    # Springs whose row failed have no result and are not scanned.
     scanned = [row.value for row in sweep.rows if row.results]
     static = result.floor[2] if result.floor is not None else 0.0
     asked = f"{number(wanted * 1e3)} mrad"

@@ -23,24 +23,24 @@ from studies.rib_control.parameters import AREA, BIAS, CLEARANCE, FRICTION, SPRI
 
 @dataclass(frozen=True)
 class LoadedJump:
-    """Quasi-static jump of one design; None: the joint does not stay in contact, or no equilibrium."""
+    """Quasi-static jump of one design; None: the contact opens, or there is no equilibrium."""
 
     rigid_rad: float | None
     elastic_rad: float | None
     slips_rigid: bool
     slips_elastic: bool
     note: str
-    has_elastic: bool  # whether the model with elastic links covers the laws
+    has_elastic: bool  # whether the model with elastic links supports the contact laws
     elastic: Any  # its path, if it has one
 
     @property
     def size_rad(self) -> float | None:
-        """Jump by the better model that there is."""
+        """Jump by the model with elastic links or, if it is not available, with rigid links."""
         return self.elastic_rad if self.has_elastic else self.rigid_rad
 
     @property
     def slips(self) -> bool:
-        """Whether the joint slips anywhere, by that model."""
+        """Whether the joint slips anywhere, by the same model as ``size_rad``."""
         return self.slips_elastic if self.has_elastic else self.slips_rigid
 
 
@@ -49,9 +49,9 @@ def _slips(loop: Any) -> bool:
 
 
 def loaded_jump(case: UmbrellaCase) -> LoadedJump:
-    """Jump of θ2 on the quasi-static path, with rigid and, where the laws allow, elastic links.
+    """Return the jump of θ2 on the quasi-static path, with rigid and, if the contact laws permit, elastic links.
 
-    The tangential compliance is that of the case's friction law.
+    The friction law of the case determines the tangential compliance.
     """
     notes: list[str] = []
 
@@ -65,7 +65,7 @@ def loaded_jump(case: UmbrellaCase) -> LoadedJump:
         if loop.separated:
             notes.append("contact lost: the position in the play is undetermined")
             return loop, None, _slips(loop)
-        # The rounding of an angle is no jump.
+        # Rounding of an angle counts as no jump.
         jump = abs(loop.theta2_jump_rad)
         return loop, (0.0 if jump < 1e-14 else jump), _slips(loop)
 
@@ -81,10 +81,10 @@ def loaded_jump(case: UmbrellaCase) -> LoadedJump:
 
 
 def smallest_friction_that_rolls(case: UmbrellaCase) -> float | None:
-    """Smallest μ with which the loaded joint never slips, by no model; None: the largest allowed slips.
+    """Return the smallest μ for which the loaded joint never slips in any model; None: it slips with the largest
+    allowed μ.
 
-    A path without slip is the same for every larger μ, so the property has one threshold, here to
-    1e-9 of it.
+    A path without slip is the same for every larger μ, so there is a single threshold, found to 1e-9 of its value.
     """
 
     def rolls(friction: float) -> bool:
@@ -96,7 +96,7 @@ def smallest_friction_that_rolls(case: UmbrellaCase) -> float | None:
 
 
 def axial_forces_N(elastic: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Axial force of AB and of BC along a path [N], tension positive.
+    """Return the axial forces of AB and BC along a path [N], tension positive.
 
     The joint force is parallel to AC, F on the bearing at the tip of AB and −F on the journal.
     """
@@ -106,7 +106,7 @@ def axial_forces_N(elastic: Any) -> tuple[np.ndarray, np.ndarray]:
 
 
 def link_loads(case: UmbrellaCase, elastic: Any) -> dict[str, float]:
-    """Largest compression [N], that over the Euler load (pinned, square section), largest strain."""
+    """Return largest compression [N], its ratio to the Euler load (pinned ends, square section), and largest strain."""
     result = {"compression_N": 0.0, "over_euler_load": 0.0, "strain": 0.0}
     for link, axial in zip((case.link_ab, case.link_bc), axial_forces_N(elastic)):
         rigidity = link.young_modulus_Pa * link.cross_section_area_m2
@@ -126,7 +126,7 @@ LINES: dict[str, Line] = {
     "jump_elastic_rad": ("elastic links", dict(color="#E69F00", linewidth=4.0, solid_capstyle="round")),
     "jump_rigid_rad": ("rigid links", dict(color="#000000", linewidth=1.2, linestyle=(0, (5, 2)))),
 }
-LARGEST_STRAIN = 0.01  # of the links; beyond it small strain, on which the model rests, is gone
+LARGEST_STRAIN = 0.01  # strain of the links above which the small-strain model is invalid
 
 
 def _loaded_row(case: UmbrellaCase, parameter: str, value: float) -> Row:
@@ -141,7 +141,7 @@ def _loaded_row(case: UmbrellaCase, parameter: str, value: float) -> Row:
 
 
 def _loaded_size(case: UmbrellaCase, row: Row) -> float | None:
-    """Jump by the better model that there is [rad]."""
+    """Return the jump [rad] by the model with elastic links or, if it is not available, with rigid links."""
     return row.results.get("jump_elastic_rad" if has_elastic_loop(case) else "jump_rigid_rad")
 
 
@@ -153,7 +153,7 @@ def _loaded_sweeps(case: UmbrellaCase) -> list[Sweep]:
     most = min(highest(case, FRICTION), max(1.5 * (smallest_friction_that_rolls(case) or 1.0), 1.2 * friction))
     frictions = sorted({start, friction, *np.linspace(start, most, 60)[1:].tolist()})
     room = pi - case.flare_angle_rad if bias > 0 else case.flare_angle_rad
-    # Half-way to where the links would be in line.
+    # Up to half of the bias at which the links would be collinear.
     biases = [float(np.copysign(value, bias))
               for value in grid(abs(bias), abs(bias) / 50, min(10 * abs(bias), room / 2), 33)]
     plan = [
@@ -244,7 +244,7 @@ def _loaded_friction(case: UmbrellaCase, result: Study) -> None:
 
 
 def _loaded_spring(case: UmbrellaCase, result: Study, wanted: float) -> None:
-    """Smallest K_M; it acts through the elasticity of links and contact alone."""
+    """Find the smallest K_M. It acts only through the elasticity of links and contact."""
     sweep = result.sweep(SPRING)
     asked = f"{number(wanted * 1e6)} µrad"
     result.recommendation["stiffness_N_m_per_rad"] = None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parameters that a study of an umbrella sweeps."""
+"""Parameters that a control study of an umbrella sweeps."""
 from __future__ import annotations
 
 from typing import Any
@@ -16,7 +16,7 @@ OTHER_AREA = "link_bc.cross_section_area_m2"
 
 
 def changes(case: UmbrellaCase, parameter: str, value: float) -> dict[str, Any]:
-    """Return all values that change with a swept one."""
+    """Return all values that change together with a swept one."""
     if parameter == AREA:  # both links by the same factor
         factor = value / case.link_ab.cross_section_area_m2
         return {AREA: value, OTHER_AREA: case.link_bc.cross_section_area_m2 * factor}

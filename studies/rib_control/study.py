@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Control of the state jump of an ``umbrella`` case.
 
-A joint that a biased torsion spring loads from the start has one quasi-static path, so one jump:
-:mod:`.loaded`. Without it the motion after contact is chaotic and only statistics of an ensemble mean
-anything: :mod:`.ensemble`.
+A joint loaded by a biased torsion spring has one quasi-static path and one jump, see :mod:`.loaded`. Without this
+spring the motion after contact is chaotic, and only statistics of an ensemble are meaningful, see :mod:`.ensemble`.
 """
 from __future__ import annotations
 
@@ -21,10 +20,10 @@ def control(
 ) -> Study:
     """Study a rib.
 
-    :param jump_below: wanted largest jump of θ2 [rad]; None: half of what the case has
-    :param runs: size of the ensemble; None: the default, and the only choice where none is run
-    :param choices: there is nothing to choose from: none
-    :raises StatejumpError: bad input, or a run failed
+    :param jump_below: largest allowed jump of θ2 [rad]; None: half of that of the case
+    :param runs: size of the ensemble; None: the default. It must be None if no ensemble is run
+    :param choices: must be empty
+    :raises StatejumpError: invalid input, or a run failed
     """
     check_wanted(jump_below, "rad")
     refuse_choices(choices, case)

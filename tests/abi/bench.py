@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Compiles probes against edited copies of the declared headers, and asks a running YADE about them."""
+"""Compiles probes against edited copies of the declared headers, and checks them in a running YADE."""
 from __future__ import annotations
 
 import json
@@ -15,12 +15,12 @@ from typing import Any
 HERE = Path(__file__).resolve().parent
 HEADERS = Path("statejump") / "yade_abi"
 NO_ALIGNMENT = ["-DEIGEN_DONT_ALIGN", "-DEIGEN_DONT_VECTORIZE"]
-# Sources of the guard that do not see the declarations: compiled once.
+# Sources of the guard that do not include the declarations, so they are compiled once.
 INDEPENDENT = ["getters", "guard", "memory", "tables", "values"]
 
 
 def add_options(parser: ArgumentParser) -> None:
-    """Options that say what to compile with; CMake gives them."""
+    """Add the options for compilation, which CMake passes."""
     parser.add_argument("--compiler", required=True)
     parser.add_argument("--abi", required=True, type=Path, help="folder yade_abi of the sources")
     parser.add_argument("--generated", required=True, type=Path, help="folder of measured_layout.inc")
@@ -31,7 +31,7 @@ def add_options(parser: ArgumentParser) -> None:
 
 
 class Compiler:
-    """Makes probe modules in folders of their own."""
+    """Builds probe modules in separate folders."""
 
     def __init__(self, options: Namespace, folder: Path) -> None:
         self.options = options
@@ -58,14 +58,14 @@ class Compiler:
         return command + [f"-isystem{path}" for path in self.options.include]
 
     def object(self, source: Path, folder: Path | None = None) -> Path:
-        """Compile a source of the guard; generated headers in the folder come before those of the build."""
+        """Compile a source of the guard; generated headers in the folder precede those of the build."""
         target = (folder or self.folder) / f"{source.stem}.o"
         first = [f"-I{folder}"] if folder else []
         self._run([*self._command(NO_ALIGNMENT, self.headers, first), "-c", str(source), "-o", str(target)])
         return target
 
     def static_asserts_refuse(self, headers: Path, alignment: list[str] = NO_ALIGNMENT) -> bool:
-        """Whether the measurements contradict the declarations at compile time."""
+        """Return whether the measurements contradict the declarations at compile time."""
         source = headers / HEADERS / "layout_checks.hpp"
         done = subprocess.run([*self._command(alignment, headers), "-fsyntax-only", "-x", "c++", str(source)],
                               capture_output=True, text=True, check=False)
@@ -73,7 +73,7 @@ class Compiler:
 
     def module(self, folder: Path, headers: Path, alignment: list[str] = NO_ALIGNMENT,
                objects: list[Path] | None = None) -> str:
-        """Make folder/_native.so with the declarations of headers; the compiler's words if they do not compile."""
+        """Build folder/_native.so with the declarations in ``headers``; return the compiler's messages if it fails."""
         folder.mkdir(parents=True, exist_ok=True)
         declared = folder / "declared.o"
         done = subprocess.run(
@@ -82,14 +82,14 @@ class Compiler:
             capture_output=True, text=True, check=False)
         if done.returncode:
             return done.stderr
-        # The YADE that loads it has all libraries open already; reading them here would take longer than compiling.
+        # The YADE that loads the module already has all libraries open; linking them would take longer than compiling.
         self._run([self.options.compiler, "-shared", "-fopenmp", *map(str, objects or self.objects), str(declared),
                    "-o", str(folder / "_native.so")])
         return ""
 
 
 class Yade:
-    """One running YADE that answers requests; each is carried out in a process split off it."""
+    """One running YADE that answers requests, each in a forked process."""
 
     def __init__(self, folder: Path) -> None:
         requests, answers = folder / "requests", folder / "answers"
@@ -105,7 +105,8 @@ class Yade:
         self._lock = threading.Lock()
 
     def ask(self, task: str, folder: Path) -> dict[str, Any]:
-        """What the task says about the module of the folder; {"crash": status} when it ended without a word."""
+        """Return the result of a task for the module in a folder; {"crash": status} if the process ended without a
+        result."""
         with self._lock:
             self._requests.write(json.dumps({"task": task, "folder": str(folder)}) + "\n")
             self._requests.flush()
@@ -120,7 +121,7 @@ class Yade:
 
 
 def edited(text: str, class_name: str | None, edits: list[tuple[str, str]], name: str) -> str:
-    """Return the text with each edit made once, inside of the class."""
+    """Return the text after each edit was applied exactly once, inside of the class."""
     start, end = class_range(text, class_name) if class_name else (0, len(text))
     part = text[start:end]
     for old, new in edits:
@@ -131,7 +132,7 @@ def edited(text: str, class_name: str | None, edits: list[tuple[str, str]], name
 
 
 def class_range(text: str, class_name: str) -> tuple[int, int]:
-    """Return begin and end of a class in the text."""
+    """Return begin and end of a class in a text."""
     head = text.find(f"\nclass {class_name} ")
     while head >= 0 and text[head:text.index("\n", head + 1)].endswith(";"):
         head = text.find(f"\nclass {class_name} ", head + 1)

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs inside YADE and answers requests, one line of JSON each, until there are no more.
+"""Runs inside YADE and answers requests, one line of JSON each, until the input ends.
 
-A request names a file of a module and a task. Each is carried out in a process of its own, split off this
-one, so that a module can crash and none sees what another did. The answer to a process that ended
-without one is its exit status.
+A request names a module file and a task. It runs in a forked process, so that a module can crash and requests do not
+affect each other. If the process ends without an answer, the answer is its exit status.
 """
 from __future__ import annotations
 
@@ -27,7 +26,7 @@ def module_in(folder: Path) -> Any:
 
 
 def checks(folder: Path) -> dict[str, Any]:
-    """What the compiled declarations are, and what the guard says about them."""
+    """Return the compiled declarations and the findings of the guard."""
     native = module_in(folder)
     description = native.description()
     check, sentence = native.interface_checks(wrapper)
@@ -35,7 +34,7 @@ def checks(folder: Path) -> dict[str, Any]:
 
 
 def scene(folder: Path) -> dict[str, Any]:
-    """All checks, in a scene with everything in it that the guard might disturb."""
+    """Run all checks in a scene with everything that the guard might disturb."""
     O.bodies.append([utils.sphere((0, 0, 0), 1), utils.sphere((0, 0, 1.9), 1)])
     O.engines = [
         ForceResetter(),
@@ -65,7 +64,7 @@ def scene(folder: Path) -> dict[str, Any]:
 
 
 def package(folder: Path) -> dict[str, Any]:
-    """Import the plugin's Python package with the probe as its module."""
+    """Import the plugin's Python package with the probe as its native module."""
     sys.path.insert(0, str(folder))
     try:
         import statejump_yade  # noqa: F401
@@ -78,13 +77,13 @@ TASKS = {"checks": checks, "scene": scene, "package": package}
 
 
 def answer(request: dict[str, str]) -> dict[str, Any]:
-    """Carry a request out in a process of its own."""
+    """Process a request in a forked process."""
     reading, writing = os.pipe()
     child = os.fork()
     if child == 0:
         try:
             result = TASKS[request["task"]](Path(request["folder"]))
-        except Exception as error:  # noqa: BLE001  whatever it is, the other side has to hear of it
+        except Exception as error:  # noqa: BLE001 any error, because the caller must receive it
             result = {"error": f"{type(error).__name__}: {error}"}
         with os.fdopen(writing, "w") as stream:
             json.dump(result, stream)

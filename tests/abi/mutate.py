@@ -1,11 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Declares YADE's interface wrongly on purpose and requires that it is refused.
+"""Mutation test of the guard: every wrong declaration of YADE's interface must be refused.
 
-Every mutation is an edit of a copy of the declared headers. Compiled without the static assertions, the
-guard inside a running YADE has to answer with a sentence, without the help of the build identifiers and
-before anything of YADE's is called for it. A crash is not a refusal. An edit that leaves sizes, members and
-tables as they were is no mutation and another one is made.
+Every mutation is an edit of a copy of the declared headers. It is compiled without the static assertions. The guard
+inside a running YADE must report it, without build identifiers and before it calls any code of YADE. A crash does not
+count as a refusal. An edit that changes neither sizes nor members nor tables is replaced by another one.
 """
 from __future__ import annotations
 
@@ -22,7 +21,7 @@ from pathlib import Path
 from bench import HEADERS, NO_ALIGNMENT, Compiler, Yade, add_options
 from mutations import Mutation, Random, named
 
-# Checks that neither call nor write anything of YADE's.
+# Checks that neither call code of YADE nor write to its objects.
 HARMLESS = {"compiler", "loader", "size", "table", "getter", "coverage"}
 
 
@@ -42,10 +41,8 @@ class Examination:
         self.description = said["description"]
 
     def examine(self, mutation: Mutation) -> tuple[str, str, str]:
-        """Return the check that saw it, its sentence, and what is wrong (empty: nothing).
-
-        The check is "" for an edit that changes nothing.
-        """
+        """Return the check that detected a mutation, its message, and the fault of the guard (empty: none). The check
+        is "" for an edit without effect."""
         place = self.compiler.folder / mutation.name.replace(" ", "_")
         headers = place / "include"
         try:
@@ -57,7 +54,7 @@ class Examination:
             said = self.yade.ask("checks", place)
             if "crash" in said:
                 return "crash", f"(status {said['crash']})", "YADE crashed"
-            if "error" in said:  # a function that YADE does not have: the module cannot be loaded
+            if "error" in said:  # YADE lacks a function, so the module cannot be loaded
                 return "loader", said["error"], ""
             if said["description"] == self.description:
                 return "", "", "changes nothing" if mutation.check else ""
@@ -72,7 +69,8 @@ class Examination:
 
 
 def unmutated(compiler: Compiler, yade: Yade) -> tuple[str, str]:
-    """Return sentence and fault of the declarations as they are: accepted, the user's scene untouched."""
+    """Return message and fault for the unchanged declarations, which must be accepted without change of the user's
+    scene."""
     place = compiler.folder / "unmutated"
     if compiler.static_asserts_refuse(compiler.headers):
         return "", "static assertions refuse it"
@@ -85,7 +83,7 @@ def unmutated(compiler: Compiler, yade: Yade) -> tuple[str, str]:
 
 
 def other_build(compiler: Compiler, yade: Yade) -> tuple[str, str]:
-    """Return sentence and fault for a library with an unknown build identifier: one sentence, with a command."""
+    """Return message and fault for a library with an unknown build identifier: the message must contain a command."""
     place = compiler.folder / "other_build"
     package = place / "statejump_yade"
     package.mkdir(parents=True)
@@ -110,7 +108,7 @@ def other_build(compiler: Compiler, yade: Yade) -> tuple[str, str]:
 
 
 def main() -> int:
-    """Examine all; 0 when everything is as it should be."""
+    """Examine all mutations; return 0 if the guard handles all of them."""
     parser = argparse.ArgumentParser(description=__doc__)
     add_options(parser)
     parser.add_argument("--random", type=int, default=0, help="so many mutations at random beside the listed ones")
@@ -135,7 +133,7 @@ def main() -> int:
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
             waiting = {pool.submit(examination.examine, one): one for one in listed}
             made = 0
-            # Half of them where the list has none.
+            # Half of the random mutations are in parts that the list does not edit.
             wanted = {True: options.random // 2, False: options.random - options.random // 2}
 
             def another() -> bool:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Wrong declarations of YADE's interface: a list of those that are easy to make, and any number at random."""
+"""Wrong declarations of YADE's interface: a list of likely mistakes, and any number of random ones."""
 from __future__ import annotations
 
 import random
@@ -12,18 +12,18 @@ from bench import HEADERS, class_range, edited
 
 @dataclass
 class Mutation:
-    """One wrong declaration: header (without .hpp) and the texts of it before and after."""
+    """One wrong declaration: header (without .hpp), old and new text."""
 
     name: str
     kind: str
     header: str
     changed: str
-    check: str = ""  # which check of the guard is meant to see it; empty: any
+    check: str = ""  # check of the guard that must detect it; empty: any
     aligned: bool = False  # with Eigen's own alignment
-    listed: bool = False  # the list has an edit of the same part, members or table, of the same class
+    listed: bool = False  # whether the list edits the same part (members or table) of the same class
 
 
-# Name, header, class, edits inside of the class, and the check of the guard that has to see it.
+# Name, header, class, edits inside of the class, and the check that must detect them.
 NAMED: list[tuple[str, str, str | None, list[tuple[str, str]], str]] = [
     ("shape_16_short", "core", "Shape", [("  Unused<32> functors;", "  Unused<16> functors;")], "size"),
     ("shape_32_short_at_the_head", "core", "Shape", [("  Unused<32> functors;", "  Unused<0> functors;")], "size"),
@@ -122,7 +122,7 @@ NAMED: list[tuple[str, str, str | None, list[tuple[str, str]], str]] = [
 
 
 def named(headers: Path) -> list[Mutation]:
-    """Return the list; an edit whose text is gone is an error."""
+    """Return the listed mutations; it is an error if the text of an edit no longer exists."""
     texts = {name: (headers / HEADERS / f"{name}.hpp").read_text() for name in ("base", "core", "dispatch")}
     result = [Mutation(name, "listed", header, edited(texts[header], class_name, edits, name), check)
               for name, header, class_name, edits, check in NAMED]
@@ -132,14 +132,14 @@ def named(headers: Path) -> list[Mutation]:
     return result
 
 
-# A data member: two blanks, type, name, perhaps a value, perhaps a comment. No '(' before the name.
+# A data member: two blanks, type, name, optional value, optional comment; no '(' before the name.
 MEMBER = re.compile(r"^  (?!virtual |static |using |return |throw |template|enum )"
                     r"([A-Za-z][\w:<>, ]*?[&*]?) (\w+)( = [^;]+)?;(?: *//.*)?\n", re.M)
-# A virtual function that begins a place of the table, or takes over one; destructors are compared by role.
+# A virtual function that begins or overrides an entry of the table; destructors are compared by their role.
 NEW_VIRTUAL = re.compile(r"^  virtual (?!~)[^;{]*\([^;{]*(?:;|\{[^}]*\})\n", re.M)
 OVERRIDE = re.compile(r"^  (?!virtual)[^~\n;]*\([^;]*\) (?:const )?override;\n", re.M)
 ADDED = ["bool", "int", "long", "Real", "Vector3r", "Quaternionr", "std::string", "shared_ptr<Body>", "void*"]
-# Types of the same size first: those are the treacherous ones.
+# Types of the same size first, because these mistakes are the hardest to detect.
 RETYPED = {
     "bool": ["char", "signed char", "int"], "int": ["unsigned int", "float", "long"],
     "unsigned int": ["int", "float", "Real"], "long": ["unsigned long", "Real", "int"],
@@ -151,7 +151,7 @@ RETYPED = {
     "std::string": ["std::array<char, 32>", "Quaternionr", "std::vector<char>"],
     "Scene*": ["Body*", "void*", "shared_ptr<Scene>"], "ForceContainer": ["Unused<304>", "Unused<296>"],
 }
-# Members or table of a class, as the list edits them: a mutation elsewhere is of no kind that was thought of.
+# Members or table of a class, as far as the list edits them. Random mutations elsewhere are of new kinds.
 LISTED_PARTS = {(class_name, check == "table") for _, _, class_name, _, check in NAMED}
 HEADERS_OF_CLASSES = {
     "base": ["Serializable", "Indexable"],
@@ -175,7 +175,7 @@ def _retyped(declared: str, choose: random.Random) -> str:
 
 
 class Random:
-    """Makes wrong declarations at random, always the same ones from the same seed."""
+    """Generates random wrong declarations, reproducible by the seed."""
 
     def __init__(self, headers: Path, seed: int) -> None:
         self.choose = random.Random(seed)
@@ -184,7 +184,7 @@ class Random:
         self.made: set[str] = set()
 
     def mutation(self, number: int, listed: bool) -> Mutation:
-        """Return one that was not made before, in a part that the list edits or in one that it does not."""
+        """Return a new mutation, in a part that the list edits or in another part."""
         kinds = {"member moved": self._moved, "member added": self._added, "member removed": self._removed,
                  "member retyped": self._typed, "entry exchanged": self._exchanged, "entry added": self._entry_added,
                  "entry removed": self._entry_removed, "size changed": self._size}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the build does with a YADE whose build identifiers it does not know."""
+"""Behaviour of the build for a YADE with unknown build identifiers."""
 from __future__ import annotations
 
 import os
@@ -16,7 +16,7 @@ VARIANT = os.environ["STATEJUMP_YADE_VARIANT"]
 
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
-    """A project with this repository's part that recognises YADE, and a table without the installed one."""
+    """A project with this repository's detection of YADE, and a table without the installed YADE."""
     shutil.copytree(REPOSITORY / "contact_laws" / "yade_abi", tmp_path / "contact_laws" / "yade_abi")
     shutil.copytree(REPOSITORY / "scripts", tmp_path / "scripts")
     shutil.copytree(REPOSITORY / "cmake", tmp_path / "cmake")

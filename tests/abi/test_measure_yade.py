@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/measure_yade on the installed YADE: recognised, and every kind of change is listed."""
+"""scripts/measure_yade on the installed YADE: it is recognised, and every kind of change is reported."""
 from __future__ import annotations
 
 import copy
@@ -105,7 +105,7 @@ def test_a_change_is_listed_and_nothing_else(
 
 
 def test_a_changed_binary_is_found(tmp_path: Path, reference: variants.Interface):
-    """A library whose code gives FrictPhys 8 bytes more, looked at without being run."""
+    """The changed code allocates 8 more bytes for FrictPhys; the library is examined without being run."""
     for library in FOLDER.glob("lib*.so"):
         (tmp_path / library.name).symlink_to(library)
     libraries = binary.Libraries(FOLDER)
@@ -124,7 +124,7 @@ def test_a_changed_binary_is_found(tmp_path: Path, reference: variants.Interface
 
 
 def test_a_member_that_the_binary_has_elsewhere_is_found(tmp_path: Path):
-    """A YADE whose getter and setter of State.vel look 8 bytes further on, with the build identifiers of the known."""
+    """Getter and setter of State.vel are shifted by 8 bytes in a YADE with known build identifiers."""
     folder = tmp_path / FOLDER.relative_to("/usr")
     folder.mkdir(parents=True)
     for file in FOLDER.iterdir():

@@ -1,9 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Compiles the declarations of one variant with its static assertions and compares the tables of virtual
-functions of its children with the measured ones; no YADE is needed. Also compiles those sources of the plugin
-that inherit from what differs between the variants.
-"""
+"""Compiles the declarations of one variant with their static assertions, and compares the virtual function tables of
+derived classes with the measured ones; YADE is not needed. Also compiles the plugin sources that inherit from classes
+that differ between the variants."""
 from __future__ import annotations
 
 import argparse
@@ -21,7 +20,7 @@ INHERITING = ["contact_parts.cpp", "shapes.cpp"]
 
 
 def main() -> int:
-    """Compile and compare; 0 when all is as measured."""
+    """Compile and compare; return 0 if everything equals the measurements."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("variant")
     parser.add_argument("--compiler", required=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Documents of the repository: their links, the scripts in the README, what is kept of results."""
+"""Documents of the repository: links, scripts in the README, committed results."""
 from __future__ import annotations
 
 import importlib
@@ -20,7 +20,7 @@ TUTORIALS = sorted((REPOSITORY / "docs" / "tutorials").glob("*.md"))
 
 
 def tracked(*arguments: str) -> list[str]:
-    """Return files that git knows; the test is skipped where the tree is no clone."""
+    """Return the files known to git; skip the test outside of a clone."""
     done = subprocess.run(["git", "ls-files", *arguments], cwd=REPOSITORY, capture_output=True, text=True)
     if done.returncode:
         pytest.skip("not a clone")
@@ -53,7 +53,7 @@ def test_nothing_is_kept_that_is_ignored() -> None:
     assert tracked("--cached", "--ignored", "--exclude-standard") == []
 
 
-# Reports, cards of decks and mistakes are generated; the changelog grows.
+# All pages except generated ones (reports, cards of decks, mistakes) and the changelog, which grows.
 WRITTEN = [page for page in PAGES
            if page.parts[0] != "results" and page.name not in ("CHANGELOG.md", "decks.md", "mistakes.md")]
 
@@ -90,7 +90,7 @@ def test_files_that_contributing_lists_exist() -> None:
         section = text.split(f"## {heading}\n", 1)[1].split("\n## ", 1)[0]
         listed = [name for block in section.split("```\n")[1::2] for name in block.split()]
         assert listed
-        # NAME is the new one; what holds it must be there.
+        # NAME stands for a new file, whose folder must exist.
         lost = [name for name in listed if not (REPOSITORY / name.partition("NAME")[0]).parent.exists()
                 or "NAME" not in name and not (REPOSITORY / name).exists()]
         assert lost == [], heading

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The scripts of the README run as they stand there."""
+"""The scripts of the README run without changes."""
 from __future__ import annotations
 
 import os
@@ -22,12 +22,12 @@ def test_smallest_yade_script(tmp_path: Path) -> None:
     done = subprocess.run(["yade", "-n", "-x", str(script)], capture_output=True, text=True,
                           stdin=subprocess.DEVNULL, timeout=120, env=ENVIRONMENT)
     last = done.stdout.strip().splitlines()[-1]
-    # The clearance is 0.1 mm; 100 N press the journal 2 um into the wall of its bearing.
+    # The clearance is 0.1 mm; 100 N press the journal 2 µm into the wall of its bearing.
     assert last.startswith("journal at Vector3(0.000102"), done.stdout + done.stderr
     assert float(last.split("moving at ")[1].split()[0]) < 1e-9
 
 
-# A bore of 5.1 mm radius with three lobes of 10 um, as a measuring machine writes it, in metres.
+# A bore of 5.1 mm radius with three lobes of 10 µm, in metres, as a measuring machine writes it.
 MAKE_BORE = """
 import numpy as np
 from statejump import _engine
@@ -41,7 +41,7 @@ with open("bore.stl", "w") as file:
         file.write("endloop\\nendfacet\\n")
     file.write("endsolid\\n")
 """
-# What the lines of the block must have led to.
+# Checks of the results of the block.
 CHECK = """
 assert case["joint.friction_coefficient"] == 0.2 and sj.load("cases/table1.toml")["joint.friction_coefficient"] == 0.3
 assert result.passed, result
@@ -53,7 +53,7 @@ print("the block ran")
 
 
 def test_ten_lines_of_python(tmp_path: Path) -> None:
-    """The block reads two files; they are what commands of the README and a measurement would have left."""
+    """The block reads two files, which commands of the README and a measurement would have written."""
     def python(code: str) -> str:
         done = subprocess.run(["/usr/bin/python3", "-c", code], cwd=tmp_path, env={**ENVIRONMENT, "MPLBACKEND": "svg"},
                               capture_output=True, text=True, timeout=300)

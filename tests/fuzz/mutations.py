@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ways to spoil a file: bytes of any file, tokens and lines of a text, places of a parsed document, objects of an HDF5
-file. Each takes its chances from the generator that it is given: the same seed spoils alike."""
+"""Random mutations of a file: bytes of any file, tokens and lines of a text, entries of a parsed document, objects of
+an HDF5 file. All randomness comes from the given generator, so a seed reproduces a mutation."""
 from __future__ import annotations
 
 import json
@@ -15,7 +15,7 @@ import h5py
 import numpy as np
 
 TOKEN = re.compile(rb"[-+]?\d[\w.+-]*|\"[^\"\n]*\"|'[^'\n]*'|\btrue\b|\bfalse\b|[A-Za-z_]\w*")
-# What stands in texts instead of a token.
+# Replacements of tokens in texts.
 ODD_TOKENS = (
     b"nan", b"inf", b"-inf", b"-1", b"0", b"-0.0", b"1e308", b"1e-320", b"1e999", b"9223372036854775808",
     b"1" + b"0" * 400, b'""', b'"\\u0000"', b'"\\u001b[31m"', b'"../../x"', b'"<script>"', b"[]", b"[[]]", b"{}",
@@ -27,7 +27,7 @@ ODD_VALUES: tuple[Any, ...] = (
     "\x00", "\x1b[31m", "../../x", "<script>", "é" * 300, [], [[]], [0], [1.0, float("nan")], {}, {"x": 1}, {1: 2},
     b"x", (1, 2), object(),
 )
-# Of a data set that was declared to be huge before, nothing is read.
+# A data set that is declared larger than this [bytes] is not read.
 LARGEST_READ = 10**7
 ODD_ARRAYS: tuple[Any, ...] = (
     np.float64(np.nan), np.float64(-1.0), np.int64(-1), np.int64(2**62), np.uint8(200), np.array([], float),
@@ -39,7 +39,7 @@ ODD_ARRAYS: tuple[Any, ...] = (
 
 
 def spoiled_bytes(content: bytes, others: list[bytes], chance: random.Random) -> bytes:
-    """Return a content with one to six changes that know nothing of what it is."""
+    """Return a content with one to six changes of bytes, independent of its format."""
     made = bytearray(content)
     for _ in range(chance.choice((1, 1, 1, 2, 3, 6))):
         at = chance.randrange(len(made) + 1)
@@ -121,7 +121,7 @@ def spoiled_document(document: dict[str, Any], chance: random.Random) -> dict[st
                 with suppress(OverflowError):
                     node[key] *= chance.choice((-1, 0, 1e-12, 1e-3, 0.5, 2, 10, 1e3, 1e12))
             case _:
-                node[key] = deepcopy(chance.choice(ODD_VALUES))  # a later change may be one within it
+                node[key] = deepcopy(chance.choice(ODD_VALUES))  # a copy, because a later change may modify it
     return made
 
 
@@ -131,7 +131,7 @@ def spoil_hdf5(file: h5py.File, chance: random.Random) -> None:
         names: list[str] = []
         file.visit(names.append)
         name = chance.choice(names) if names else "/"
-        # What h5py does not write, and what has no values.
+        # h5py cannot write some values, and some objects have none
         with suppress(ValueError, TypeError, KeyError, RuntimeError, OSError, MemoryError, AttributeError):
             chance.choice(HDF5_CHANGES)(file, name, file[name], chance)
 
@@ -161,7 +161,7 @@ def _replace(file: h5py.File, name: str, found: Any, chance: random.Random) -> N
 
 
 def _reshape(file: h5py.File, name: str, found: Any, chance: random.Random) -> None:
-    """Another length, shape or type of the same numbers."""
+    """Change the length, shape or type of a data set."""
     if not isinstance(found, h5py.Dataset) or found.shape is None or found.size > LARGEST_READ:
         return
     values, kept = found[()], dict(found.attrs)
@@ -197,7 +197,7 @@ def _value(file: h5py.File, name: str, found: Any, chance: random.Random) -> Non
 
 
 def _declared(file: h5py.File, name: str, found: Any, chance: random.Random) -> None:
-    """A data set that says to be much larger than the file."""
+    """Declare a data set much larger than the file."""
     kept = dict(found.attrs)
     del file[name]
     shape = chance.choice(((10**12,), (10**9,), (10**6, 10**6), (2**40, 3), (200_000_000,)))
@@ -208,7 +208,7 @@ def _declared(file: h5py.File, name: str, found: Any, chance: random.Random) -> 
 
 
 def _link(file: h5py.File, name: str, found: Any, chance: random.Random) -> None:
-    """A link instead of the object: to itself, to a place above, to nothing, to another file, a device, a pipe."""
+    """Replace an object by a link: to itself, a parent, nothing, another file, a device, a pipe."""
     del file[name]
     target = chance.choice(("itself", "above", "nothing", "file", "device", "raw"))
     if target == "raw":
@@ -223,7 +223,7 @@ def _link(file: h5py.File, name: str, found: Any, chance: random.Random) -> None
 
 
 def _json(file: h5py.File, name: str, found: Any, chance: random.Random) -> None:
-    """A place of a text that is JSON."""
+    """Change an entry of a text that is JSON."""
     texts = [key for key in ("scene", "case/resolved") if key in file and isinstance(file[key], h5py.Dataset)]
     if texts:
         key = chance.choice(texts)

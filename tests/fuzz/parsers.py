@@ -1,18 +1,17 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Campaign of spoiled files: whatever stands in one, it is read or refused in a sentence, in bounded time and memory.
+"""Fuzz campaign: any mutated file is read, or refused with a message, in bounded time and memory.
 
     parsers.py --python build/python [--inputs N] [--only NAME ...] [--seed N] [--first N]
 
-Shipped files, and results made of them, are spoiled by chance and given to what reads them: the library for cases,
-campaigns, journals, temperatures and tables of items, the command itself for result files, files of FCLIB, histories
-of `laws --drive` and decks of other programs. A refusal is a failure of exit status 2 whose sentence is one printable
-line (or the documented status 1 of a command); any other exception, a warning of numpy, a signal, more than
-MEMORY_BYTES more memory or more than CPU_S seconds are faults. Each input depends on the seed, the reader and its
-number alone: `--only NAME --first N --inputs 1` makes one again.
+Shipped files, and results made from them, are mutated at random and read: by the library for cases, campaigns,
+journals, temperatures and tables of items; by the command for result files, files of FCLIB, histories of `laws --drive`
+and decks. A refusal is a failure with exit status 2 and one printable line (or the documented status 1 of a command).
+Faults are: any other exception, a warning of numpy, a signal, more than MEMORY_BYTES of additional memory, more than
+CPU_S seconds. An input depends only on seed, reader and number; `--only NAME --first N --inputs 1` repeats it.
 
-Meshes are another campaign's (fuzz_mesh.cpp). Bytes of HDF5 files of FCLIB, which have no checksum, are not spoiled:
-that would try the HDF5 library.
+fuzz_mesh.cpp tests meshes. Bytes of HDF5 files of FCLIB, which have no checksum, are not mutated, because this would
+test the HDF5 library.
 """
 from __future__ import annotations
 
@@ -55,10 +54,10 @@ class Fault(Exception):
 
 @dataclass(frozen=True)
 class Reader:
-    """Something that reads files.
+    """A reader of files under test.
 
-    :param spoiled: makes the input with this generator, writes it into the folder
-    :param read: reads what is in the folder; whether it was taken. StatejumpError: it was refused
+    :param spoiled: makes an input with the generator and writes it into the folder
+    :param read: reads the input in the folder; returns whether it was accepted, raises StatejumpError if it was refused
     """
 
     name: str
@@ -67,7 +66,7 @@ class Reader:
 
 
 def command(*words: object) -> bool:
-    """Run a command in this process; whether its status is not 2. :raises Fault: a status or a sentence that is none"""
+    """Run a command in this process; return whether its status is not 2. :raises Fault: status or message is invalid"""
     from statejump.cli import main
 
     said, errors = io.StringIO(), io.StringIO()
@@ -84,7 +83,7 @@ def command(*words: object) -> bool:
 
 
 def cases(folder: Path) -> Reader:
-    """Case files, as text and as dict; what is taken comes back from its own JSON, and every tenth is run."""
+    """Case files, as text and as dict. An accepted case must be reproduced by its own JSON; every tenth is run."""
     from statejump import load
     from statejump.core.errors import StatejumpError
     from statejump.kinds.limits import history_of
@@ -118,7 +117,7 @@ def cases(folder: Path) -> Reader:
 
 
 def given_only(values: Any) -> Any:
-    """Return a case as a dict without what is None or a list of nothing: a case file has no such value."""
+    """Return a case as a dict without None and empty lists, which a case file cannot have."""
     if isinstance(values, dict):
         return {key: given_only(value) for key, value in values.items() if value is not None and value != []}
     return [given_only(value) for value in values] if isinstance(values, list) else values
@@ -145,7 +144,7 @@ def campaigns(folder: Path) -> Reader:
 
 
 def journals(folder: Path) -> Reader:
-    """Journals of a campaign: bytes; and lines whose checksum was made to fit."""
+    """Journals of a campaign: mutated bytes, and mutated lines with a valid checksum."""
     from statejump.campaign.campaign_file import load_campaign
     from statejump.campaign.journal import NAME, Journal, _line
     from statejump.campaign.work import run_samples
@@ -182,7 +181,7 @@ def journals(folder: Path) -> Reader:
 
 
 def results(folder: Path) -> Reader:
-    """Result files and tables of campaigns: bytes; and objects, with the checksum made to fit."""
+    """Result files and tables of campaigns: mutated bytes, and mutated objects with a valid checksum."""
     from statejump import load
     from statejump.core.hdf5 import HEAD_BYTES, head
 
@@ -226,7 +225,7 @@ def changed_hdf5(image: bytes, chance: random.Random) -> Any:
 
 
 def fclib_files(folder: Path) -> Reader:
-    """Files of FCLIB, which have no checksum: objects."""
+    """Files of FCLIB, which have no checksum: mutated objects."""
     from statejump import fclib
     from statejump.core.hdf5 import HEAD_BYTES
 
@@ -278,7 +277,7 @@ def drives(folder: Path) -> Reader:
 
 
 def temperatures(folder: Path) -> Reader:
-    """Files of temperatures that a case names, as text and as HDF5."""
+    """Temperature files of a case, as text and as HDF5."""
     from statejump import load
 
     seeds = [b"time_s,sun_K,shade_K\n0,0,0\n1.5,10,-3\n4,100,7.5\n9,0,0\n",
@@ -305,7 +304,7 @@ def temperatures(folder: Path) -> Reader:
 
 
 def tables(folder: Path) -> Reader:
-    """Files of items that a case names, as text and as HDF5; what is taken comes back from its own JSON."""
+    """Files of items of a case, as text and as HDF5. An accepted case must be reproduced by its own JSON."""
     from statejump.core.item_files import write_items
     from statejump.kinds.loading import load_case, parse_case
     from statejump.kinds.truss import generate
@@ -363,7 +362,7 @@ READERS = (cases, campaigns, journals, results, fclib_files, drives, temperature
 
 
 class Counts:
-    """What several processes count, in memory that they share: number of the input, taken, refused, faults."""
+    """Counters in memory shared by several processes: number of the input, accepted, refused, faults."""
 
     def __init__(self) -> None:
         self._shared = np.frombuffer(mmap.mmap(-1, 64), dtype=np.int64)
@@ -381,7 +380,7 @@ def _used_bytes() -> int:
 
 
 def one(reader: Reader, folder: Path, seed: int, number: int, counts: Counts) -> None:
-    """Give the reader one input and count what it does."""
+    """Give the reader one input and count the outcome."""
     from statejump.core.errors import StatejumpError
 
     place = folder / "given"
@@ -389,7 +388,7 @@ def one(reader: Reader, folder: Path, seed: int, number: int, counts: Counts) ->
     place.mkdir()
     chance = random.Random(f"{seed}:{reader.name}:{number}")
     given = reader.spoiled(place, chance)
-    # What makes the input is not tried: HDF5 itself does not survive every end of memory.
+    # The memory limit does not apply to the mutation itself, because HDF5 may crash when memory ends.
     unlimited = resource.getrlimit(resource.RLIMIT_AS)
     resource.setrlimit(resource.RLIMIT_AS, (_used_bytes() + MEMORY_BYTES, unlimited[1]))
     signal.setitimer(signal.ITIMER_PROF, CPU_S)
@@ -422,7 +421,7 @@ def _child(reader: Reader, folder: Path, seed: int, last: int, counts: Counts) -
 
 
 def campaign(reader: Reader, folder: Path, seed: int, first: int, inputs: int) -> Counts:
-    """Give a reader inputs, in processes that may die of them."""
+    """Give a reader its inputs, in processes that may crash."""
     counts = Counts()
     counts["at"] = first
     while counts["at"] < first + inputs:
@@ -446,7 +445,7 @@ def campaign(reader: Reader, folder: Path, seed: int, first: int, inputs: int) -
 
 
 def main() -> int:
-    """Run the campaign and print what was found; 1 if anything was."""
+    """Run the campaign and print the faults; return 1 if there are any."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--python", type=Path, required=True, help="the built package")
     parser.add_argument("--inputs", type=int, default=10_000, help="for each reader")

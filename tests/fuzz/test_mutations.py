@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What spoils files takes its chances from its generator alone: no input depends on those before it."""
+"""Mutations depend only on their generator: no input depends on earlier ones."""
 from __future__ import annotations
 
 import random

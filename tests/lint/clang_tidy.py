@@ -4,9 +4,9 @@ precompiled headers, which Clang does not read.
 
     clang_tidy.py CLANG_TIDY BUILD PATTERN...      PATTERN: a regular expression of the paths of sources
 
-Clang reads the headers of a source in five seconds, and the checks look at all of them. So eight sources are checked
-together, as one source that includes them. Sources that declare the same name for themselves are kept apart;
-where a batch does not compile all the same, its sources are checked one by one.
+Clang needs five seconds for the headers of a source, and the checks examine all of them. Therefore eight sources are
+checked together, as one source that includes them. Sources with equal local names are kept apart. If a batch does not
+compile, its sources are checked one by one.
 """
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ from pathlib import Path
 CONFIGURATION = Path(__file__).resolve().parents[2] / ".clang-tidy"
 PRECOMPILED = re.compile(r" -Winvalid-pch| -include \S*cmake_pch\.hxx")
 PRIVATE = re.compile(r"^namespace \{$(.*?)^\}  // namespace$", re.MULTILINE | re.DOTALL)
-# Of a declaration that begins a line: what is before a parenthesis, a brace or an equals sign.
+# A declaration at the beginning of a line: its text before a parenthesis, a brace or an equals sign.
 DECLARED = re.compile(r"^(?![ }/#])[^;{(=\n]*?(\w+)(?: final)?(?=\(| =| \{|\{)", re.MULTILINE)
-MOST = 8  # sources of a batch: both processors have work to the end
+MOST = 8  # number of sources per batch, which keeps both processors busy to the end
 PROCESSES = 2
 
 
 @dataclass
 class Batch:
-    """Sources that are compiled by the same options."""
+    """Sources that are compiled with the same options."""
 
     words: list[str]  # of the command, without source and output
     directory: str
@@ -45,7 +45,7 @@ def private_names(text: str) -> set[str]:
 
 
 def options(command: str) -> list[str]:
-    """Return the words of a command without source, output and precompiled header."""
+    """Return the arguments of a compile command without source, output and precompiled header."""
     kept, words = [], iter(shlex.split(PRECOMPILED.sub("", command)))
     for word in words:
         if word in ("-o", "-c", "-MF", "-MT"):
@@ -73,7 +73,7 @@ def batches(entries: list[dict[str, str]]) -> list[Batch]:
 
 
 def run(tidy: str, batch: Batch, folder: Path) -> tuple[int, str]:
-    """Check the sources of a batch together; return the exit status and what clang-tidy printed."""
+    """Check the sources of a batch together; return the exit status and the output of clang-tidy."""
     folder.mkdir()
     source = folder / "batch.cpp"
     source.write_text("".join(f'#include "{file}"\n' for file in batch.files), encoding="utf-8")
@@ -91,7 +91,7 @@ def run(tidy: str, batch: Batch, folder: Path) -> tuple[int, str]:
 
 
 def main(tidy: str, build: Path, patterns: list[str]) -> int:
-    """Return the exit status of clang-tidy; 2 if a pattern is that of no source."""
+    """Return the exit status of clang-tidy; 2 if a pattern matches no source."""
     entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
     for pattern in patterns:
         if not any(re.search(pattern, entry["file"]) for entry in entries):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Holds the stub of the engine's module against the module, both by themselves: as a part of the package mypy would
-read the whole package first, which takes five times as long and finds nothing more. The stub has the names of both
-modules: _engine offers those of _engine_more as its own.
+"""Compares the type stub of the engine's module with the module, outside of the package. Inside, mypy would first read
+the whole package, which takes five times as long without further findings. The stub has the names of both modules,
+because _engine re-exports those of _engine_more.
 
-    engine_stub.py FOLDER      the folder of _engine.pyi and of the built modules
+    engine_stub.py FOLDER      folder of _engine.pyi and of the built modules
 """
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-# stubtest compares the names that a module lists, and _engine does not list those of the other.
+# stubtest compares the names that a module lists; _engine does not list those of _engine_more.
 UNLISTED = """
 import ast, sys
 from pathlib import Path

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Layers of the Python package: which module may import which, measured on the sources.
+"""Checks the layers of the Python package in the sources: which module may import which.
 
 A module imports from its own layer and from layers to its left; imports for type checkers count. No more than
 LARGEST_CIRCLE modules import each other in a circle. An import inside a function has a comment with its reason, on its
-line or on the line before it. Places that a string names, ``"statejump.present.figures:drawn"``, exist. No attribute is
-queried by a literal name: a Protocol declares it. A function has at most LONGEST_FUNCTION lines, its docstring aside.
+line or on the line before it. Functions named by a string, ``"statejump.present.figures:drawn"``, exist. No attribute
+is accessed by a literal name; a Protocol declares it instead. A function has at most LONGEST_FUNCTION lines without its
+docstring.
 
     python3 tests/lint/layers.py [--graph] [FOLDER]
 """
@@ -23,11 +24,11 @@ LARGEST_CIRCLE = 3
 FUNCTION_IMPORTS = 40
 LONGEST_FUNCTION = 60
 BY_NAME = ("getattr", "hasattr", "setattr", "delattr")
-# From left to right; the longest name that fits decides. A package stands for all of its modules that have no entry.
+# From left to right; the longest matching name counts. A package stands for all of its modules without an entry.
 LAYERS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("model", (
         "statejump._version", "statejump.core", "statejump.schema",
-        "statejump.results.scene", "statejump.results.events",  # vocabulary of kinds: what to draw, what happened
+        "statejump.results.scene", "statejump.results.events",  # vocabulary of kinds: scenes for drawings, and events
     )),
     ("simulate", ("statejump.core.yade_process",)),
     ("kinds", (
@@ -55,14 +56,14 @@ LAYERS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("api", ("statejump", "statejump.api", "statejump.truss")),
     ("cli", ("statejump.cli",)),
 )
-# Neither a layer nor in the graph: the engine's module and what CMake writes.
+# Not part of layers and graph: the module of the engine, and the module that CMake writes.
 FOUNDATIONS = ("statejump._engine", "statejump._paths")
 PLACE = re.compile(r"statejump(\.\w+)+(:\w+)?")
 
 
 @dataclass
 class Import:
-    """An import: where it is, and the modules of the package that it names."""
+    """An import: its position, and the imported modules of the package."""
 
     module: str
     line: int
@@ -75,7 +76,7 @@ class Import:
 
 @dataclass
 class Sources:
-    """Modules of the package, and what they import."""
+    """Modules of the package and their imports."""
 
     files: dict[str, Path]
     imports: list[Import] = field(default_factory=list)
@@ -115,7 +116,7 @@ def _targets(node: ast.Import | ast.ImportFrom, files: Mapping[str, Path]) -> li
 
 
 def _walk(node: ast.AST, in_function: bool = False, for_types: bool = False) -> Iterator[tuple[ast.AST, bool, bool]]:
-    """Yield every node, whether it is inside a function, and whether it is for type checkers alone."""
+    """Yield every node, whether it is inside a function, and whether it is only for type checkers."""
     yield node, in_function, for_types
     inside = in_function or isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda))
     for child in ast.iter_child_nodes(node):
@@ -160,7 +161,7 @@ def _is_by_name(node: ast.AST) -> bool:
 
 
 def _defined(tree: ast.Module) -> set[str]:
-    """Return the names that a module has at its top."""
+    """Return the names defined at the top level of a module."""
     found: set[str] = set()
     for node in tree.body:
         if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
@@ -174,7 +175,7 @@ def _defined(tree: ast.Module) -> set[str]:
 
 
 def circles(graph: Mapping[str, set[str]]) -> list[list[str]]:
-    """Return the strongly connected components of two modules and more, the largest first (Tarjan 1972)."""
+    """Return the strongly connected components of at least two modules, the largest first (Tarjan 1972)."""
     index: dict[str, int] = {}
     low: dict[str, int] = {}
     stack: list[str] = []
@@ -203,7 +204,7 @@ def circles(graph: Mapping[str, set[str]]) -> list[list[str]]:
 
 
 def layer_of(module: str) -> int | None:
-    """Return the number of a module's layer, counted from the left; None: it has none."""
+    """Return the number of a module's layer, counted from the left; None: it belongs to none."""
     known = {name: number for number, (_, names) in enumerate(LAYERS) for name in names}
     while module and module not in known:
         module = module.rpartition(".")[0]
@@ -237,7 +238,7 @@ def _wrong_places(sources: Sources) -> Iterator[str]:
 
 
 def violations(sources: Sources) -> list[str]:
-    """Return what breaks the rules, a sentence each."""
+    """Return the violations of the rules, one sentence each."""
     found = [*_wrong_layers(sources), *_wrong_places(sources)]
     for circle in circles(sources.graph()):
         if len(circle) > LARGEST_CIRCLE:
@@ -275,7 +276,7 @@ def _print_graph(sources: Sources) -> None:
 
 
 def main(arguments: list[str]) -> int:
-    """Print the numbers and what is wrong; return 1 if anything is."""
+    """Print numbers and violations; return 1 if there are any."""
     folders = [one for one in arguments if not one.startswith("-")]
     sources = read(Path(folders[0]) if folders else Path(__file__).parents[2] / "python")
     if "--graph" in arguments:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every source file begins with its licence. Exit status 1 names those that do not."""
+"""Checks that every source file begins with its licence line. Exit status 1: some do not; they are listed."""
 from __future__ import annotations
 
 import subprocess
@@ -8,7 +8,7 @@ from pathlib import Path
 
 LINE = "SPDX-License-Identifier: GPL-3.0-or-later"
 ENDINGS = {".py", ".pyi", ".cpp", ".hpp", ".ts", ".mjs", ".sh"}
-FIRST_LINES = 3  # a line that names the interpreter may come before it
+FIRST_LINES = 3  # an interpreter line may precede it
 
 
 def main() -> int:

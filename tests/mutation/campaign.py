@@ -1,17 +1,16 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Breaks a random sample of places of each module and counts how often its tests notice.
+"""Mutation testing: counts how many of a random sample of mutants of each module the tests detect.
 
-Mutants of C++ stand beside the original in one build, from which a variable of the environment chooses (switched.py);
-those that cannot are compiled alone. Headers are compiled with the tests that include them, files of a library are
-linked before it into the built test program. Mutants of Python are tried by the test files that execute their
-statement, in a process forked from one that has the heavy imports behind it. Mutants that do not compile are not
-counted. The unmutated sources must pass.
+Many mutants of C++ share one build, and an environment variable selects one at run time (switched.py); the others are
+compiled separately. Headers are compiled with the tests that include them; a file of a library is linked before the
+library into the built test program. Mutants of Python are run by the test files that execute their statement, in a
+process forked after the slow imports. Mutants that do not compile do not count. The unmutated sources must pass.
 
-The sample is that of the seed; a result is kept in the journal, so that what was noticed once is not tried again
-while its file stays as it was. Survivors that no test can notice are listed in equivalent.toml with the reason.
+The seed determines the sample. A journal keeps results, so that a mutant is not run again while its file is unchanged.
+equivalent.toml lists survivors that no test can detect, with the reason.
 
-Exit status: 0 every module has its score, 1 one has not, 2 the set-up is wrong.
+Exit status: 0 every module reaches its score, 1 one does not, 2 the set-up is wrong.
 """
 from __future__ import annotations
 
@@ -37,7 +36,7 @@ EQUIVALENT = HERE / "equivalent.toml"
 
 @dataclass
 class Score:
-    """What became of the mutants of a module."""
+    """Results of the mutants of a module."""
 
     module: Module
     population: int
@@ -52,7 +51,7 @@ class Score:
         return self.killed + len(self.survivors)
 
     def interval(self) -> tuple[float, float]:
-        """Return the 95 % interval of the share of all mutants that are noticed, after Wilson."""
+        """Return Wilson's 95 % interval of the fraction of detected mutants among all mutants."""
         if not self.tried:
             return 0.0, 1.0
         n, z = self.tried, 1.959964
@@ -71,14 +70,14 @@ class Score:
 
 
 def guards_of(module: Module, root: Path, folder: Path, build: Path, journal: Journal) -> Guards:
-    """Return what tries the mutants of a module."""
+    """Return the object that runs the mutants of a module."""
     if module.guards[0].endswith(".py"):
         return PythonGuards(module, root, folder, build, journal)
     return (HeaderGuards if module.guards[0].endswith(".cpp") else LibraryGuards)(module, root, folder, build)
 
 
 def explained(mutant: Mutant, text: str) -> str | None:
-    """Return why no test can notice a mutant; None: nobody has said so."""
+    """Return the reason why no test can detect a mutant; None: no reason is listed."""
     start = text.rfind("\n", 0, mutant.start) + 1
     line = text[start: text.find("\n", mutant.end)]
     for entry in tomllib.loads(EQUIVALENT.read_text(encoding="utf-8")).get("mutant", []):
@@ -91,18 +90,18 @@ def explained(mutant: Mutant, text: str) -> str | None:
 
 def campaign(module: Module, guards: Callable[[], Guards], root: Path, sample: int, seed: int, journal: Journal,
              tell: Callable[[str], None]) -> Score:
-    """Try mutants of a module in random order until as many have been tried as are wanted."""
+    """Run mutants of a module in random order until the sample is complete."""
     texts = {str(path.relative_to(root)): path.read_text(encoding="utf-8") for path in module.files(root)}
     whole = [mutant for file, text in texts.items() for mutant in mutants(file, text)]
     random.Random(f"{module.name} {seed}").shuffle(whole)
     score = Score(module, len(whole))
 
     def known(mutant: Mutant) -> str | None:
-        """Return what is known of a mutant and need not be tried again."""
+        """Return the known result of a mutant; None: it must be run."""
         found = journal.known.get(journal.key(mutant, texts[mutant.file]))
         return None if found == SURVIVED and explained(mutant, texts[mutant.file]) is None else found
 
-    # Some do not compile; those beyond the sample are then tried alone.
+    # Some mutants do not compile, so 5 % more are prepared; further ones are run one by one.
     unknown = [mutant for mutant in whole[: math.ceil(1.05 * sample)] if known(mutant) is None]
     ready = guards() if unknown else None
     if ready is not None:
@@ -130,7 +129,7 @@ def campaign(module: Module, guards: Callable[[], Guards], root: Path, sample: i
 
 
 def chosen(names: list[str]) -> Iterator[Module]:
-    """Yield the modules of these names, all without any. :raises SetUp: there is no such module"""
+    """Yield the modules with these names; all modules if there are none. :raises SetUp: a module does not exist"""
     known = {module.name: module for module in MODULES}
     for name in names or known:
         if name not in known:

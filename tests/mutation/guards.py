@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tries mutants: the sources are changed in a copy, and tests have to fail."""
+"""Runs mutants: the sources are changed in a copy, and tests must fail."""
 from __future__ import annotations
 
 import json
@@ -17,9 +17,9 @@ from operators import Mutant
 from switched import SWITCH, VARIABLE, switched
 
 KILLED, SURVIVED, INVALID = "killed", "survived", "does not compile"
-# A mutant that takes longer than this many times the unmutated test has been noticed.
+# A mutant counts as detected after this multiple of the time of the unmutated test, but at least LEAST_SECONDS.
 PATIENCE, LEAST_SECONDS = 10, 60
-# Of what a mutant asks beyond the end of an array the assertions of the libraries tell.
+# Assertions of the libraries detect mutants that access an array beyond its end.
 ASSERTING = ("-UNDEBUG", "-D_GLIBCXX_ASSERTIONS")
 # What tests include and no mutant changes.
 COMMON = ("gtest/gtest.h", "Eigen/Core", "Eigen/Geometry", "random", "string", "vector")
@@ -32,7 +32,7 @@ class SetUp(Exception):
 def run(
     command: list[str], seconds: float | None = None, cwd: Path | None = None, chosen: int = 0
 ) -> int | None:
-    """Run a command in silence, with a mutant chosen; None: it took longer."""
+    """Run a command without output, with a mutant selected; None: timeout."""
     process = subprocess.Popen(command, cwd=cwd, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                stderr=subprocess.DEVNULL, start_new_session=True,
                                env={**os.environ, VARIABLE: str(chosen)})
@@ -45,33 +45,33 @@ def run(
 
 
 class Guards:
-    """Tries mutants of one module in a copy of the sources. ``compare`` says what became of one."""
+    """Runs mutants of one module in a copy of the sources. ``compare`` returns the result of one."""
 
     def __init__(self, module: Module, root: Path, folder: Path) -> None:
         self.module, self.root, self.folder = module, root, folder
         self.patience: dict[str, float] = {}
 
     def check(self, guard: str) -> None:
-        """Require that a guard passes with the unmutated sources, and measure how long that takes."""
+        """Check that a guard (test) passes with the unmutated sources, and measure its time."""
         start = time.monotonic()
         if self.fails(guard, None) is not False:
             raise SetUp(f"{self.module.name}: {guard} fails with the unmutated sources")
         self.patience[guard] = max(LEAST_SECONDS, PATIENCE * (time.monotonic() - start))
 
     def order(self, mutant: Mutant) -> list[str]:
-        """Return the guards of a mutant, that of the same name as its file first."""
+        """Return the guards of a mutant; first the one named like its file."""
         stem = Path(mutant.file).stem
         return sorted(self.module.guards, key=lambda guard: Path(guard).stem.removesuffix("_test") != stem)
 
     def prepare(self, wanted: list[Mutant]) -> None:
-        """Make ready for these mutants, most of which will be tried."""
+        """Prepare a build for these mutants, most of which will be run."""
 
     def tried(self, mutant: Mutant) -> tuple[str, str]:
-        """Return what became of a mutant, and the guard that noticed it."""
+        """Return the result of a mutant, and the guard that detected it."""
         return self.tried_alone(mutant)
 
     def tried_alone(self, mutant: Mutant) -> tuple[str, str]:
-        """Change the sources for this mutant and try it."""
+        """Change the sources for this mutant and run it."""
         path = self.folder / mutant.file
         text = path.read_text(encoding="utf-8")
         for guard in self.order(mutant):
@@ -87,12 +87,12 @@ class Guards:
         return SURVIVED, ""
 
     def fails(self, guard: str, file: str | None) -> bool | None:
-        """Does a guard notice the sources as they stand? None: they do not compile."""
+        """Return whether a guard fails with the current sources; None: they do not compile."""
         raise NotImplementedError
 
 
 class Compiled(Guards):
-    """Mutants of C++, compiled by the commands of the build."""
+    """Mutants of C++, compiled with the commands of the build."""
 
     def __init__(self, module: Module, root: Path, folder: Path, build: Path) -> None:
         super().__init__(module, root, folder)
@@ -105,7 +105,8 @@ class Compiled(Guards):
             shutil.copytree(root / name, folder / name, dirs_exist_ok=True)
 
     def _quiet(self, command: list[str]) -> list[str]:
-        """Return a command without a launcher, output, warnings, precompiled header, for the copy of the sources."""
+        """Return a compile command for the copy of the sources, without launcher, output, warnings and precompiled
+        header."""
         place = next(place for place, word in enumerate(command) if not word.endswith("ccache"))
         kept, words = [], iter(command[place:])
         for word in words:
@@ -116,19 +117,19 @@ class Compiled(Guards):
         return [*kept, "-w", *ASSERTING]
 
     def compile(self, file: str, result: Path, *options: str) -> str | None:
-        """Compile a file of the copy; return what the compiler said if it does not compile."""
+        """Compile a file of the copy; return the compiler's messages if it fails."""
         command = [*self.commands[str(self.root / file)], *options, "-c", str(self.folder / file), "-o", str(result)]
         done = subprocess.run(command, cwd=self.build, capture_output=True, text=True)
         return None if done.returncode == 0 else done.stderr
 
     def passes(self, program: Path, guard: str, chosen: int = 0) -> bool:
-        """Run a test program, or those of its tests that the guard names, with a mutant chosen, 0 for none."""
+        """Run a test program, or the tests that the guard names, with a mutant selected (0: none)."""
         wanted = [f"--gtest_filter={tests}" for _, found, tests in [guard.partition(":")] if found]
         return run([str(program), "--gtest_brief=1", "--gtest_fail_fast", *wanted], self.patience.get(guard, 600),
                    chosen=chosen) == 0
 
     def prepare(self, wanted: list[Mutant]) -> None:
-        """Build the test programs with as many of the mutants as can stand beside the original."""
+        """Build the test programs with all mutants that can share one build."""
         self.ready = dict(enumerate(wanted, start=1))
         files = sorted({mutant.file for mutant in wanted})
         originals = {file: (self.folder / file).read_text(encoding="utf-8") for file in files}
@@ -145,7 +146,7 @@ class Compiled(Guards):
             self.patience[guard] = max(LEAST_SECONDS, PATIENCE * (time.monotonic() - start))
 
     def _built(self, files: list[str], originals: dict[str, str]) -> bool:
-        """Build with the mutants that are left; False: some had to be taken out, to be compiled alone."""
+        """Build with the remaining mutants; False: some were removed, to be compiled separately."""
         lines: dict[str, dict[int, tuple[int, int]]] = {}
         for file in files:
             text, lines[file] = switched(
@@ -157,12 +158,12 @@ class Compiled(Guards):
         if said is None:
             return True
         bad: set[int] = set()
-        # Of an error within a library the compiler tells which line asked for it.
+        # For an error within a library, the compiler reports the line that required it.
         for name, line in re.findall(r"^(\S+?):(\d+):\d+: +(?:error:|required from here)", said, re.M):
             file = str(Path(name).resolve()).removeprefix(f"{self.folder.resolve()}/")
             held = lines.get(file, {})
             near = [number for number, (first, last) in held.items() if first <= int(line) <= last]
-            # Of a declaration that went wrong the compiler tells where it is used: the last one before is taken out.
+            # A wrong declaration causes errors at its uses, so the last mutant before the reported line is removed.
             before = [number for number in held if held[number][0] <= int(line)]
             bad.update(near or sorted(before, key=lambda number: held[number][0])[-1:] or held)
         if not bad:
@@ -171,7 +172,7 @@ class Compiled(Guards):
         return False
 
     def build_programs(self, files: list[str]) -> str | None:
-        """Build the test programs; return what the compiler said if it does not compile."""
+        """Build the test programs; return the compiler's messages if they do not compile."""
         raise NotImplementedError
 
     def tried(self, mutant: Mutant) -> tuple[str, str]:
@@ -185,7 +186,7 @@ class Compiled(Guards):
 
 
 class HeaderGuards(Compiled):
-    """Each test file is compiled with the mutated header, without optimisation, on a precompiled prefix."""
+    """Compiles each test file with the mutated header, without optimisation, with a precompiled prefix."""
 
     def __init__(self, module: Module, root: Path, folder: Path, build: Path) -> None:
         super().__init__(module, root, folder, build)
@@ -199,7 +200,7 @@ class HeaderGuards(Compiled):
         return [guard for guard in super().order(mutant) if self._includes(self.folder / guard, mutant.file)]
 
     def _includes(self, source: Path, file: str) -> bool:
-        """Does a test include a header, itself or by others?"""
+        """Return whether a test includes a header, directly or indirectly."""
         name, seen = Path(file).name, set[Path]()
         waiting = [source]
         while waiting:
@@ -241,13 +242,13 @@ class HeaderGuards(Compiled):
 
 
 class LibraryGuards(Compiled):
-    """The mutated file is compiled alone and linked before its library into the test program of the build."""
+    """Compiles the mutated file and links it before its library into the test program of the build."""
 
     def __init__(self, module: Module, root: Path, folder: Path, build: Path) -> None:
         super().__init__(module, root, folder, build)
         self.prefix = folder / "prefix.hpp"
         self.prefix.write_text(SWITCH)
-        # What was compiled last, so that a mutant that has to go does not cost all other files again.
+        # Texts compiled last, so that removing one mutant does not require compiling all other files again.
         self.compiled: dict[str, str] = {}
 
     def build_programs(self, files: list[str]) -> str | None:
@@ -275,7 +276,7 @@ class LibraryGuards(Compiled):
         return self.folder / (source.replace("/", "_") + ".o")
 
     def _link(self, guard: str, made: list[Path], program: Path) -> None:
-        """Link a test program of the build with other objects of its library."""
+        """Link a test program of the build with replaced objects of its library."""
         told = subprocess.run(["ninja", "-t", "commands", guard.partition(":")[0]], cwd=self.build,
                               capture_output=True, text=True)
         link = shlex.split(told.stdout.strip().splitlines()[-1].split("&&")[1])
@@ -295,7 +296,8 @@ class LibraryGuards(Compiled):
         return not self.passes(self.folder / "mutant", guard)
 
     def _sources(self, file: str | None) -> list[str]:
-        """Return the files to compile for a mutant: itself, or for a header those beside it that include it."""
+        """Return the files to compile for a mutant: the file itself or, for a header, the files beside it that include
+        it."""
         if file is None or file.endswith(".cpp"):
             return [file] if file else []
         name, beside = Path(file).name, sorted((self.folder / file).parent.glob("*.cpp"))

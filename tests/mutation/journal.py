@@ -22,7 +22,7 @@ class Journal:
 
     @staticmethod
     def key(mutant: Mutant, text: str) -> str:
-        """Return the name of a mutant of a text."""
+        """Return the key of a mutant of a text."""
         digest = hashlib.sha256(text.encode()).hexdigest()[:16]
         return f"{mutant.file} {digest} {mutant.start} {mutant.end} {mutant.replacement}"
 

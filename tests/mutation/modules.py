@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a campaign of mutants breaks, and which tests have to notice."""
+"""Modules of the mutation campaign, and the tests that must detect their mutants."""
 from __future__ import annotations
 
 import re
@@ -12,14 +12,14 @@ KERNEL = "contact_laws/kernel/include/statejump/kernel"
 
 @dataclass(frozen=True)
 class Module:
-    """Files that are broken one at a time, and the tests that guard them, those that cost least first.
+    """Files that are mutated one at a time, and their tests, the cheapest first.
 
-    :param sources: patterns of the files, from the repository
+    :param sources: patterns of the files, relative to the repository
     :param guards: test files of headers (each is compiled with the mutant) and of Python (the campaign chooses among
         those that execute a mutant); names of the built test programs of a library, into which the mutant is linked,
         behind a colon those of its tests that are run
-    :param wanted: least share of mutants that has to be noticed
-    :param own: guards of Python that are asked of each mutant that they execute
+    :param wanted: smallest required fraction of detected mutants
+    :param own: test files of Python that run every mutant that they execute
     """
 
     name: str
@@ -34,12 +34,12 @@ class Module:
 
 
 def _tests(folder: str) -> tuple[str, ...]:
-    """Return the test files of a folder of tests/cpp, the shortest first: they cost least."""
+    """Return the test files of a folder of tests/cpp, the shortest first, because they take the least time."""
     files = sorted((ROOT / "tests" / "cpp" / folder).glob("*_test.cpp"), key=lambda file: file.stat().st_size)
     return tuple(str(file.relative_to(ROOT)) for file in files)
 
 
-# Every test of the kernel, and of what is a law of it.
+# All tests of the kernel and of its laws.
 _KERNEL_TESTS = _tests("kernel")
 _LAW_TESTS = _tests("laws")
 
@@ -57,7 +57,7 @@ def _quick() -> tuple[str, ...]:
 
 
 def _python(name: str, sources: tuple[str, ...], *own: str) -> Module:
-    """Return a module that these test files guard, and every quick one."""
+    """Return a module with these test files and all quick ones."""
     files, others = ([f"tests/python/test_{test}.py" for test in tests]
                      for tests in (own, (test for test in _quick() if test not in own)))
     return Module(name, tuple(f"python/statejump/{source}" for source in sources), (*files, *others), own=tuple(files))
@@ -71,7 +71,7 @@ MODULES = [
     _engine("linkage", "engine/src/linkage/rates.hpp"),
     _engine("rest_set", "engine/src/rest_set/arcs.hpp"),
     _engine("complementarity"),
-    # The random trusses take nine tenths of the time: they try what the other tests let through.
+    # Random trusses take nine tenths of the time, so they run only the mutants that other tests do not detect.
     Module("truss", ("engine/src/truss/**/*.cpp",), ("truss_tests:-*RandomTrusses*", "truss_tests:*RandomTrusses*")),
     Module("geometry", ("geometry/src/**/*.cpp",), ("geometry_tests",)),
     _python("schema", ("schema/*.py",), "schema_rules", "schema", "limits"),

@@ -1,11 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Breaks the contact kernel on purpose and requires that its tests notice.
+"""Mutation test of the contact kernel: its tests must detect every listed mutation.
 
-Copies the kernel headers to a temporary folder, applies one textual mutation at a time, compiles
-the named file of tests/cpp/kernel against the copy and runs it. The unmutated copy must pass, every
-mutant must fail at least one test. A mutant that does not compile proves nothing and is an error,
-and so is a mutation whose search text is no longer found exactly once.
+Copies the kernel headers to a temporary folder, applies one textual mutation at a time, compiles the named file of
+tests/cpp/kernel against the copy and runs it. The unmutated copy must pass, every mutant must fail at least one test.
+It is an error if a mutant does not compile, or if the search text of a mutation does not occur exactly once.
 
 Exit status: 0 all mutants killed, 1 one survived or the unmutated copy fails, 2 the set-up is wrong.
 """
@@ -123,8 +122,8 @@ class Bench:
         self.sources = pathlib.Path(options.tests)
         self.libraries = options.libraries
         self.folder = folder
-        # No optimisation and no warnings: a mutant may leave a variable unused. The slow headers,
-        # Eigen and GoogleTest, are the same for all and precompiled once.
+        # No optimisation and no warnings, because a mutant may leave a variable unused. The slow headers (Eigen,
+        # GoogleTest) are common to all and precompiled once.
         self.flags = ["-std=c++17", "-O0", "-w", "-ffp-contract=off"]
         for include in options.include:
             self.flags += ["-isystem", include]
@@ -158,7 +157,7 @@ class Bench:
 
 
 def mutate(mutation, original, folder):
-    """Copies the headers with one mutation; returns the new include folder."""
+    """Copy the headers with one mutation; return the new include folder."""
     headers = folder / mutation.name
     shutil.copytree(original, headers / HEADERS)
     path = headers / HEADERS / mutation.header
@@ -172,7 +171,7 @@ def mutate(mutation, original, folder):
 
 
 def killers(output):
-    """Names of the tests that failed, from GoogleTest's output."""
+    """Return the names of the failed tests in GoogleTest's output."""
     names = {line.split("]")[1].split("(")[0].strip() for line in output.splitlines()
              if line.startswith("[  FAILED  ]") and "." in line}
     return sorted(names)

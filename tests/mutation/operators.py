@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Mutants of a source: one operator, constant, sign, condition or statement changed.
 
-Of C++ the text is searched with comments, strings and preprocessor lines blanked; clang-format puts blanks around
-binary operators and none around those of types, which tells ``a * b`` from ``A* b``; numbers right behind ``<``, which
-may be those of a type, are left alone. Of Python the syntax tree is
-searched. Texts that only explain (messages, documentation, annotations) are left alone.
+C++ is searched as text with comments, strings and preprocessor lines blanked. clang-format puts blanks around binary
+operators only, which distinguishes ``a * b`` from ``A* b``. Numbers right after ``<`` may be template arguments and are
+not changed. Python is searched by its syntax tree. Messages, documentation and annotations are not changed.
 """
 from __future__ import annotations
 
@@ -37,7 +36,7 @@ class Mutant:
 
 
 def mutants(file: str, text: str) -> list[Mutant]:
-    """Return all mutants of a file, in order of their place."""
+    """Return all mutants of a file in order of their position."""
     found = _of_python(file, text) if PurePath(file).suffix == ".py" else _of_cpp(file, text)
     return sorted(set(found))
 
@@ -59,7 +58,7 @@ _NUMBER = re.compile(r"(?<![\w.])(?:0x[0-9a-fA-F]+|\d+\.?\d*(?:[eE][-+]?\d+)?)[u
 _UNARY_MINUS = re.compile(r"(?:(?<=[(,=?:] )|(?<=[(\[{])|(?<=return ))-(?=[\w(])")
 _FUNCTION = re.compile(r"\bstd::(min|max|sin|cos)(?=\()")
 _CONDITION = re.compile(r"\b(?:if|while) \((?!const\b|auto\b)")
-# A call or an assignment that is a whole statement: no type stands before what is assigned.
+# A call or an assignment that is a whole statement, without a type before the assigned name.
 _STATEMENT = re.compile(r"(?<=[;{})])(\s+)((?:\+\+|--)?[A-Za-z_][\w.:]*(?:->[\w.]+|\[[^\]\n]*\])*(?:\.[\w.]+)*"
                         r"(?:\s(?:=|\+=|-=|\*=|/=)\s[^;{}]*|\([^;{}]*\)[^;{}]*)?;)")
 _ENDS = re.compile(r"(?<=[;{})])\s+(if \([^;{}]*\) (?:return|continue|break|throw)\b[^;{}]*;)")
@@ -68,7 +67,7 @@ _TYPED = re.compile(r"^(?:return|throw|using|namespace|break|continue|case|defau
 
 
 def blanked(text: str, strings: bool = True) -> str:
-    """Return C++ with blanks for comments and, unless they are to stay, for strings and preprocessor lines."""
+    """Return C++ with comments replaced by blanks and, if ``strings`` is true, also strings and preprocessor lines."""
 
     def blank(found: re.Match[str]) -> str:
         if strings or found.group().startswith(("//", "/*")):
@@ -79,7 +78,7 @@ def blanked(text: str, strings: bool = True) -> str:
 
 
 def _other_number(number: str) -> str | None:
-    """Return another number of the same type; None for one that is no plain decimal."""
+    """Return another number of the same type; None for a number that is not a plain decimal."""
     if number.startswith("0x") or number[-1] in "uUlLfz":
         return None
     if re.fullmatch(r"\d+", number):
@@ -136,7 +135,7 @@ _CALCULATED: dict[type[ast.operator], str] = {
 
 
 class _Source:
-    """Places of nodes in a text as offsets."""
+    """Positions of nodes in a text as offsets."""
 
     def __init__(self, text: str) -> None:
         self.text = text
@@ -155,7 +154,7 @@ class _Source:
         return self._offset(node.lineno, node.col_offset), self._offset(node.end_lineno, node.end_col_offset)
 
     def between(self, left: ast.expr, right: ast.expr, word: str) -> tuple[int, int] | None:
-        """Return where an operator stands between two operands; None where a comment stands there too."""
+        """Return the position of an operator between two operands; None if a comment is there too."""
         first, last = self.span(left)[1], self.span(right)[0]
         place = self.text.find(word, first, last)
         return None if place < 0 or "#" in self.text[first:last] else (place, place + len(word))
@@ -175,7 +174,7 @@ def _of_python(file: str, text: str) -> Iterator[Mutant]:
 
 
 def _code(tree: ast.AST) -> Iterator[ast.AST]:
-    """Yield the nodes that are executed and decide something: no annotations, no parts of texts."""
+    """Yield the executed nodes, without annotations and parts of texts."""
     for name, value in ast.iter_fields(tree):
         if name in ("annotation", "returns", "decorator_list", "bases"):
             continue

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tries mutants of Python by the test files that execute their statement."""
+"""Runs mutants of Python with the test files that execute their statement."""
 from __future__ import annotations
 
 import ast
@@ -22,14 +22,14 @@ from journal import Journal
 from modules import MODULES, Module
 from operators import Mutant
 
-# Test files of Python that are asked of one mutant beside its module's own.
+# Largest number of test files per mutant besides those of its module.
 MOST_OTHERS = 6
 HEAVY = ("numpy", "attrs", "h5py", "scipy.optimize", "scipy.stats", "hypothesis", "pytest", "matplotlib.pyplot",
          "pandas")
 
 
 def statement_lines(text: str, place: int) -> range:
-    """Return the lines of the statement of Python at a place, of a compound one those of its head."""
+    """Return the lines of the Python statement at a position; for a compound statement only its head."""
     line, found = text.count("\n", 0, place) + 1, range(0)
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.stmt) and node.end_lineno is not None and node.lineno <= line <= node.end_lineno:
@@ -43,8 +43,8 @@ def statement_lines(text: str, place: int) -> range:
 class PythonGuards(Guards):
     """The test files run in a fork of this process, on a copy of the built package.
 
-    Each runs once under a trace, which tells the lines of all such modules that it executes; the journal keeps that
-    while package and test are as they were. A command in a process of its own is not traced.
+    Each runs once under a trace of executed lines, which the journal keeps while package and test are unchanged.
+    Commands in separate processes are not traced.
     """
 
     def __init__(self, module: Module, root: Path, folder: Path, build: Path, journal: Journal) -> None:
@@ -90,9 +90,9 @@ class PythonGuards(Guards):
             self.patience[guard] = max(LEAST_SECONDS, PATIENCE * self.seconds[guard])
 
     def order(self, mutant: Mutant) -> list[str]:
-        """Return the guards to ask, the quickest first: of those that execute a mutant the module's own and the few
-        that execute most of its file in a second. What no trace has seen may be executed by any that executes the file.
-        """
+        """Return the guards to run, the quickest first: of those that execute a mutant, the module's own, and the few
+        that execute most of its file per second. A line that no trace has seen may be executed by any guard of the
+        file."""
         if not self.executed:
             self.prepare([mutant])
         lines = set(statement_lines((self.folder / mutant.file).read_text(encoding="utf-8"), mutant.start))
@@ -123,7 +123,7 @@ class PythonGuards(Guards):
             time.sleep(0.05)
 
     def _test(self, guard: str, traced: bool) -> None:
-        """Run a test file; the fork ends here."""
+        """Run a test file in the fork, which then exits."""
         status = 70
         executed = {str(self.folder / file): set[int]() for file in self.traced}
 
@@ -135,7 +135,7 @@ class PythonGuards(Guards):
             return line_of(frame, event, value) if frame.f_code.co_filename in executed else None
 
         class Again:
-            """Recursion without end ends a trace: each test begins one."""
+            """Endless recursion ends a trace, so each test starts a new one."""
 
             @staticmethod
             def pytest_runtest_setup() -> None:
@@ -143,7 +143,7 @@ class PythonGuards(Guards):
 
         try:
             os.setsid()
-            # A shell has what runs in its background ignore interrupts, and what that starts inherits it.
+            # A shell makes background processes ignore interrupts, and their children inherit this.
             signal.signal(signal.SIGINT, signal.default_int_handler)
             with open(os.devnull, "r+b") as nowhere:
                 for stream in (0, 1, 2):

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Many mutants of C++ in one build: the statement of each stands beside the original and is chosen when it runs.
+"""Many mutants of C++ in one build: the statement of each mutant is compiled beside the original and selected at run
+time.
 
-What is compiled once serves for every mutant, so that a mutant costs a run of its tests and no compiler. A mutant
-whose statement cannot be doubled (a declaration of a deduced type, a constant expression) is compiled alone.
+One compilation serves all mutants, so that a mutant costs only a run of its tests. A mutant whose statement cannot be
+duplicated (a declaration with deduced type, a constant expression) is compiled separately.
 """
 from __future__ import annotations
 
@@ -12,7 +13,7 @@ from dataclasses import dataclass
 from operators import Mutant, blanked
 
 VARIABLE = "STATEJUMP_MUTANT"
-# Before the first include of every source: the number of the mutant that runs.
+# Inserted before the first include of every source: number of the selected mutant.
 SWITCH = f"""#pragma once
 #include <cstdlib>
 namespace statejump_mutation {{
@@ -35,7 +36,7 @@ _DECLARES = re.compile(r"(?:const\s|constexpr\s|static\s|auto\b|using\b|template
 
 @dataclass(frozen=True)
 class _Place:
-    """What is doubled: ``text[start:end]``, by the way of its kind."""
+    """Part of a text to duplicate: ``text[start:end]``, in the manner of its kind."""
 
     start: int
     end: int
@@ -43,10 +44,8 @@ class _Place:
 
 
 def switched(text: str, numbered: dict[int, Mutant]) -> tuple[str, dict[int, tuple[int, int]]]:
-    """Return a text with these mutants in it, and of those that it has the first and last lines of their statements.
-
-    Lines keep their numbers.
-    """
+    """Return a text with these mutants, and the first and last line of the statement of each included mutant. Line
+    numbers do not change."""
     code, bare = blanked(text), blanked(text, strings=False)
     taken: list[tuple[_Place, int, Mutant]] = []
     for number, mutant in sorted(numbered.items(), key=lambda item: item[1]):
@@ -70,7 +69,7 @@ def _doubled(kind: str, changed: str, was: str, number: int) -> str:
     if kind == "value":
         return f"({on}) ? ({changed}) : ({was})"
     if kind == "removed":
-        return f"{{ if (!({on})) {{ {was} }} }}"  # an else that follows is not its own
+        return f"{{ if (!({on})) {{ {was} }} }}"  # braces, so that an else that follows does not belong to this if
     if kind == "return":
         return f"{{ if ({on}) {changed} {was} }}"
     if kind == "statement":
@@ -79,7 +78,7 @@ def _doubled(kind: str, changed: str, was: str, number: int) -> str:
 
 
 def _place(code: str, mutant: Mutant) -> _Place | None:
-    """Return what to double for a mutant; None: it has to be compiled alone."""
+    """Return the part of the text to duplicate for a mutant; None: the mutant must be compiled separately."""
     if mutant.operator == "removed statement":
         return _Place(mutant.start, mutant.end, "removed")
     start = _start(code, mutant.start)
@@ -157,7 +156,7 @@ def _closing(code: str, place: int) -> int:
 
 
 def _start(code: str, place: int) -> int | None:
-    """Return where the statement begins that holds a place."""
+    """Return the beginning of the statement at a position."""
     depth = 0
     for at in range(place - 1, -1, -1):
         letter = code[at]
@@ -166,7 +165,7 @@ def _start(code: str, place: int) -> int | None:
         elif letter in "([":
             depth = max(depth - 1, 0)
         elif letter == "}" and depth == 0 and not re.match(r"\s*\n|\s*$|\s*else", code[at + 1: place]):
-            return None  # a list of values, or a function within
+            return None  # a list of values, or a nested function
         elif depth == 0 and (letter in ";}" or letter == "{" and _BLOCK.search(code[max(0, at - 120): at])):
             if letter == ";" and _in_for(code, at):
                 continue
@@ -179,7 +178,7 @@ def _start(code: str, place: int) -> int | None:
 
 
 def _in_for(code: str, place: int) -> bool:
-    """Does a semicolon stand in the head of a loop?"""
+    """Return whether a semicolon belongs to the head of a for loop."""
     line = code.rfind("for (", 0, place)
     return line >= 0 and _closing_or_end(code, line + 5) > place
 
@@ -192,7 +191,7 @@ def _closing_or_end(code: str, place: int) -> int:
 
 
 def _end(code: str, place: int) -> int:
-    """Return where the statement ends: its semicolon, or the bracket that closes around it."""
+    """Return the end of the statement: its semicolon, or the enclosing closing bracket."""
     depth = 0
     while place < len(code):
         letter = code[place]

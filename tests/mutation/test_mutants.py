@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the campaign of mutants changes, and how it counts."""
+"""Changes made by the mutation campaign, and its counts."""
 from __future__ import annotations
 
 import os
@@ -29,7 +29,7 @@ double f(double a, const double* b) {
   return std::max(c, a);
 }
 """
-# An else behind a statement that is removed stays that of its if.
+# If a statement with an else is removed, the else still belongs to its if.
 BRANCHED = CPP.replace("  c *= 0.5;\n", "  if (text)\n    c *= 0.5;\n  else\n    c *= 0.5;\n")
 PYTHON = '''"""1 < 2 in a text"""
 def f(a: int = 3, b: "int | None" = None) -> float:
@@ -64,7 +64,7 @@ def test_changes_of_python() -> None:
 
 
 def test_lines_of_a_statement_of_python() -> None:
-    """Of a compound statement the head alone, or a test of the rest of its body would be asked in vain."""
+    """Only the head of a compound statement; otherwise tests of its body would be run in vain."""
     text = "x = (1 +\n     2)\ndef f(a=3,\n      b=4):\n    if a < 5: return 6\n    return 7\n"
 
     def lines(what: str) -> list[int]:
@@ -75,7 +75,7 @@ def test_lines_of_a_statement_of_python() -> None:
 
 
 def test_build_with_all_mutants_is_each_of_them(tmp_path: Path) -> None:
-    """f(1, &3) of the original, and of every mutant in one build, against the mutants compiled alone."""
+    """f(1, &3) of the original and of every mutant in one build, compared with the separately compiled mutants."""
     numbered = dict(enumerate(mutants("f.cpp", BRANCHED), start=1))
     main = ('#include <cstdio>\nint main() {\n  const double b = 3;\n'
             '  for (double a : {1.0, 2.0, 5.0}) std::printf("%g ", f(a, &b));\n}\n')
@@ -113,7 +113,7 @@ def test_module_files_and_tests_exist() -> None:
 
 
 def test_explained_mutants_are_still_there() -> None:
-    """An explanation of a line that has gone is taken out."""
+    """Explanations for lines that no longer exist must be removed."""
     import tomllib
 
     text = (Path(__file__).resolve().parent / "equivalent.toml").read_text()
@@ -123,7 +123,7 @@ def test_explained_mutants_are_still_there() -> None:
 
 
 class Oracle:
-    """Notices what changes a number; a mutant that removes a statement does not compile."""
+    """Detects changes of a number; a mutant that removes a statement does not compile."""
 
     def prepare(self, wanted: list[Mutant]) -> None:
         """Nothing to make ready."""
@@ -148,6 +148,6 @@ def test_score_and_journal(tmp_path: Path) -> None:
 
 
 def test_interval_by_hand() -> None:
-    """Wilson's interval of 8 in 10: 49 to 94 %."""
+    """Wilson's interval for 8 of 10 is 49 to 94 %."""
     low, high = Score(MODULES[0], 100, 8, ["", ""]).interval()
     assert (low, high) == pytest.approx((0.4902, 0.9433), abs=5e-5)

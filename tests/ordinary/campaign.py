@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Campaign of ordinary structures: which of those that have a path are solved, class by class.
+"""Campaign of ordinary structures: fraction of the structures with a path that the solver solves, by class.
 
     PYTHONPATH=build/python tests/ordinary/campaign.py [--count 300] [--seed 1] [--families warren boom ...] [--jobs 1]
         [--out outcomes.csv] [--limit 60] [--nice 15] [--write FOLDER] [--at-least 0.98 0.95]
 
-Every structure follows from its family and its seed alone. Each is judged by theory (``oracle.py``) and solved with
-default options in a worker process, which may crash or be ended after the limit. The first table counts outcomes by
-family, the second those of structures that have a path. ``--write`` writes the case files of what failed.
+Family and seed determine a structure. Theory (``oracle.py``) decides whether it has a path, and a worker process, which
+may crash or exceed the limit, solves it with default options. The first table counts outcomes by family, the second
+those of structures with a path. ``--write`` writes the case files of failures.
 """
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ import structures
 HERE = Path(__file__).resolve().parent
 FIELDS = ("family", "seed", "plan", "loaded", "joints", "clearance", "kind", "class_a", "load_factor", "slack",
           "outcome", "reason", "seconds", "start_share", "jump_m", "difference", "sentence")
-# Time on the wall over time of the processor, on a machine that does much else, before a worker counts as asleep.
+# Ratio of wall time to CPU time, on a busy machine, from which a worker counts as blocked.
 BUSY = 30
-START_S = 60.0  # imports of a new process, on such a machine
-# Kinds of failures that state what theory states.
+START_S = 60.0  # longest time for the imports of a new process on a busy machine [s]
+# Kinds of failures that agree with the verdict of theory.
 RIGHT = {"mechanism": ("held_mechanism", "mechanism"), "unstable": ("buckled", "held_mechanism"),
          "overloaded": ("overloaded",)}
 # Kinds that deny a path.
@@ -43,10 +43,10 @@ Row = dict[str, Any]
 
 
 class Worker:
-    """A process that solves structures; another takes its place after a crash.
+    """A process that solves structures; it is replaced after a crash.
 
-    :param limit_s: seconds of the processor after which it is ended
-    :param nice: how far it steps back behind others
+    :param limit_s: CPU time after which the process is ended [s]
+    :param nice: niceness of the process
     """
 
     def __init__(self, limit_s: float, nice: int) -> None:
@@ -66,7 +66,7 @@ class Worker:
 
     @staticmethod
     def _read(process: subprocess.Popen[str], lines: SimpleQueue[str]) -> None:
-        """Pass lines on until the process ends, then an empty one."""
+        """Pass lines on until the process ends, then an empty line."""
         assert process.stdout is not None
         for line in process.stdout:
             lines.put(line)
@@ -130,12 +130,12 @@ def outcome(row: Row) -> str:
 
 
 def has_path(row: Row) -> bool:
-    """Return whether theory gives the structure a path."""
+    """Return whether the structure has a path in theory."""
     return bool(row.get("kind") == "path")
 
 
 def wrong_reason(row: Row) -> bool:
-    """Return whether the sentence of a failure denies what theory states."""
+    """Return whether the reason of a failure contradicts theory."""
     if row["outcome"] not in ("failed", "refused"):
         return False
     if has_path(row):
@@ -156,7 +156,7 @@ def table(rows: list[Row]) -> str:
 
 
 def groups(rows: list[Row]) -> dict[str, list[Row]]:
-    """Return the rows of structures that have a path, by what is required of them."""
+    """Return the rows of structures with a path, by the requirement on their class."""
     path = [row for row in rows if has_path(row)]
     return {
         "path, no clearance joint": [row for row in path if not row["clearance"]],
@@ -168,12 +168,12 @@ def groups(rows: list[Row]) -> dict[str, list[Row]]:
 
 
 def fraction(rows: list[Row]) -> float:
-    """Return the fraction of rows that finished and are not wrong."""
+    """Return the fraction of rows that finished with correct results."""
     return sum(row["outcome"] == "finished" for row in rows) / max(len(rows), 1)
 
 
 def summary(rows: list[Row]) -> str:
-    """Return what finished of structures that have a path, and what is never right."""
+    """Return the counts of structures with a path that finished, and of results that are always wrong."""
     lines = ["| structures | number | finished | fraction |", "|---|---|---|---|"]
     for name, chosen in groups(rows).items():
         finished = sum(row["outcome"] == "finished" for row in chosen)
@@ -194,7 +194,7 @@ def summary(rows: list[Row]) -> str:
 
 
 def write_cases(rows: list[Row], folder: Path) -> None:
-    """Write the case files of structures that have a path and did not finish, and of what is never right."""
+    """Write the case files of structures with a path that did not finish, and of results that are always wrong."""
     from statejump.kinds.truss.generate.document import to_toml
 
     folder.mkdir(parents=True, exist_ok=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Materials, sections, loads and joints of a drawn shape, as engineers would choose them."""
+"""Materials, sections, loads and joints for a sketched shape, in the ranges of engineering practice."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
@@ -32,7 +32,7 @@ GRAVITY = 9.81
 
 
 def materials(made: Sketch, rng: Random) -> None:
-    """Give bars materials and tubes; some structures are of two materials, some are lit from one side."""
+    """Assign materials and tubes to bars. Some structures have two materials, some are heated from one side."""
     common, other = rng.choice(list(MATERIALS), 2, p=[0.3, 0.3, 0.1, 0.2, 0.1])
     roles = sorted({bar.role for bar in made.bars.values()})
     mixed = set(rng.choice(roles, rng.integers(1, len(roles) + 1), replace=False)) if rng.random() < 0.4 else set()
@@ -65,7 +65,7 @@ def materials(made: Sketch, rng: Random) -> None:
 
 
 def thermal_force_N(made: Sketch, largest_K: float) -> float:
-    """Return the force of a typical bar that is held while its temperature changes."""
+    """Return the force of a typical bar of fixed length during its temperature change [N]."""
     forces = [abs(bar.keys["thermal_expansion_per_K"]) * bar.keys["young_modulus_Pa"]
               * bar.keys["cross_section_area_m2"] * largest_K for bar in made.bars.values()]
     return float(np.median(forces))
@@ -94,7 +94,7 @@ def loads(made: Sketch, rng: Random, case: dict[str, Any]) -> str:
 
 
 def _preload(made: Sketch, rng: Random) -> None:
-    """Add springs with a preload between nodes that no bar joins, or beside bars."""
+    """Add springs with a preload between nodes without a bar, or in parallel with bars."""
     names = list(made.points)
     for number in range(int(rng.integers(1, 4))):
         one, two = rng.choice(names, 2, replace=False)
@@ -109,7 +109,7 @@ def _preload(made: Sketch, rng: Random) -> None:
 class Joiner:
     """Places joints.
 
-    :param force_N: of a bar that is held while it is heated
+    :param force_N: force of a heated bar of fixed length [N]
     """
 
     made: Sketch
@@ -124,7 +124,7 @@ class Joiner:
         return f"{kind}{self.number}"
 
     def friction(self) -> dict[str, float]:
-        """Return coefficient and normal force, from little to more than the joint can ever carry."""
+        """Return coefficient and normal force of friction, from little to more than the joint can ever carry."""
         share = float(10 ** self.rng.uniform(-2, 0.3))
         coefficient = float(np.round(self.rng.uniform(0.05, 0.5), 3))
         return {"friction_coefficient": coefficient,
@@ -145,7 +145,7 @@ class Joiner:
                 "stiffness_ratio": float(np.round(self.rng.uniform(0, 2), 2))}
 
     def along(self, kind: str) -> dict[str, Any]:
-        """Return what a slider or an Iwan joint has."""
+        """Return the keys of a slider or an Iwan joint."""
         return {**self.friction(), **self.stops()} if kind == "slider" else self.iwan()
 
     def foot(self, foot: Foot, kind: str) -> None:
@@ -154,7 +154,7 @@ class Joiner:
         self.made.add(kind, self.name("foot"), nodes=[foot.node], axis=list(foot.axis), **self.along(kind))
 
     def telescope(self, bar: str, kind: str) -> None:
-        """Let a bar slide in its end fitting."""
+        """Let a bar slide in the fitting at its end."""
         side = int(self.rng.integers(2))
         if not self._may_detach(bar, side):
             return
@@ -163,15 +163,15 @@ class Joiner:
         self.made.add(kind, self.name("fit"), nodes=[new, old], axis=axis, **self.along(kind))
 
     def _may_detach(self, bar: str, side: int) -> bool:
-        """Return whether another bar stays at the end; nodes of joints keep theirs, and of two bars with an angle
-        between them one keeps their node."""
+        """Return whether another bar remains at the end. Nodes of joints keep their bars, and one of two bars with an
+        angle item between them keeps their node."""
         node = self.made.bars[bar].ends[side]
         stays = len(self.made.at(node)) > 1 or node in self.made.fixed
         return (stays and "_of_" not in node and (bar, node) not in self.carriers
                 and all(node in self.made.bars[other].ends for other in self._turned_by(bar, node)))
 
     def _turned_by(self, bar: str, node: str) -> list[str]:
-        """Return the bars that springs and latches turn a bar against about a node, wherever they end by now."""
+        """Return the bars against which springs and latches rotate a bar about a node, wherever their ends are now."""
         pairs = [item["links"] for section in ("torsion_spring", "latch_hinge")
                  for item in self.made.items.get(section, ()) if bar in item["links"]]
         others = [other for pair in pairs for other in pair if other != bar]
@@ -236,7 +236,7 @@ def joints(made: Sketch, rng: Random, force_N: float) -> str:
     """Place joints by a plan; return it."""
     plan = str(rng.choice(PLANS, p=SHARES))
     if made.items.get("torsion_spring") and plan in ("pins", "all_pins", "mixed"):
-        plan = "fittings"  # pins would take the bending springs' links apart
+        plan = "fittings"  # pins would separate the links of bending springs
     place = Joiner(made, rng, force_N)
     bars = [str(name) for name in rng.permutation([*made.bars])]
     some = bars[: max(1, int(len(bars) * float(rng.uniform(0.03, 0.3))))][:MOST_JOINTS // 2]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Displacements at the ends of cycles, found without the engine, of structures of class A whose only joints are sliders
-without stops: small displacements, in each step the minimum of energy and heat."""
+"""Displacements at the ends of cycles, computed without the engine, for structures of class A whose only joints are
+sliders without stops. Small displacements; each step minimises energy plus frictional heat."""
 from __future__ import annotations
 
 from typing import Any
@@ -13,12 +13,12 @@ from sketch import CLEARANCE, Document
 
 STEPS = 24  # of a monotone piece of the program
 MOST_SLIDERS = 40
-# Slides that turn within a step, over the largest displacement.
+# Allowed difference for slides that reverse within a step, over the largest displacement.
 TOLERANCE = 0.05
 
 
 def applies(document: Document) -> bool:
-    """Return whether a structure is of this kind; cables may go slack, so that they are left out."""
+    """Return whether a structure is of this kind; structures with cables, which may become slack, are not."""
     others = any(document.get(section) for section in (*CLEARANCE, "iwan_joint", "latch_hinge"))
     cables = any(spring.get("cable") for spring in document.get("spring", ()))
     sliders = document.get("slider", [])
@@ -26,16 +26,16 @@ def applies(document: Document) -> bool:
     return not others and not cables and not stopped and 0 < len(sliders) <= MOST_SLIDERS
 
 
-# Keys of loads, preloads and temperatures: small displacements are linear in them.
+# Keys of loads, preloads and temperatures, in which small displacements are linear.
 LOADS = ("force_N", "gravity_m_per_s2", "preload_N", "normal_force_N", "temperature_change_max_K",
          "table_temperature_change_K")
-# At this share of them the second-order effects of large displacements are this share of what they were, over the
-# displacements: where a structure itself differs by more than the tolerance, it is compared so.
+# Factor on them: second-order effects of large displacements, relative to the displacements, shrink by it. A structure
+# that differs by more than the tolerance is compared at this scale.
 SMALL = 0.01
 
 
 def scaled(document: Document, share: float) -> Document:
-    """Return a document with its loads, preloads and temperatures multiplied by a share."""
+    """Return a document with loads, preloads and temperatures multiplied by ``share``."""
     places = {node["name"]: np.array(node["position_m"]) for node in document["node"]}
 
     def moved(key: str, value: Any) -> Any:
@@ -82,14 +82,14 @@ def ends(document: Document) -> np.ndarray:
     basis, slides = frame.motions(True), frame.slides()
     active = np.ones(len(frame.stiffness), dtype=bool)
     factor = np.linalg.cholesky(basis.T @ (frame.elastic(active) + frame.geometric(frame.tension)) @ basis)
-    rows = np.linalg.solve(factor, (slides @ basis).T)  # of the slides, in unknowns of unit stiffness
+    rows = np.linalg.solve(factor, (slides @ basis).T)  # rows of the slides, in unknowns of unit stiffness
     limits = np.array([limit for _, limit in frame.sliding])
     gram = rows.T @ rows
     dead = np.linalg.solve(factor, basis.T @ (frame.force - frame.rows.T @ frame.tension))
     heated = np.linalg.solve(factor, basis.T @ (frame.rows.T @ heat.T)).T
     back = np.linalg.solve(factor, basis.T)
     values, vectors = np.linalg.eigh(gram)
-    # Sliders that one motion moves share their friction as they like.
+    # If one motion moves several sliders, the distribution of their friction is arbitrary.
     kept = values > 1e-12 * values[-1]
     root, vectors = np.sqrt(values[kept]), vectors[:, kept]
     least, target = root[:, None] * vectors.T, vectors.T / root[:, None]

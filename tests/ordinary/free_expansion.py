@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random trusses without loads and joints: does each expand freely, without forces, and come back?
+"""Random trusses without loads and joints: each must expand freely, without forces, and return.
 
     PYTHONPATH=build/python tests/ordinary/free_expansion.py [--count 1000] [--seed 1] [--limit 60] [--write FOLDER]
 
-Six supports in space and three in a plane hold a truss, so that they do not hinder a uniform expansion. A redundant
-truss has one expansion and one temperature. The bars of a determinate one have expansions, temperatures and programs of
-their own; each then has the length of a free bar.
+Six supports in space, or three in a plane, hold a truss without hindering uniform expansion. A redundant truss has one
+coefficient and one temperature. Bars of a determinate truss have individual coefficients, temperatures and programs;
+each must have the length of a free bar.
 """
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ from statejump.kinds.truss.generate.document import to_toml
 
 Random = np.random.Generator
 EPSILON = float(np.finfo(float).eps)
-# Roundings of one length: of coordinates, displacements and direction, of a few bars at a node.
+# Number of roundings of a length: coordinates, displacements, direction, a few bars at a node.
 ROUNDINGS = 64
 MOST = 500  # members
-# A determinate truss whose bars expand differently changes its shape. Beyond this rotation of a bar [rad] it may come
-# to a shape that is a mechanism, where it has no way on.
+# Largest rotation of a bar [rad]. A determinate truss with unequal expansions changes its shape, and beyond this
+# rotation it may become a mechanism without a path.
 ROTATION = 0.05
 STANDING = ("warren", "pratt", "k_truss", "tower", "ring", "boom", "mast", "grid", "ring_truss")
 
@@ -45,8 +45,8 @@ STANDING = ("warren", "pratt", "k_truss", "tower", "ring", "boom", "mast", "grid
 class Truss:
     """A truss without loads and joints.
 
-    :param redundant: by how many members it is statically indeterminate
-    :param conditioning: smallest singular value of its balance of forces
+    :param redundant: degree of static indeterminacy
+    :param conditioning: smallest singular value of its equilibrium matrix
     """
 
     seed: int
@@ -68,8 +68,8 @@ class Truss:
 
 
 def grown(rng: Random, dimension: int, members: int) -> tuple[np.ndarray, list[tuple[int, int]]]:
-    """Return a determinate truss: each new node is on as many bars as it has directions, and none of them is nearly in
-    the plane of the others. Some grow long, some compact."""
+    """Return a determinate truss: each new node has as many bars as dimensions, none nearly in the plane of the others.
+    Some trusses are long, some compact."""
     recent = int(rng.choice([dimension + 1, 8, 10_000]))
     places = [np.zeros(dimension)]
     bars: list[tuple[int, int]] = []
@@ -101,7 +101,7 @@ def meshed(rng: Random, dimension: int, members: int) -> tuple[np.ndarray, list[
 
 
 def standing(rng: Random, shape: str, members: int) -> tuple[np.ndarray, list[tuple[int, int]]]:
-    """Return a shape as engineers build it without its supports."""
+    """Return an engineering shape without its supports."""
     made = structures.SHAPES[shape](rng, int(np.clip(members / (4 if shape in ("warren", "pratt") else 9), 3, 40)))
     number = {name: place for place, name in enumerate(made.points)}
     return (np.array(list(made.points.values())),
@@ -109,8 +109,8 @@ def standing(rng: Random, shape: str, members: int) -> tuple[np.ndarray, list[tu
 
 
 def mounted(places: np.ndarray, bars: list[tuple[int, int]]) -> Sketch:
-    """Return a sketch that is held at one node in all directions, at the farthest one across the line to it, and in
-    space at the farthest one from that line across their plane."""
+    """Return a sketch held at one node in all directions, at the farthest node across the line to it, and in space at
+    the node farthest from that line across their plane."""
     dimension = places.shape[1]
     first = places - places[0]
     second = int(np.linalg.norm(first, axis=1).argmax())
@@ -136,7 +136,7 @@ def mounted(places: np.ndarray, bars: list[tuple[int, int]]) -> Sketch:
 
 
 def heated(made: Sketch, rng: Random, uniform: bool) -> tuple[Document, list[Document]]:
-    """Give the bars sections and materials; return the programs."""
+    """Assign sections and materials to the bars; return the programs."""
     thermal = programs.program(rng)
     if rng.random() < 0.03:
         thermal = programs.table("plateau", 0.0, 60.0, 1)
@@ -155,7 +155,7 @@ def heated(made: Sketch, rng: Random, uniform: bool) -> tuple[Document, list[Doc
 
 
 def truss(seed: int) -> Truss | None:
-    """Return the truss of a seed; None where its shape is a mechanism or nearly one, or changes much."""
+    """Return the truss of a seed; None if its shape is (nearly) a mechanism or changes too much."""
     rng = structures.random_of("free_expansion", seed)
     shape = str(rng.choice(["grown", "meshed", *STANDING], p=[0.35, 0.35, *[0.3 / len(STANDING)] * len(STANDING)]))
     members = int(round(10 ** rng.uniform(0, np.log10(MOST))))
@@ -200,10 +200,10 @@ def trusses(count: int, seed: int) -> Iterator[Truss]:
 
 
 def _allowed(one: Truss, path: Any) -> tuple[float, float]:
-    """Return what rounding leaves of forces [N] and lengths [m].
+    """Return the rounding errors of forces [N] and lengths [m].
 
-    A length is rounded to the size of the coordinates, which gives its bar a force. The forces at all nodes add up to
-    those of bars by the inverse of the balance of forces, and bars of other stiffness follow.
+    Rounding of coordinates changes lengths and thereby bar forces. The inverse of the equilibrium matrix converts nodal
+    residuals to bar forces, which strain bars of other stiffness.
     """
     links, places = path.truss.links, path.truss.nodes.position_m
     stiffness = links.young_modulus_Pa * links.cross_section_area_m2 / links.stress_free_length_m
@@ -214,7 +214,7 @@ def _allowed(one: Truss, path: Any) -> tuple[float, float]:
 
 
 def _strains(one: Truss, path: Any) -> np.ndarray:
-    """Return the free strains of bars at the states (states, bars), from the programs alone."""
+    """Return the free strains of bars (states, bars) from the programs."""
     common = one.document["thermal"]
     period = common["table_time_s"][-1] if common["shape"] == "table" else common["period_s"]
     named = {None: common, **{other["name"]: other for other in one.document.get("program", ())}}
@@ -225,11 +225,11 @@ def _strains(one: Truss, path: Any) -> np.ndarray:
 
 
 def _over_rounding(one: Truss, path: Any) -> dict[str, float]:
-    """Return forces, lengths, jump and the displacement of a uniform expansion over what rounding allows, forces over
-    that of a bar that is held, and the jump over the expansion of the whole."""
+    """Return forces, lengths, jump and the displacement of a uniform expansion over their rounding errors. Forces are
+    relative to that of a bar of fixed length, and the jump to the expansion of the truss."""
     states, links, places = path.states, path.truss.links, path.truss.nodes.position_m
     force_N, length_m = _allowed(one, path)
-    # From lengths to displacements once more by the balance of forces.
+    # From lengths to displacements, the equilibrium matrix enters once more.
     moved_m = length_m * np.sqrt(places.size) / min(one.conditioning, 1.0)
     moved, ends = states["displacement_m"], path.cycle_ends["displacement_m"]
     lengths = np.linalg.norm(np.diff((places + moved)[:, links.nodes], axis=2)[:, :, 0], axis=2)
@@ -248,7 +248,7 @@ def _over_rounding(one: Truss, path: Any) -> dict[str, float]:
 
 
 def checked(one: Truss) -> dict[str, Any]:
-    """Return what a truss did and what is wrong with it, "" for nothing."""
+    """Return the results of a truss and its faults, "" for none."""
     began = time.process_time()
     try:
         path = sj.load(one.document).reduced().native
@@ -264,7 +264,7 @@ def checked(one: Truss) -> dict[str, Any]:
 
 
 def main() -> int:
-    """Print the table and what is wrong; return 1 if something is."""
+    """Print the table and the faults; return 1 if there are any."""
     given = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     given.add_argument("--count", type=int, default=1000)
     given.add_argument("--seed", type=int, default=1)

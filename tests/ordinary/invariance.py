@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether a structure written otherwise has the same jump: other order, names, place, direction, units, duration.
+"""Invariance of the jump under another order, names, position, orientation, units and duration of a case.
 
     PYTHONPATH=build/python tests/ordinary/invariance.py [--count 300] [--seed 1] [--families ...] [--most-nodes 60]
         [--out FILE.csv]
 
-Structures of class A whose joints all carry forces: their paths are unique. A row says how far jumps of all nodes and
-cycles are apart, over what rounding explains.
+Uses structures of class A whose joints all carry forces, because their paths are unique. A row has the difference of
+the jumps of all nodes and cycles, over the rounding error.
 """
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ INCREMENTS = 50  # of a branch
 EPSILON = float(np.finfo(float).eps)
 FIELDS = ("family", "seed", "transform", "same", "failure", "changed_failure", "difference_m", "allowed_m", "jump_m",
           "largest_m")
-ROUNDINGS = 64  # sums of rounding errors of one length: of its coordinates, its direction, a few bars per node
+ROUNDINGS = 64  # number of roundings of a length: coordinates, direction, a few bars per node
 
 
 @dataclass(frozen=True)
 class Solved:
     """Jumps of a case.
 
-    :param jump_m: by node (cycles, dimension)
+    :param jump_m: jumps by node (cycles, dimension)
     :param largest_m: largest displacement of the path
     :param failure: kind of the failure, "" for none
     """
@@ -51,7 +51,7 @@ class Solved:
 
 
 def solved(document: Document) -> Solved:
-    """Return the jumps of a case with its own options."""
+    """Return the jumps of a case with the options in its document."""
     try:
         path = sj.load(document).reduced().native
     except FailedRun as failed:
@@ -65,12 +65,11 @@ def solved(document: Document) -> Solved:
 
 
 def tolerance_m(document: Document, first: Solved, changed: Changed) -> float:
-    """Return how far jumps may be apart.
+    """Return the allowed difference of jumps [m].
 
-    Every event is located within a fraction of a branch, in which nodes move by at most that fraction of their largest
-    displacement; a joint whose change is earlier slips that much more. Lengths are rounded to the size of the
-    coordinates; what that moves is at most the root of the condition of the stiffness as much. Twice the increments
-    change the path by their square where laws are smooth.
+    Events are located within a fraction of a branch, so a joint may slip by that fraction of the largest displacement
+    more or less. Rounding of lengths is amplified by at most the root of the condition number of the stiffness. If laws
+    are smooth, twice the increments change the path to second order.
     """
     frame = Frame(document)
     stiffness = frame.elastic(np.ones(len(frame.stiffness), dtype=bool)) + frame.geometric(frame.tension)
@@ -81,7 +80,7 @@ def tolerance_m(document: Document, first: Solved, changed: Changed) -> float:
 
 
 def apart(document: Document, first: Solved, name: str, rng: np.random.Generator) -> dict[str, Any]:
-    """Return a row: how far the jumps of the changed case are from those of the first [m], and how far they may be."""
+    """Return a row: difference of the jumps of the changed case from the first [m], and the allowed difference."""
     changed = TRANSFORMS[name](document, rng)
     second = solved(changed.document)
     row: dict[str, Any] = {"transform": name, "failure": first.failure, "changed_failure": second.failure}
@@ -125,7 +124,7 @@ def median(values: list[float]) -> float:
 
 
 def table(found: list[dict[str, Any]]) -> str:
-    """Return how far jumps are apart, change by change."""
+    """Return the table of differences of jumps by type of change."""
     lines = ["| change | structures | the same | largest difference over the allowed one | median | over the largest "
              "displacement | median |",
              "|---|--:|--:|--:|--:|--:|--:|"]

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether a structure has a quasi-static path, found without the engine: small displacements, numpy and scipy alone.
+"""Decides without the engine whether a structure has a quasi-static path: small displacements, numpy and scipy only.
 
-Three checks decide. Each has a theorem behind it.
+Three checks decide; each is based on a theorem.
 
 - *Stability*: with every joint held, the elastic plus the geometric stiffness is positive definite. Otherwise the
   structure is a mechanism, or it buckles.
-- *Class A*: it is positive definite with every slider and Iwan joint free as well. With given friction limits each
-  step is then a strictly convex minimisation: exactly one continuation exists, whatever slips.
+- *Class A*: it is positive definite with every slider and Iwan joint free as well. With given friction limits each step
+  is then a strictly convex minimisation: exactly one continuation exists, whatever slips.
 - *Safe loads*: bar forces and friction within its limits balance more than the loads. A quasi-static evolution with
   given friction limits then exists, as in perfect plasticity (the safe-load condition); if they balance less, none.
 
-Pins are held in the stiffness: a bar with play has the energy of a bar with a dead zone, stable where the bar is.
+In the stiffness, pins are closed. A bar with play has the energy of a bar with a dead zone and is stable if the bar is.
 """
 from __future__ import annotations
 
@@ -23,26 +23,27 @@ from scipy.optimize import linprog, lsq_linear
 
 from sketch import CLEARANCE, Document
 
-# Eigenvalues of the stiffness over its diagonal: rounding of the assembly is 1e-16 · 1e3 unknowns, the softest long
-# girder here has 1e-7.
+# Smallest eigenvalue of the stiffness over its diagonal. Rounding of the assembly is 1e-16 · 1e3 unknowns; the softest
+# long girder has 1e-7.
 FREE = 1e-10
-# Load factors within this of 1 are undetermined: displacements are finite, the linear program's tolerance is 1e-7.
+# Load factors this close to 1 are undetermined: displacements are finite, and the linear program has a tolerance of
+# 1e-7.
 MARGIN = 0.03
-# Of the elastic stiffness, which is left by compression: below it the loads are followed at large displacements. A flat
-# arch at the load at which it snaps through has 0.81 by small displacements.
+# Fraction of the elastic stiffness that remains under compression. Below it, loads are followed at large displacements.
+# A flat arch at its snap-through load has 0.81 for small displacements.
 SHALLOW = 0.85
 FAR = 0.05  # of the size
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What theory says of a structure.
+    """Verdict of theory on a structure.
 
     :param kind: ``path``, ``overloaded``, ``mechanism``, ``unstable`` or ``undetermined``
-    :param class_a: one continuation exists always
+    :param class_a: whether the continuation is always unique
     :param load_factor: largest multiple of the loads that friction carries; inf: any
-    :param start_share: estimated displacement of the start over the size, NaN: not estimated
-    :param slack: some part with play carries nothing at the start
+    :param start_share: estimated initial displacement over the size; NaN: not estimated
+    :param slack: whether some part with play carries no force at the start
     """
 
     kind: str
@@ -53,7 +54,7 @@ class Verdict:
 
 
 class Frame:
-    """The arrays of a document, vectors of the dimension of the truss."""
+    """The arrays of a document; vectors have the dimension of the truss."""
 
     def __init__(self, document: Document) -> None:
         self.document, self.dimension = document, document["truss"]["dimension"]
@@ -88,7 +89,7 @@ class Frame:
         self.force = force.ravel()
 
     def _bars(self) -> None:
-        """Bars and springs together: rows of elongation, stiffness, tension as drawn, cables."""
+        """Collect bars and springs: rows of elongation, stiffness, initial tension, cables."""
         rows, stiffness, tension, directions, lengths, cables = [], [], [], [], [], []
         for number, item in enumerate([*self.document["link"], *self._items("spring")]):
             ends = [self.place[name] for name in item["nodes"]]
@@ -129,7 +130,7 @@ class Frame:
         return row.ravel()
 
     def thermal_tensions(self) -> list[np.ndarray]:
-        """Return the tensions that temperature adds to bars that are held, at the extremes of the programs."""
+        """Return the tensions of bars of fixed length due to temperature, at the extremes of the programs."""
         programs = {None: self.document["thermal"], **{one["name"]: one for one in self.document.get("program", ())}}
         found = []
         for largest in (True, False):
@@ -143,7 +144,7 @@ class Frame:
         return found
 
     def motions(self, sliding: bool) -> np.ndarray:
-        """Return a basis of the displacements that supports and joints leave: pins held, sliders free or held."""
+        """Return a basis of the displacements that supports and joints permit; pins held, sliders free or held."""
         n, d = len(self.x), self.dimension
         constraints = []
         for number, node in enumerate(self.document["node"]):
@@ -187,7 +188,7 @@ class Frame:
         return np.array(rows).reshape(len(rows), self.x.size)
 
     def elastic(self, active: np.ndarray) -> np.ndarray:
-        """Return the elastic stiffness; cables that are not active have none."""
+        """Return the elastic stiffness without inactive cables."""
         weights = self.stiffness * active
         found = self.rows.T @ (weights[:, None] * self.rows)
         if self.turns:
@@ -215,7 +216,7 @@ def _extremes(program: Document) -> tuple[float, ...]:
 
 
 def _null_space(rows: np.ndarray) -> np.ndarray:
-    """Return an orthonormal basis of what rows leave; rows of a single direction need no decomposition."""
+    """Return an orthonormal basis of the null space; rows with a single direction need no decomposition."""
     size = rows.shape[1]
     single = (rows != 0).sum(axis=1) <= 1
     kept = np.setdiff1d(np.arange(size), np.abs(rows[single]).argmax(axis=1) if single.any() else [])
@@ -230,7 +231,7 @@ def _null_space(rows: np.ndarray) -> np.ndarray:
 
 
 def softest(stiffness: np.ndarray, basis: np.ndarray) -> float:
-    """Return the smallest eigenvalue of a stiffness over the mean of its diagonal."""
+    """Return the smallest eigenvalue of a stiffness, divided by the mean of its diagonal."""
     if not basis.shape[1]:
         return 1.0
     found = basis.T @ stiffness @ basis
@@ -245,7 +246,7 @@ def _has_play(document: Document) -> bool:
 
 
 def _forces(frame: Frame, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return forces on the nodes and the stiffness of bars, springs and cables at large displacements."""
+    """Return nodal forces and stiffness of bars, springs and cables at large displacements."""
     d = frame.dimension
     place = frame.x + moved.reshape(frame.x.shape)
     force, stiffness = np.zeros_like(place), np.zeros((place.size, place.size))
@@ -267,10 +268,10 @@ def _forces(frame: Frame, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _balanced(frame: Frame, basis: np.ndarray, moved: np.ndarray, load: np.ndarray) -> np.ndarray | None:
-    """Return the displacement in balance with a load; None where Newton's steps do not halve what is left each time, or
-    pass a shape that is not stable: the load is too far away.
+    """Return the displacement in equilibrium with a load. None: Newton steps do not halve the residual, or pass an
+    unstable shape, because the load step is too large.
 
-    :param load: in unknowns, less what preloads lack of balance
+    :param load: in unknowns, minus the imbalance of preloads
     """
     turns = np.array(frame.turns).reshape(-1, frame.x.size)
     bending = turns.T @ (frame.turn_stiffness[:, None] * turns)  # as drawn
@@ -289,8 +290,8 @@ def _balanced(frame: Frame, basis: np.ndarray, moved: np.ndarray, load: np.ndarr
 
 
 def follow(frame: Frame, basis: np.ndarray) -> np.ndarray | None:
-    """Return the displacement of the loaded structure with its joints held, from the drawn shape along loads that grow
-    as slowly as it takes; None where it is not stable all along. What preloads lack of balance grows as loads do."""
+    """Return the displacement of the loaded structure with held joints, from the reference configuration along loads
+    that increase in adaptive steps; None if it becomes unstable. The imbalance of preloads increases with the loads."""
     force, lacking = basis.T @ frame.force, basis.T @ _forces(frame, np.zeros(frame.x.size))[0]
     moved, reached, step = np.zeros(frame.x.size), 0.0, 0.25
     while reached < 1.0:
@@ -306,9 +307,9 @@ def follow(frame: Frame, basis: np.ndarray) -> np.ndarray | None:
 
 
 def _held_start(frame: Frame, basis: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return displacement, tensions and active cables of the loaded structure with its joints held."""
+    """Return displacement, tensions and active cables of the loaded structure with held joints."""
     active = np.ones(len(frame.stiffness), dtype=bool)
-    # A cable with a preload below 0 is slack as drawn.
+    # A cable with a negative preload is slack in the reference configuration.
     active[frame.cables & (frame.tension < 0)] = False
     drawn = np.where(frame.cables, np.maximum(frame.tension, 0.0), frame.tension)
     moved, tension = np.zeros(frame.x.size), drawn
@@ -325,11 +326,11 @@ def _held_start(frame: Frame, basis: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def load_factor(frame: Frame, basis: np.ndarray) -> float:
-    """Return the largest multiple of the loads, up to 10, that forces within friction's limits balance.
+    """Return the largest multiple of the loads, up to 10, that forces within the friction limits balance.
 
-    Loads are dead loads; tensions of springs and bars have no limit, of cables that of 0.
+    Loads are dead loads. Tensions of springs and bars are unlimited, those of cables are at least 0.
 
-    :param basis: of the motions with sliders free
+    :param basis: basis of the motions with free sliders
     """
     slides = frame.slides()
     rows = np.concatenate([frame.rows, *([np.array(frame.turns)] if frame.turns else []),
@@ -352,8 +353,8 @@ def load_factor(frame: Frame, basis: np.ndarray) -> float:
 
 
 def _slid_start(frame: Frame, held: np.ndarray, free: np.ndarray, active: np.ndarray, class_a: bool) -> np.ndarray:
-    """Return the displacement of the start with sliders that slip: the minimum of energy and heat, in the forces of
-    friction a problem of least squares within bounds."""
+    """Return the initial displacement with slipping sliders, which minimises energy plus heat: least squares within
+    bounds for the friction forces."""
     basis, slides = (free, frame.slides()) if class_a else (held, np.zeros((0, frame.x.size)))
     drawn = np.where(active, frame.tension, 0.0)
     stiffness = basis.T @ (frame.elastic(active) + frame.geometric(drawn)) @ basis
@@ -369,7 +370,7 @@ def _slid_start(frame: Frame, held: np.ndarray, free: np.ndarray, active: np.nda
 
 
 def _has_slack(frame: Frame, held: np.ndarray, active: np.ndarray) -> bool:
-    """Return whether a bar with play carries nothing at the start: the least energy of bars with dead zones."""
+    """Return whether a bar with play carries no force at the start, from the minimum energy of bars with dead zones."""
     play = np.zeros(len(frame.stiffness))
     names = {link["name"]: number for number, link in enumerate(frame.document["link"])}
     for section, inner in (("revolute", "journal"), ("ball_joint", "ball")):
@@ -385,7 +386,8 @@ def _has_slack(frame: Frame, held: np.ndarray, active: np.ndarray) -> bool:
     weights = np.sqrt(frame.stiffness[loose])
     rows = np.linalg.solve(factor, (weights[:, None] * (frame.rows[loose] @ held)).T)  # (unknowns, loose)
     loads = np.linalg.solve(factor, force)
-    # min over zones s of ½ s·(1 - RᵀR)·s - s·Rᵀl with u = K⁻¹(f + Bᵀ k s), in s times the root of the stiffness.
+    # Minimise ½ s·(1 - RᵀR)·s - s·Rᵀl over the dead zones s, in units of s times the root of the stiffness, with u =
+    # K⁻¹(f + Bᵀ k s).
     matrix = np.eye(len(loose)) - rows.T @ rows
     values, vectors = np.linalg.eigh(matrix)
     root = np.sqrt(np.maximum(values, 1e-14))
@@ -397,15 +399,15 @@ def _has_slack(frame: Frame, held: np.ndarray, active: np.ndarray) -> bool:
 
 
 def _stands_heat(frame: Frame, held: np.ndarray, free: np.ndarray, active: np.ndarray, tension: np.ndarray) -> bool:
-    """Return whether a structure is stable at the extremes of its programs, without the cables that are slack there.
+    """Return whether a structure is stable at the extremes of its programs, without the slack cables there.
 
-    :param free: basis of the motions that are to be stable
+    :param free: basis of the motions to examine
     """
     for heat in frame.thermal_tensions():
-        # Joints that give way take force from bars: held, they carry the most.
+        # Yielding joints reduce bar forces, so held joints give the largest forces.
         carried = tension + basis_solution(frame, held, active, heat)
         taut = active & (~frame.cables | (carried > 0))
-        # Tensions of those that are left do not balance where others have gone slack.
+        # The remaining tensions are not in equilibrium if other cables have become slack.
         if (taut != active).any() and softest(frame.elastic(taut), held) < FREE:
             return False
         if softest(frame.elastic(taut) + frame.geometric(np.where(taut, carried, 0.0)), free) < FREE:
@@ -425,7 +427,7 @@ def judge(document: Document) -> Verdict:
             return Verdict("undetermined")
         if elastic < FREE and abs(least) < FREE:
             return Verdict("mechanism")
-        # Where only tension holds, or no longer holds, small displacements do not tell: the loads are followed.
+        # If stability depends on tension, small displacements are not sufficient, and the loads are followed.
         followed = follow(frame, held)
         if followed is None:
             return Verdict("unstable")
@@ -434,7 +436,7 @@ def judge(document: Document) -> Verdict:
         return Verdict("path" if stands else "undetermined", stands, start_share=share)
     factor = load_factor(frame, free) if frame.sliding else float("inf")
     class_a = softest(stiffness, free) > FREE
-    if frame.sliding:  # what only the tension of bars holds is too soft beside friction
+    if frame.sliding:  # directions held only by tension of bars are too soft compared with friction
         class_a = class_a and softest(frame.elastic(active), free) > FREE
     if class_a:
         factor = float("inf")
@@ -451,7 +453,7 @@ def judge(document: Document) -> Verdict:
 
 
 def basis_solution(frame: Frame, basis: np.ndarray, active: np.ndarray, heat: np.ndarray) -> np.ndarray:
-    """Return the tensions by temperature of a structure with its joints held."""
+    """Return the tensions due to temperature of a structure with held joints."""
     stiffness = basis.T @ frame.elastic(active) @ basis
     moved = basis @ np.linalg.lstsq(stiffness, -basis.T @ (frame.rows.T @ heat), rcond=1e-12)[0]
     return np.asarray(heat + frame.stiffness * active * (frame.rows @ moved))

@@ -13,7 +13,7 @@ Random = np.random.Generator
 
 
 def _girder(rng: Random, bays: int) -> tuple[Sketch, float, float]:
-    """Return chords of a girder, both their bays and their depth."""
+    """Return the chords of a girder, the length of a bay and the depth."""
     made = Sketch(2)
     bay = float(rng.choice([0.3, 0.5, 1.0, 1.5, 2.0]))
     depth = bay * float(rng.uniform(0.6, 1.6))
@@ -21,7 +21,7 @@ def _girder(rng: Random, bays: int) -> tuple[Sketch, float, float]:
 
 
 def _supported(made: Sketch, first: str, last: str, rng: Random, upper: str) -> None:
-    """Hold a girder: as a bridge, its second end free to slide along it; or as a cantilever."""
+    """Support a girder: as a bridge whose second end slides along it, or as a cantilever."""
     if rng.random() < 0.6:
         made.fixed[first] = "xy"
         made.fixed[last] = "y"
@@ -137,7 +137,7 @@ def ring(rng: Random, bays: int) -> Sketch:
 
 
 def rib(rng: Random, bays: int) -> Sketch:
-    """Rib of an umbrella: a cantilever of two chords that meet at its tip, on a hub."""
+    """Rib of an umbrella: a cantilever of two chords that meet at its tip, mounted on a hub."""
     made = Sketch(2)
     reach, depth = float(rng.uniform(0.5, 3)), float(rng.uniform(0.05, 0.4))
     rise = float(rng.uniform(-0.2, 0.4)) * reach
@@ -161,7 +161,7 @@ def rib(rng: Random, bays: int) -> Sketch:
 
 
 def scissor(rng: Random, bays: int) -> Sketch:
-    """Scissor mast: crossed bars that bend in their middles, cables across the levels."""
+    """Scissor mast: crossed bars with bending stiffness in their middles, and cables across the levels."""
     made = Sketch(2)
     bay = float(rng.uniform(0.3, 1.0))
     bending = float(rng.uniform(2e3, 5e4))
@@ -213,7 +213,7 @@ def bracket(rng: Random, bays: int) -> Sketch:
 
 
 def chain(rng: Random, bays: int) -> Sketch:
-    """A rail on feet, one behind the other; it is held at one end or only by friction."""
+    """Rail on feet in a row, held at one end or only by friction."""
     made = Sketch(2)
     bay = float(rng.uniform(0.2, 2))
     held = rng.random() < 0.85

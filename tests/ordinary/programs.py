@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Temperature programs as orbits have them: plateaus, shade, cold first, several cycles, stretches without change."""
+"""Temperature programs as in orbits: plateaus, shade, cold first, several cycles, intervals without change."""
 from __future__ import annotations
 
 import numpy as np
@@ -7,7 +7,7 @@ import numpy as np
 from sketch import Document
 
 Random = np.random.Generator
-# Temperature change over its largest one at equal times.
+# Temperature change at equally spaced times, over its largest value.
 TABLES: dict[str, list[float]] = {
     "plateau": [0, 1, 1, 0],
     "shade": [0, 0.9, 1, 0.95, -0.6, -0.7, -0.5, 0],
@@ -19,7 +19,7 @@ TABLES: dict[str, list[float]] = {
 
 
 def table(kind: str, largest_K: float, period_s: float, cycles: int) -> Document:
-    """Return a program of rows that lasts a period."""
+    """Return a program of table rows with the duration of a period."""
     values = TABLES[kind]
     times = np.linspace(0, period_s, len(values))
     return {
@@ -40,7 +40,7 @@ def program(rng: Random) -> Document:
 
 
 def of_others(rng: Random, common: Document) -> Document:
-    """Return the program of shaded parts: as long as the common one, smaller and of a shape of its own."""
+    """Return the program of shaded parts: duration of the common one, smaller change, another shape."""
     table_s = common.get("table_time_s")
     period, cycles = table_s[-1] if table_s else common["period_s"], common["cycles"]
     largest = float(np.round(rng.uniform(5, 60), 1)) * (1 if rng.random() < 0.5 else -1)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes a failing structure as small as it can be while it fails alike and theory says the same of it.
+"""Reduces a failing structure while its failure and the verdict of theory stay the same.
 
     PYTHONPATH=build/python tests/ordinary/shrink.py FAMILY SEED [--to FILE.toml] [--minutes 3]
 """
@@ -26,7 +26,7 @@ LIMIT_S = 20
 
 
 def apart(call: Callable[[], Any], limit_s: int = LIMIT_S) -> Any:
-    """Return what a function returns, called in a process of its own; the name of the signal that ends it."""
+    """Return the result of a function that is called in a separate process, or the name of the signal that ended it."""
     reads, writes = os.pipe()
     child = os.fork()
     if child == 0:
@@ -60,7 +60,7 @@ def signature(document: Document) -> tuple[str, ...]:
 
 
 def _merged(document: Document, kept: str, gone: str) -> None:
-    """Let everything that names one node name another."""
+    """Replace a node by another one everywhere."""
     document["node"] = [node for node in document["node"] if node["name"] != gone]
     for section in ("link", "spring", *JOINTS):
         for item in document.get(section, ()):
@@ -72,7 +72,7 @@ def _merged(document: Document, kept: str, gone: str) -> None:
 
 
 def _tidy(document: Document) -> Document:
-    """Remove nodes that nothing uses and empty sections."""
+    """Remove unused nodes and empty sections."""
     used = {name for section in ("link", "spring", *JOINTS) for item in document.get(section, ())
             for key, value in item.items() if "node" in key for name in (value if isinstance(value, list) else [value])}
     document["node"] = [node for node in document["node"] if node["name"] in used]
@@ -98,7 +98,7 @@ def _without_joints(document: Document, gone: list[tuple[str, str]]) -> Document
 
 
 def _parts(names: list[Any]) -> Iterator[list[Any]]:
-    """Yield parts of a list to leave out: halves, quarters, ..., one by one."""
+    """Yield parts of a list to omit: halves, quarters, ..., single items."""
     length = len(names) // 2
     while length > 1:
         for start in range(0, len(names), length):
@@ -154,7 +154,7 @@ def _simpler(document: Document) -> Iterator[Document]:
 
 
 def shrunk(document: Document, minutes: float) -> tuple[Document, tuple[str, ...]]:
-    """Return the smallest structure found, and how it fails."""
+    """Return the smallest structure found and its failure."""
     wanted, until = signature(document), time.monotonic() + 60 * minutes
     going = True
     while going and time.monotonic() < until:

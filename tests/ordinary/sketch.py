@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A structure under construction: nodes, bars, supports, and where joints may go. It becomes the document of a case."""
+"""A structure under construction: nodes, bars, supports, and possible positions of joints; later a case document."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
@@ -16,7 +16,7 @@ CLEARANCE = ("revolute", "ball_joint")  # joints whose parts play in each other
 
 @dataclass
 class Bar:
-    """A bar with the nodes at which it ends now; ``drawn`` has those of the shape without joints."""
+    """A bar with its current end nodes; ``drawn`` has the end nodes of the shape without joints."""
 
     ends: list[str]
     role: str
@@ -26,7 +26,7 @@ class Bar:
 
 @dataclass(frozen=True)
 class Foot:
-    """A support that may slide along an axis instead of being held."""
+    """A support that can be made to slide along an axis."""
 
     node: str
     axis: tuple[float, ...]
@@ -36,7 +36,7 @@ class Foot:
 
 @dataclass
 class Sketch:
-    """What a family draws.
+    """The shape that a family generates.
 
     :param down: direction of weight
     """
@@ -70,7 +70,7 @@ class Sketch:
         self.items.setdefault(section, []).append({"name": name, **keys})
 
     def along(self, bar: str) -> Vector:
-        """Return the unit vector from the bar's first end to its second."""
+        """Return the unit vector from the first end of a bar to the second."""
         one, two = (self.points[node] for node in self.bars[bar].ends)
         return np.asarray((two - one) / np.linalg.norm(two - one))
 
@@ -85,7 +85,7 @@ class Sketch:
         return float(np.ptp(places, axis=0).max())
 
     def at(self, node: str) -> list[str]:
-        """Return the bars that end at a node now."""
+        """Return the bars that currently end at a node."""
         return [name for name, bar in self.bars.items() if node in bar.ends]
 
     def joints(self) -> int:
@@ -93,7 +93,7 @@ class Sketch:
         return sum(len(self.items.get(section, ())) for section in JOINTS)
 
     def detach(self, bar: str, side: int) -> tuple[str, str]:
-        """Move an end of a bar to a node of its own at the same place; return the old node and the new one."""
+        """Move an end of a bar to a new node at the same position; return the old and the new node."""
         old = self.bars[bar].ends[side]
         new = f"{old}_of_{bar}"
         self.points[new] = self.points[old].copy()

@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Redundant structures whose pins have play: quasi-static solver, motion and DEM side by side.
+"""Comparison of quasi-static solver, motion and DEM for redundant structures whose pins have play.
 
     PYTHONPATH=build/python tests/ordinary/slack.py [--only pratt_3 ...] [--models solver motion dem] [--write FOLDER]
 
-Some bars end in pins with clearance, and the structure is stiff without them. While such a bar hangs in its play it
-carries nothing and its position is undetermined; dashpots in the pins bring it to rest in motion and in the DEM. The
-table gives, for each structure and model, the differences from the quasi-static solver of all that carries force, and
-how far the pins with play are from the middle of their bearings, over their clearance.
+Some bars end in pins with clearance, and the structure is stiff without these bars. A slack bar carries no force and
+its position is undetermined; in motion and in the DEM, dashpots in the pins bring it to rest. For each structure and
+model the table has the differences from the quasi-static solver for all parts that carry force, and the eccentricity of
+pins with play over their clearance.
 """
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from statejump.core.run import Run
 from statejump.kinds.truss.generate.document import to_toml
 from statejump.kinds.truss.scales import COMPARED, scales
 
-# Family, seed and bays of the structures; planar ones first.
+# Family, seed and number of bays of the structures, planar ones first.
 CHOSEN = [
     ("pratt", 3, 2), ("pratt", 5, 2), ("pratt", 10, 3), ("tower", 1, 2), ("tower", 3, 2), ("tower", 4, 3),
     ("bracket", 5, 3), ("bracket", 11, 3), ("bracket", 13, 3), ("ring", 1, 5), ("tripod", 1, 3), ("tripod", 7, 3),
@@ -40,20 +40,20 @@ CHOSEN = [
 ]
 PERIOD_S = 2.0
 MOST_PINNED = 2  # bars with play
-# Pins bring a bar that swings to rest in this fraction of the program.
+# Fraction of the program within which damping in the pins stops a swinging bar.
 REST = 0.01
-# Eigenvalues of the stiffness without the bars with play, over the largest: their periods are a hundred times that of a
-# bar at most, thousands of times shorter than the program.
+# Smallest eigenvalue of the stiffness without the bars with play, over the largest. Periods are then at most a hundred
+# times that of a bar, and thousands of times shorter than the program.
 STIFF = 1e-4
-# What carries force: as the tolerances of a case.
+# Tolerance for parts that carry force, as in cases.
 TOLERANCE = 0.01
-# Of the clearance, where a pin has no contact: but for the rounding of a contact that just parts.
+# Largest eccentricity of a pin without contact over its clearance; the excess is rounding when a contact opens.
 PLAY = 1.001
 
 
 @dataclass(frozen=True)
 class Agreement:
-    """What a model differs from the solver by.
+    """Differences of a model from the solver.
 
     :param displacement: largest rms difference of a node that carries force, over the largest displacement
     :param jump: largest difference of their jumps, over the largest displacement
@@ -75,7 +75,7 @@ class Agreement:
 
 
 def stiff(made: Sketch, without: list[str]) -> bool:
-    """Return whether a shape is stiff without some of its bars, and not only nearly a mechanism."""
+    """Return whether a shape is clearly stiff without some of its bars."""
     kept = Sketch(made.dimension, made.points, made.fixed, made.guides,
                   {name: bar for name, bar in made.bars.items() if name not in without})
     heat = {"shape": "triangle", "temperature_change_max_K": 1.0, "period_s": 1.0}
@@ -86,7 +86,8 @@ def stiff(made: Sketch, without: list[str]) -> bool:
 
 
 def document(family: str, seed: int, bays: int) -> Document:
-    """Return the case of a redundant structure: bars with play are as many as keep it stiff without them."""
+    """Return the case of a redundant structure with as many bars with play as it can lose without becoming a
+    mechanism."""
     rng = structures.random_of(f"slack_{family}", seed)
     made = structures.SHAPES[family](rng, bays)
     dress.materials(made, rng)
@@ -117,8 +118,8 @@ def document(family: str, seed: int, bays: int) -> Document:
 
 
 def pins(run: Run) -> list[tuple[str, str, np.ndarray, np.ndarray]]:
-    """Return of every pin the node at the end of its bar, its name, its eccentricity over its clearance at every
-    sample, and where it has no contact."""
+    """Return for every pin: node at the end of its bar, name, eccentricity over clearance at every sample, and samples
+    without contact."""
     found, case = [], run.definition
     for section, node, before in (("revolute", "journal_node", ""), ("ball_joint", "ball_node", "ball_")):
         for number, joint in enumerate(getattr(case, section)):
@@ -129,7 +130,7 @@ def pins(run: Run) -> list[tuple[str, str, np.ndarray, np.ndarray]]:
 
 
 def agreement(exact: Run, other: Run) -> Agreement:
-    """Return what a run differs from the solver's by."""
+    """Return the differences of a run from that of the solver."""
     case, exact = exact.definition, exact.at(other.time_s)
     ends = {node for node, *_ in pins(other)}
     carries = np.array([node.name not in ends for node in case.node])
@@ -154,7 +155,7 @@ def models(case: Any) -> dict[str, Callable[[], Run]]:
 
 
 def rows(case: Any, chosen: list[str]) -> Iterator[tuple[str, str]]:
-    """Yield a row of the table for each model, and what is wrong with it, "" for nothing."""
+    """Yield a row of the table for each model, and its fault, "" for none."""
     exact: Run | None = None
     joints = case.definition.resolve().number_of_joints()
     for model in chosen:
@@ -172,12 +173,12 @@ def rows(case: Any, chosen: list[str]) -> Iterator[tuple[str, str]]:
 
 
 def children_s() -> float:
-    """Return the processor time of processes that have ended [s]."""
+    """Return the CPU time of ended child processes [s]."""
     return os.times().children_user + os.times().children_system
 
 
 def main() -> int:
-    """Print the table; return 1 if something is beyond its tolerance."""
+    """Print the table; return 1 if a tolerance is exceeded."""
     given = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     given.add_argument("--only", nargs="+", help="names of structures, as pratt_3")
     given.add_argument("--models", nargs="+", default=["solver", "motion", "dem"], choices=["solver", "motion", "dem"],

@@ -15,16 +15,16 @@ X, Y = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
 
 
 def _mount(made: Sketch, names: list[str]) -> None:
-    """Hold a body by six directions; feet slide away from the first one."""
+    """Hold a body in six directions; feet slide away from the first one."""
     first, second, third, *others = names
     made.fixed |= {first: "xyz", second: "yz", third: "z", **{name: "z" for name in others}}
     made.feet.append(Foot(second, X, "yz"))
-    # A slider on ground needs supports in both directions across its axis.
+    # A slider on ground requires supports in both directions across its axis.
     made.feet += [Foot(name, X, "yz") for name in (third, *others)]
 
 
 def lattice(rng: Random, bays: int, sides: int, upright: bool) -> Sketch:
-    """Lattice boom or tower: legs, battens, diagonals; four sides have braces across."""
+    """Lattice boom or tower: legs, battens, diagonals; one with four sides has bracing across."""
     made = Sketch(3, down=DOWN)
     radius, bay = float(rng.uniform(0.1, 0.8)), float(rng.uniform(0.3, 1.5))
     taper = float(rng.uniform(0, 0.6)) / bays if upright else 0.0
@@ -137,7 +137,7 @@ def umbrella(rng: Random, bays: int) -> Sketch:
 
 
 def ring_truss(rng: Random, bays: int) -> Sketch:
-    """Hoop of two levels, as of a mesh antenna, on three mounts."""
+    """Hoop of two levels, as in a mesh antenna, on three mounts."""
     made, bays = Sketch(3, down=DOWN), int(np.clip(bays, 5, 24))
     radius, height = float(rng.uniform(0.8, 4)), float(rng.uniform(0.2, 0.8))
     inner = radius * float(rng.uniform(0.75, 0.9))
@@ -162,7 +162,7 @@ def ring_truss(rng: Random, bays: int) -> Sketch:
 
 
 def tensegrity(rng: Random, bays: int) -> Sketch:
-    """Prism of struts that cables hold: stiff by its self-stress."""
+    """Prism of struts and cables that is stiff by self-stress."""
     made, sides = Sketch(3, down=DOWN), int(rng.integers(3, 6))
     radius, height = float(rng.uniform(0.3, 1)), float(rng.uniform(0.5, 1.5))
     twist = pi / 2 - pi / sides  # of the self-stressed prism

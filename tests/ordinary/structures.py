@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ordinary structures, each made from a family and a seed alone.
+"""Ordinary structures, each determined by a family and a seed.
 
-A structure is a case document with defaults throughout and what is known of it: how it was loaded, which joints it has.
+A structure is a case document with default settings, plus known facts: its load and its joints.
 """
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ SHAPES = {**planar.SHAPES, **spatial.SHAPES}
 
 @dataclass(frozen=True)
 class Structure:
-    """A case document and what its making knows of it.
+    """A case document and the facts known from its generation.
 
-    :param walk_m: how far its middle walks in a cycle, where theory says so
+    :param walk_m: walk of its middle per cycle [m], if theory predicts it
     """
 
     family: str
@@ -55,7 +55,7 @@ class Structure:
 
 
 def random_of(family: str, seed: int) -> Random:
-    """Return the generator of a structure; families with one seed share nothing."""
+    """Return the generator of a structure; families are independent for one seed."""
     return np.random.default_rng([seed, crc32(family.encode())])
 
 

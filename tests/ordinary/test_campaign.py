@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The campaign counts what it sees: a crash or a time-out of a structure is a row, wrong reasons are found."""
+"""The campaign of structures: a crash or a time-out is a row, and wrong reasons are detected."""
 from __future__ import annotations
 
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A structure that is written otherwise has the same jump."""
+"""Transformed structures have the same jump."""
 from __future__ import annotations
 
 from copy import deepcopy
@@ -11,7 +11,7 @@ import structures
 from invariance import apart, solved, suitable, tolerance_m
 from transforms import TRANSFORMS, Changed
 
-# Small structures of families whose paths finish; all families are in the campaign, invariance.py.
+# Small structures of families with complete paths; the campaign invariance.py has all families.
 FAMILIES = ["warren", "tower", "bracket", "boom", "tripod", "umbrella"]
 SAMPLE = [(one, solved(one.document)) for one in suitable(12, 100, FAMILIES, 30)]
 
@@ -27,7 +27,7 @@ def test_the_jump_stays(name: str) -> None:
 
 
 def test_a_jump_that_differs_is_noticed() -> None:
-    """A change that is none: friction by a hundredth larger."""
+    """The change must be detected: friction larger by 1 %."""
     one = next(one for one in suitable(50, 1, ["bracket", "pratt"], 60)
                if one.document.get("slider") and (found := solved(one.document)).jump_m
                and max(np.abs(jump).max() for jump in found.jump_m.values()) > 1e-6)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Structures whose play is larger than what loads and temperatures strain them by: each stands for a kind of path that
-was not found."""
+"""Structures with play larger than the deformation by loads and temperatures. Each represents a kind of path that the
+solver once did not find."""
 from __future__ import annotations
 
 import pytest

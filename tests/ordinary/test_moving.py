@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Structures whose contacts are lost and made while equal steps are long beside the motion between."""
+"""Structures whose contacts open and close during time steps that are long compared with the motion between."""
 from __future__ import annotations
 
 import numpy as np
@@ -12,7 +12,7 @@ import structures
 
 
 def test_parts_without_number_end_by_name() -> None:
-    """Contacts of this umbrella rattle for as long as it is heated."""
+    """Contacts of this umbrella rattle during the whole heating."""
     restless = sj.load(structures.make("umbrella", 530).document).changed({"motion.steps_per_cycle": 6000})
     with pytest.raises(StatejumpError) as caught:
         restless.reduced(dynamic=True)
@@ -21,7 +21,7 @@ def test_parts_without_number_end_by_name() -> None:
 
 @pytest.mark.parametrize(("family", "seed"), [("pratt", 501), ("umbrella", 511)])
 def test_lost_contacts_make_no_energy(family: str, seed: int) -> None:
-    """What loads, temperature and elastic parts give is more than what is lost or moves."""
+    """The work of loads, temperature and elastic parts exceeds the losses plus the kinetic energy."""
     run = sj.load(structures.make(family, seed).document).reduced(dynamic=True)
     # Works have changing signs.
     given = np.abs(np.diff(run["thermal_work_J"])).sum() + np.abs(np.diff(run["external_work_J"])).sum()

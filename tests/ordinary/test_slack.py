@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Slack parts: solver, motion and DEM agree; steps that are long beside all periods find their end."""
+"""Slack parts: solver, motion and DEM agree, also with steps much longer than all periods."""
 from __future__ import annotations
 
 import numpy as np
@@ -21,7 +21,7 @@ def test_structures_are_redundant_and_of_both_dimensions() -> None:
         assert one.get("revolute") or one.get("ball_joint")
 
 
-# One that stays slack, one that lands and carries, one in space.
+# One structure that stays slack, one whose part closes and carries force, one in space.
 @pytest.mark.parametrize("name", ["tower_1", "pratt_5", "boom_5"])
 def test_models_agree(name: str) -> None:
     (chosen,) = [one for one in slack.CHOSEN if f"{one[0]}_{one[1]}" == name]
@@ -34,7 +34,7 @@ def test_models_agree(name: str) -> None:
         assert found.agrees, found
 
 
-# Steps of half a second beside periods of milliseconds: a bar that hangs slack in its pins has nothing but its mass.
+# Steps of half a second with periods of milliseconds: a bar slack in its pins has only its mass.
 @pytest.mark.parametrize(("family", "seed"), [("tensegrity", 500), ("ring", 505)])
 def test_motion_in_long_steps_ends_where_the_path_does(family: str, seed: int) -> None:
     case = sj.load(structures.make(family, seed).document)

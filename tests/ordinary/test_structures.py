@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Structures follow from family and seed; the oracle knows structures whose answer a page of statics gives."""
+"""Structures depend only on family and seed; the oracle agrees with hand calculations."""
 from __future__ import annotations
 
 import json
@@ -25,7 +25,7 @@ def finished(made: Sketch) -> Document:
 
 
 def block(load_N: float, limit_N: float, bar: bool = False, **stops: float) -> Document:
-    """A block on a rail that a load pushes; a bar may hold it."""
+    """A block on a rail pushed by a load, optionally held by a bar."""
     made = Sketch(2)
     made.node("G", 0, 0, fixed="xy")
     made.node("P", 1, 0, fixed="y")
@@ -115,7 +115,7 @@ def test_a_bar_with_play_beside_others_is_slack() -> None:
 
     assert judge(panel(10.0, 3)).slack
     assert not judge(panel(10.0, 2)).slack
-    # 1000 N stretch the other two legs by 7e-5 m: seven clearances.
+    # 1000 N elongate the other two legs by 7e-5 m, seven clearances.
     assert not judge(panel(1000.0, 3)).slack
     assert judge(panel(0.0, 2)).slack
 
@@ -130,7 +130,7 @@ def chain_jump_m(limit_N: float) -> tuple[float, float]:
     made.bar("P", "B", **{**MODULUS, "thermal_expansion_per_K": 0.0})
     made.add("slider", "pad", nodes=["P"], axis=[1.0, 0.0], friction_coefficient=0.5, normal_force_N=2 * limit_N)
     found = evolution.ends(finished(made))
-    # Stiffness 1.5 E A, thrust E A α ΔT: held by 2 F on the way back, F stays.
+    # Stiffness 1.5 E A, thrust E A α ΔT. Friction resists the return with 2 F, so F remains.
     stiffness, thrust = 1.5 * 7e6, 7e6 * 23.4e-6 * 100.0
     slid = max(thrust - limit_N, 0.0) - max(thrust - 2 * limit_N, 0.0)
     return float(found[-1][2] - found[0][2]), slid / stiffness
@@ -139,7 +139,7 @@ def chain_jump_m(limit_N: float) -> tuple[float, float]:
 @pytest.mark.parametrize("share", [0.2, 0.6, 1.5])
 def test_an_evolution_ends_where_friction_leaves_it(share: float) -> None:
     found, expected = chain_jump_m(share * 7e6 * 23.4e-6 * 100.0)
-    # Increments are 24 to a quarter of a cycle: slip within one is exact where it does not turn.
+    # 24 increments per quarter of a cycle: slip within an increment is exact if it does not reverse.
     assert found == pytest.approx(expected, rel=1e-9, abs=1e-15)
 
 
@@ -151,7 +151,7 @@ def test_walking_sheets_have_one_block_of_tolerance() -> None:
 
 @pytest.mark.parametrize("seed", [1016, 1022, 1059])
 def test_bars_that_bend_at_a_hinge_keep_it_between_them(seed: int) -> None:
-    """Of both bars at a scissor's hinge a fitting takes one off at most, for a torsion spring needs a common node."""
+    """A fitting detaches at most one of the bars at a scissor's hinge: a torsion spring needs a common node."""
     made = structures.make("scissor", seed).document
     ends = {link["name"]: set(link["nodes"]) for link in made["link"]}
     joined = [set(slider["nodes"]) for slider in made.get("slider", made.get("iwan_joint", []))]

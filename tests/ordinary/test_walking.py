@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sheets and pipes walk down an incline as their blocks ask for. All numbers of blocks are in walking.py."""
+"""Sheets and pipes walk down an incline as theory predicts for their number of blocks; walking.py has all numbers of
+blocks."""
 from __future__ import annotations
 
 from dataclasses import replace
@@ -26,7 +27,7 @@ def test_many_blocks_walk_as_a_sheet() -> None:
 
 
 def test_another_friction_is_noticed() -> None:
-    """By half a hundredth: blocks that rest stay where they are, the pipe loses more of its expansion."""
+    """By half a percent: resting blocks stay, the pipe loses more of its expansion."""
     one = walker("pipe", 9, 0.3)
     assert not row(replace(one, friction=0.3015), solved(one, LIMIT_S))[1]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Changes of a case that leave its jump the same, and how jumps of the changed case are read in terms of the first."""
+"""Changes of a case that do not change its jump, and the conversion of the jumps of the changed case."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -17,8 +17,8 @@ SECTIONS = ("node", "link", "spring", "torsion_spring", "slider", "iwan_joint", 
 # Keys that hold names of other items.
 NODES = ("nodes", "bearing_node", "journal_node", "socket_node", "ball_node")
 LINKS = ("links", "bearing_link", "journal_link", "socket_link", "ball_link")
-# Unit of every key as powers of length and force; those without are left alone. Mass is force over length here, since
-# accelerations keep their numbers: a second is then the root of the unit of length.
+# Unit of every key as powers of length and force; keys without units do not change. Mass is force over length, because
+# accelerations keep their numbers: the unit of time is then the root of the unit of length.
 UNITS = {
     "position_m": (1, 0), "force_N": (0, 1), "young_modulus_Pa": (-2, 1), "cross_section_area_m2": (2, 0),
     "stress_free_length_m": (1, 0), "density_kg_per_m3": (-3, 1), "stiffness_N_per_m": (-1, 1), "preload_N": (0, 1),
@@ -36,9 +36,9 @@ AXIAL = ("revolute", "torsion_spring", "latch_hinge")  # axes about which someth
 class Changed:
     """A changed case.
 
-    :param back: turns jumps by node (cycles, dimension) of the changed case into those of the first
-    :param rounding_m: how exactly the changed case holds lengths [m of the first case], beyond the size
-    :param exact: whether only rounding differs; else the length of increments
+    :param back: converts jumps by node (cycles, dimension) of the changed case to those of the first
+    :param rounding_m: rounding of lengths in the changed case [m of the first case], in addition to that of their size
+    :param exact: whether only rounding differs; else the increments differ too
     """
 
     document: Document
@@ -48,7 +48,7 @@ class Changed:
 
 
 def permuted(document: Document, rng: Random) -> Changed:
-    """Change the order of nodes, links, springs and joints."""
+    """Permute nodes, links, springs and joints."""
     made = deepcopy(document)
     for section in SECTIONS:
         if section in made:
@@ -57,7 +57,7 @@ def permuted(document: Document, rng: Random) -> Changed:
 
 
 def renamed(document: Document, rng: Random) -> Changed:
-    """Give nodes, links and joints names of another alphabetical order."""
+    """Rename nodes, links and joints in another alphabetical order."""
     made = deepcopy(document)
     names: dict[str, dict[str, str]] = {}
     for section in SECTIONS:
@@ -76,7 +76,7 @@ def renamed(document: Document, rng: Random) -> Changed:
 
 
 def _mapped(document: Document, matrix: np.ndarray) -> Changed:
-    """Map all vectors by an orthogonal matrix that keeps z or turns about it."""
+    """Map all vectors by an orthogonal matrix that keeps z or rotates about it."""
     made, d = deepcopy(document), len(matrix)
     for section, keys in VECTORS.items():
         for item in made.get(section, []):
@@ -108,7 +108,7 @@ def _mapped(document: Document, matrix: np.ndarray) -> Changed:
 
 
 def rotated(document: Document, rng: Random) -> Changed:
-    """Turn the structure about z; supports along one of x and y become guides."""
+    """Rotate the structure about z; supports along only one of x and y become guides."""
     angle, d = float(rng.uniform(0.2, 1.3)), document["truss"]["dimension"]
     matrix = np.eye(d)
     matrix[:2, :2] = [[cos(angle), -sin(angle)], [sin(angle), cos(angle)]]
@@ -123,7 +123,7 @@ def mirrored(document: Document, rng: Random) -> Changed:
 
 
 def shifted(document: Document, rng: Random) -> Changed:
-    """Move the drawing by some of its size."""
+    """Translate the structure by a fraction of its size."""
     made = deepcopy(document)
     places = np.array([node["position_m"] for node in made["node"]])
     size = float(np.ptp(places, axis=0).max())
@@ -150,7 +150,7 @@ def _rescaled(document: Document, length: float, force: float) -> Changed:
 
 
 def inches(document: Document, rng: Random) -> Changed:
-    """Write lengths in inches: areas in square millimetres are beyond what a case allows."""
+    """Write lengths in inches; areas in square millimetres exceed the range of a case."""
     return _rescaled(document, 1 / 0.0254, 1.0)
 
 
@@ -171,7 +171,7 @@ def slower(document: Document, rng: Random) -> Changed:
 
 
 def finer(document: Document, rng: Random) -> Changed:
-    """Follow the path in twice as many increments."""
+    """Use twice as many increments."""
     made: dict[str, Any] = deepcopy(document)
     reduced = made.setdefault("reduced", {})
     reduced["increments_per_branch"] = 2 * reduced.get("increments_per_branch", 50)

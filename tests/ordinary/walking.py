@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sheets and pipes that walk down an incline: do all finish, and how far from theory do they walk?
+"""Sheets and pipes that walk down an incline: all must finish, and the walk is compared with theory.
 
     PYTHONPATH=build/python tests/ordinary/walking.py [--blocks 4 5 ...] [--friction 0.2 0.3 ...] [--kinds sheet pipe]
         [--limit 60] [--write FOLDER]
 
-A sheet of n blocks expands away from one block that rests and shrinks towards another. The weight puts them m blocks
-apart. In a cycle the sheet walks by m (L/n) (α ΔT - (μ cos β - sin β) w L/EA). With infinitely many blocks m/n becomes
-tan β/μ. Each case is solved with default options in a process of its own, which is ended after the limit.
+A sheet of n blocks expands away from one resting block and shrinks towards another one. Because of the weight, these
+are m blocks apart. In a cycle the sheet walks by m (L/n) (α ΔT - (μ cos β - sin β) w L/EA). With infinitely many blocks
+m/n becomes tan β/μ. Each case is solved with default options in a separate process with a time limit.
 """
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ from statejump.kinds.truss.generate.document import to_toml
 BLOCKS = (4, 5, 6, 7, 8, 9, 10, 12, 13, 16, 20, 21, 25, 32, 40, 50, 64, 80, 100, 128, 160, 200)
 FRICTION = (0.2, 0.3, 0.342, 0.4, 0.466, 0.6)
 CYCLES = 3
-# Events are located within 1e-9 of a branch (reduced.event_tolerance). A block that turns so much late is off by as
-# much of its motion, and a block hands its error on to the next one: as many as there are blocks, up and down.
+# Events are located within 1e-9 of a branch (reduced.event_tolerance). A block that reverses late has an error of that
+# fraction of its motion and passes it to the next block, once per block, upwards and downwards.
 EVENT = 1e-9
 
 
 @dataclass(frozen=True)
 class Walker:
-    """A row of blocks on an incline, each with its part of weight and friction.
+    """A row of blocks on an incline, each with a part of weight and friction.
 
-    :param weight_N_per_m: of a length of the sheet
+    :param weight_N_per_m: weight per length of the sheet
     :param stiffness_N: Young's modulus times area
     """
 
@@ -67,20 +67,20 @@ class Walker:
 
     @property
     def _strain(self) -> float:
-        """Strain of a cycle in bars between both blocks that rest."""
+        """Strain of bars between both resting blocks in a cycle."""
         return max(self.expansion - self.lost, 0.0)
 
     @property
     def walk_m(self) -> float:
-        """Walk of a cycle with infinitely many blocks."""
+        """Walk per cycle with infinitely many blocks [m]."""
         return self.length_m * math.tan(self.slope_rad) / self.friction * self._strain
 
     @property
     def apart(self) -> int:
-        """How many blocks both that rest are apart.
+        """Number of blocks between the two resting blocks.
 
-        A block rests if its friction closes the balance: of n - 1 others, m more slide down than up, so that the
-        block carries n tan β/μ - m of its friction, at most one. All others slide, hence m has the parity of n - 1.
+        A block rests if its friction balances the forces: of the n - 1 others, m more slide down than up, so the block
+        carries the fraction n tan β/μ - m of its friction limit. All others slide, so m has the parity of n - 1.
         """
         share = self.blocks * math.tan(self.slope_rad) / self.friction
         odd = (self.blocks - 1) % 2
@@ -88,7 +88,7 @@ class Walker:
 
     @property
     def walk_of_blocks_m(self) -> float:
-        """Walk of a cycle with these blocks, where all of them slide in heating and in cooling."""
+        """Walk per cycle with this number of blocks [m], if all of them slide in heating and in cooling."""
         return self.apart * self.length_m / self.blocks * self._strain
 
     def document(self) -> Document:
@@ -109,8 +109,8 @@ class Walker:
 
 
 def walker(kind: str, blocks: int, friction: float) -> Walker:
-    """Return a lead sheet of a roof, 6 m of 2.4 mm, or a pipeline of steel, 4 km; at the largest friction the pipeline
-    uses a third of its expansion up. No slope balances a number of blocks exactly."""
+    """Return a lead roof sheet (6 m long, 2.4 mm thick) or a steel pipeline (4 km). With the largest friction,
+    compression takes up a third of the expansion of the pipeline. No slope balances a number of blocks exactly."""
     name = f"{kind}_{blocks}_{1000 * friction:.0f}"
     if kind == "sheet":
         return Walker(name, blocks, friction, 0.13, 6.0, 150.0, 1.6e10, 2.4e-3, 2.9e-5, 40.0)
@@ -132,7 +132,7 @@ def _solve(document: Document, limit_s: float, answer: Connection) -> None:
 
 
 def solved(one: Walker, limit_s: float) -> dict[str, Any]:
-    """Return the walks of all cycles but the first, or the sentence of the failure."""
+    """Return the walks of all cycles but the first, or the message of the failure."""
     context = get_context("fork")
     mine, theirs = context.Pipe(False)
     process = context.Process(target=_solve, args=(one.document(), limit_s, theirs))
@@ -149,16 +149,16 @@ def solved(one: Walker, limit_s: float) -> dict[str, Any]:
 
 
 def row(one: Walker, found: dict[str, Any]) -> tuple[str, bool]:
-    """Return the row of the table, and whether the sheet finished and walks as theory says."""
+    """Return the row of the table, and whether the sheet finished and walks as theory predicts."""
     start = f"| {one.name.split('_')[0]} | {one.blocks} | {one.friction:g} |"
     if "walks_m" not in found:
         return f"{start} {found['sentence']} | | | {found['seconds']:.2f} |", False
     exact, walks = one.walk_of_blocks_m, found["walks_m"]
     expansion_m = one.expansion * one.length_m
     off_m = max(abs(walk - exact) for walk in walks)
-    # Strains of theory add up, those of the solver multiply: the product of both is left over.
+    # Strains are added in theory but multiplied in the solver; the difference is their product.
     second_m = one.apart * one.length_m / one.blocks * one.lost * one.expansion
-    # Both blocks that rest are off by half a block at most.
+    # Each resting block may be off by half a block.
     good = (off_m <= 4 * one.blocks * EVENT * expansion_m + second_m
             and abs(exact - one.walk_m) <= expansion_m / one.blocks)
     return (f"{start} finished | {off_m / max(abs(exact), expansion_m / one.blocks):.1e} | "
@@ -166,7 +166,7 @@ def row(one: Walker, found: dict[str, Any]) -> tuple[str, bool]:
 
 
 def main() -> int:
-    """Print the table; return 1 if something does not walk as it should."""
+    """Print the table; return 1 if a walk is wrong."""
     given = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     given.add_argument("--blocks", type=int, nargs="+", default=list(BLOCKS))
     given.add_argument("--friction", type=float, nargs="+", default=list(FRICTION))

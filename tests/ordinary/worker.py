@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Solves structures that it is named on standard input, a line each; answers in two lines of JSON: what theory says,
-what the solver did. A process of its own, for a solver may crash: SIGPROF ends it where the solver takes longer than
-the argument [s], of the processor's time."""
+"""Solves the structures named on standard input, one per line, and answers with two lines of JSON: verdict of theory,
+and result of the solver. It is a separate process, because a solver may crash. SIGPROF ends it if the solver exceeds
+the CPU time in the argument [s]."""
 from __future__ import annotations
 
 import json
@@ -20,13 +20,13 @@ from oracle import FAR, Verdict, judge
 from sketch import Document
 from statejump.core.errors import FailedRun, StatejumpError
 
-# Forces and jumps of structures that have none, over those of a held bar: conditioning of a long girder (1e7) times
-# rounding (2e-16), and some.
+# Forces and jumps of structures that should have none, over those of a bar of fixed length: condition number of a long
+# girder (1e7) times rounding (2e-16), with a margin.
 NOTHING = 1e-8
 
 
 def run(document: Document) -> dict[str, Any]:
-    """Return outcome, reason and sentence of a run of the reduced model with default options."""
+    """Return outcome, reason and message of a run of the reduced model with default options."""
     try:
         case = sj.load(document)
     except StatejumpError as refused:
@@ -45,7 +45,7 @@ def run(document: Document) -> dict[str, Any]:
 
 
 def numbers(found: Any) -> dict[str, Any]:
-    """Return what is checked of a finished run."""
+    """Return the numbers of a finished run that are checked."""
     path, truss = found.native, found.native.truss
     size = float(np.ptp(truss.nodes.position_m, axis=0).max())
     moved, ends = path.states["displacement_m"], path.cycle_ends["displacement_m"]
@@ -63,21 +63,20 @@ def numbers(found: Any) -> dict[str, Any]:
 
 
 def apart(document: Document, found: dict[str, Any]) -> float:
-    """Return how far a run's displacements are from those of small displacements, over the largest one."""
+    """Return the difference of a run from the theory of small displacements, over the largest displacement."""
     expected = evolution.ends(document)
     got = found["ends"][:, :, : document["truss"]["dimension"]].reshape(len(expected), -1)
     return float(np.abs(got - expected).max()) / max(found["largest_m"], found["free_m"])
 
 
 def checked(structure: structures.Structure, verdict: Verdict, found: dict[str, Any]) -> str:
-    """Return what is wrong with a finished run, "" for nothing."""
+    """Return the faults of a finished run, "" for none."""
     if found["start_share"] > FAR and "start" not in found["sentence"]:
         return "far start"
     largest = max(found["largest_m"], found["free_m"])
     if structure.joints == 0 and found["jump_m"] > NOTHING * largest:
         return "jump without joints"
-    # The block at rest is one of two neighbours in heating and again in cooling: two expansions of
-    # one bar.
+    # In heating and again in cooling, the resting block is one of two neighbours: twice the expansion of one bar.
     if structure.walk_m is not None and abs(abs(found["mean_walk_m"]) - structure.walk_m) > 2 * found["free_m"]:
         return "walk"
     if structure.walk_m is None and verdict.class_a and evolution.applies(structure.document):

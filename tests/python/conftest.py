@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the built package is, and a case file to damage."""
+"""Fixtures: the built package, the command, and case files to damage."""
 from __future__ import annotations
 
 import hashlib
@@ -22,7 +22,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(BUILT), str(REPOSITORY)]  # the latter for studies
 from statejump import _paths  # noqa: E402
 
-# Of the failure of whatever needs YADE, where statejump was built without it.
+# Reason in the failure of anything that needs YADE, in a build without YADE.
 WITHOUT_YADE = "this statejump was built without it"
 
 
@@ -33,16 +33,16 @@ class Outcome:
     status: int
     output: str
     errors: str
-    failure: Any = None  # what ended it: the error in this process, the JSON of a process that was run with --json
+    failure: Any = None  # cause of the end: the error in this process, or the JSON of a process that ran with --json
 
 
 def results_in(folder: Path) -> list[str]:
-    """Return the names of the results in a folder: without the file that says whose they are."""
+    """Return the names of results in a folder, without the file of their owner."""
     return sorted(entry.name for entry in folder.iterdir() if entry.name != ".case.json")
 
 
 def sealed(path: Path) -> Path:
-    """Give a changed HDF5 file the checksum of what it holds now: what comes behind the checksum is tested."""
+    """Give a changed HDF5 file a valid checksum, to test the checks after it."""
     from statejump.core.hdf5 import HEAD_BYTES, head
 
     content = path.read_bytes()
@@ -53,20 +53,20 @@ def sealed(path: Path) -> Path:
 
 @pytest.fixture(autouse=True)
 def skipped_without_yade(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Skip a test as soon as it needs YADE, where statejump was built without it."""
+    """In a build without YADE, skip a test as soon as it needs YADE."""
     from statejump.core import yade_process
 
     if not _paths.YADE:
         monkeypatch.setattr(yade_process, "find_yade", lambda: pytest.skip("needs YADE"))
 
 
-# Commands that start processes of their own, which would import the test instead of the command.
+# Commands that start processes, which would import the test instead of the command.
 SPREADING = ("montecarlo", "sweep")
 
 
 @pytest.fixture
 def statejump_process(tmp_path: Path) -> Callable[..., Outcome]:
-    """Run the command in a process and a folder of its own, with these variables in its environment."""
+    """Return a function that runs the command in a separate process and folder, with these environment variables."""
 
     def run(*arguments: object, **environment: str) -> Outcome:
         done = subprocess.run(
@@ -85,7 +85,7 @@ def statejump_process(tmp_path: Path) -> Callable[..., Outcome]:
 def statejump(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, statejump_process: Callable[..., Outcome]
 ) -> Callable[..., Outcome]:
-    """Run the command in a folder of its own; in this process where that makes no difference."""
+    """Return a function that runs the command in a separate folder; in this process if that makes no difference."""
     from statejump.cli import main
 
     def run(*arguments: object, **environment: str) -> Outcome:
@@ -115,7 +115,7 @@ def cases() -> Path:
 
 @pytest.fixture
 def edited(tmp_path: Path, cases: Path) -> Callable[..., Path]:
-    """Write a case file with replacements to bad.toml. Each text must be there."""
+    """Write a case file with replacements to bad.toml. Each old text must exist."""
 
     def write(*replacements: tuple[str, str], case: str = "table1") -> Path:
         text = (cases / f"{case}.toml").read_text()
@@ -150,7 +150,7 @@ def damaged(original: dict[str, Any], values: list[Any], count: int) -> Iterator
 
 @pytest.fixture(scope="session")
 def yade() -> str:
-    """Return the command yade, for which the plugin was built."""
+    """Return the yade command for which the plugin was built."""
     if not _paths.YADE:
         pytest.skip("needs YADE")
     return "yade"
@@ -158,7 +158,7 @@ def yade() -> str:
 
 @pytest.fixture
 def fake_yade(yade: str, tmp_path: Path) -> Callable[[str], str]:
-    """Return the path of a shell script that stands for yade."""
+    """Return a function that writes a shell script as a replacement of yade, and returns its path."""
 
     def write(body: str) -> str:
         path = tmp_path / "fake-yade"

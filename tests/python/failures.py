@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a test expects of an error: its code and its fields. No test but that of the generated page compares sentences."""
+"""Expected errors in tests: codes and fields. Only the test of the generated page compares sentences."""
 from __future__ import annotations
 
 import json
@@ -13,23 +13,21 @@ import pytest
 from statejump import _engine
 from statejump.core.errors import StatejumpError
 
-# Values of details are copied from the input or follow from it in a few operations of double precision, each with an
-# error of 1e-16. Their scale does not matter, for the tolerance is relative.
+# Values of details are copied from the input, or result from a few double-precision operations with errors of 1e-16.
+# The tolerance is relative, so the scale does not matter.
 ROUNDING = 1e-12
 
 
 class Failure:
-    """Code and fields of an error, equal to every error that has them, of the package, of the engine or as JSON.
-
-    Further fields of the error are free.
-    """
+    """Code and fields of an expected error. It equals every error with these values, of the package, of the engine or
+    as JSON; further fields are ignored."""
 
     def __init__(self, code: str, **fields: Any) -> None:
         self.code, self.fields = code, fields
         self._found = ""
 
     def at(self, **more: Any) -> Failure:
-        """Return the same with further fields, as ``file``."""
+        """Return the same expectation with further fields, such as ``file``."""
         return Failure(self.code, **self.fields, **more)
 
     def __eq__(self, error: object) -> bool:
@@ -68,7 +66,7 @@ def _shown(error: object) -> str:
 
 
 def _same(wanted: Any, found: Any, name: str = "") -> bool:
-    if name == "file":  # which folder it is in differs from run to run
+    if name == "file":  # the folder differs from run to run
         return f"/{found}".endswith(f"/{str(wanted).lstrip('/')}")
     if isinstance(wanted, float) and isinstance(found, (int, float)) and not isinstance(found, bool):
         return isclose(wanted, found, rel_tol=ROUNDING) or isnan(wanted) and isnan(found)
@@ -79,7 +77,7 @@ def _same(wanted: Any, found: Any, name: str = "") -> bool:
 
 @contextmanager
 def failing(code: str, raised: type[BaseException] = StatejumpError, **fields: Any) -> Iterator[pytest.ExceptionInfo[Any]]:
-    """Inside of this an error with this code and these fields is raised.
+    """Check that an error with this code and these fields is raised in the context.
 
     :param raised: class of the error
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bad input: one sentence, exit status 2, no traceback, nothing left behind."""
+"""Invalid input: one sentence, exit status 2, no traceback, no files."""
 from __future__ import annotations
 
 import os
@@ -19,7 +19,7 @@ from statejump.core.errors import Range
 
 E_LINE, NU = "young_modulus_Pa = 70e9\nstress", "friction_coefficient = 0.3"
 
-# what is replaced in the file, and what is wrong
+# replacement in the file, and the expected error
 MISTAKES = {
     "unknown key": ((NU, "frictoin_coefficient = 0.3"),
                     failure("misspelt_key", key="joint.frictoin_coefficient", meant="joint.friction_coefficient")),
@@ -137,7 +137,7 @@ def test_interrupt_keeps_the_samples_so_far(cases: Path, fake_yade, tmp_path: Pa
     assert process.returncode == 130
     folder = tmp_path / "results" / "table1"
     assert errors == "interrupted; the 2 samples so far are in results/table1/dem.interrupted.h5\n"
-    # the row that was cut in the middle is not kept
+    # the incomplete last row is not kept
     table = (folder / "dem_history.interrupted.csv").read_text().splitlines()
     assert table == [",".join(names), *(",".join([time_s] + ["0.0"] * (len(names) - 1)) for time_s in ("0.0", "1.0"))]
     kept = read(folder / "dem.interrupted.h5")
@@ -150,7 +150,7 @@ def test_wrong_python_is_named() -> None:
     first_on_path = subprocess.run(wrong, capture_output=True, text=True).stdout
     launcher = Path(COMMAND).read_text()
     assert launcher.splitlines()[0].endswith(f" {_paths.PYTHON}")  # behind env, which blocks signals
-    # The launcher run with another version says which was found and which is needed.
+    # With another Python version, the launcher reports the version found and the one required.
     changed = launcher.replace("WANTED = (3, ", "WANTED = (2, ")
     done = subprocess.run([_paths.PYTHON, "-c", changed], capture_output=True, text=True)
     assert done.returncode != 0 and "error: wrong Python: found" in done.stderr, first_on_path

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bores given by triangles: what `statejump bore` says of them."""
+"""Bores given by triangles: results of `statejump bore`."""
 from __future__ import annotations
 
 import csv
@@ -51,7 +51,7 @@ def test_harmonics_are_recovered():
     exact = RADIUS + sum(a * np.cos(k * (bore.angles_rad() - p))
                          for k, a, p in ((3, 10e-6, 0.3), (2, 1e-6, 1.1), (7, 2e-7, 0.05)))
     assert report.middle.roundness_error_m == pytest.approx(np.ptp(exact), abs=1e-9)
-    # The axis of least squares is off by the product of neighbouring lobes: 10 um * 1 um / R = 2e-9.
+    # The least-squares axis is off by the product of neighbouring lobes: 10 µm · 1 µm / R = 2e-9.
     assert report.smallest_radius_m == pytest.approx(exact.min(), abs=3e-9)
 
 
@@ -147,11 +147,11 @@ def test_too_coarse(tmp_path: Path):
 
 
 def test_section_that_is_no_ring():
-    """Its circle's centre lies outside of it: seen from there it runs to and fro."""
+    """The centre of its circle lies outside of it, so the angle along it reverses."""
     angle = bore.angles_rad()
 
     class Corner:
-        """What a section is measured on: two arms at right angles."""
+        """Mesh with a section of two arms at right angles."""
 
         def section_radii_m(self, z_m: float, count: int) -> np.ndarray:
             return RADIUS * np.where((angle < 0.2) | (abs(angle - np.pi / 2) < 0.2), 1.0, 0.1)
@@ -190,7 +190,7 @@ def test_in_python(tmp_path: Path):
     assert "lobes that dominate" in worn._repr_html_() and "0.00510001 m" in repr(worn)
     with failing("not_positive", key="journal_radius_m", value=0, unit="m"):
         sj.bore(file, unit_m=1e-3, journal_radius_m=0)
-    # The remedy is the setting, not the option of the command.
+    # The remedy names the argument of the function, not the option of the command.
     with pytest.raises(NoBore) as caught:
         sj.bore(file)
     assert caught.value.fields()["remedy"] == "unit_m=0.001" and caught.value.fields()["file"] == str(file)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Campaigns: samples, sentences, both models, resume after a kill, the same bytes however run."""
+"""Campaigns: samples, messages, both models, resume after a kill, the same bytes in any way of running."""
 from __future__ import annotations
 
 import csv
@@ -31,7 +31,7 @@ from statejump.campaign.sampling import Distribution, Values, montecarlo_values,
 from statejump.campaign.yade_batch import write_table
 from statejump.core.errors import StatejumpError
 
-# As the launcher: without a guard, so that processes that import it would run it again.
+# Like the launcher, without a main guard, so that processes that import it would run it again.
 LAUNCHER = f"""
 import sys
 sys.path.insert(0, {str(BUILT)!r})
@@ -103,7 +103,7 @@ def command(start: Callable[..., subprocess.Popen]) -> Callable[..., Outcome]:
 
 
 def finish(campaign: Plan, folder: Path, workers: int = 1, scheduler: str | None = None) -> tuple[bytes, bytes]:
-    """Run the samples that are missing; return both tables."""
+    """Run the missing samples; return both tables."""
     folder.mkdir(exist_ok=True)
     with journal.Journal(folder, campaign, restart=False) as kept:
         execute.run_missing(campaign, kept, scheduler, workers, lambda fraction: None)
@@ -324,7 +324,7 @@ def test_unforeseen_error_of_one_sample(write: Callable[..., Path], monkeypatch:
 def test_sample_that_kills_its_worker(
     tmp_path: Path, write: Callable[..., Path], fake_yade: Callable[[str], str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    # However long it takes until a new worker is there.
+    # A new worker may take any time to start.
     monkeypatch.setattr(distribute, "NO_WORKERS_S", 0.0)
     monkeypatch.setattr(distribute, "LOOK_S", 0.05)
     monkeypatch.setenv("STATEJUMP_YADE", fake_yade("kill -9 $PPID\n"))
@@ -421,7 +421,7 @@ def test_outcomes_are_what_kinds_say_before_any_run(cases: Path) -> None:
 
 
 def test_failures_are_counted_by_their_fields() -> None:
-    """Two samples that fail alike have other numbers; a range is none of them."""
+    """Two failures of one kind differ in their numbers, but a range is not one of them."""
     first, second = (
         sj.errors.FailedRun("the run failed", cause="it buckles", time_s=time_s, temperature_change_K=10 * time_s)
         for time_s in (0.25, 0.5)
@@ -433,7 +433,7 @@ def test_failures_are_counted_by_their_fields() -> None:
 
 
 def test_workers_know_kinds_of_ones_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A worker imports the kind from where this process does; its samples are those of this process."""
+    """A worker imports a user's kind from the same place as this process, and its samples are equal."""
     from statejump import kinds
 
     monkeypatch.syspath_prepend(str(Path(__file__).resolve().parent / "toy"))
@@ -578,8 +578,8 @@ def test_changed_campaign_is_refused(tmp_path: Path, write: Callable[..., Path])
 
 
 def test_damaged_journal(tmp_path: Path, write: Callable[..., Path]) -> None:
-    """No altered value is believed: every byte of every line but the last refuses the journal, a torn or altered last
-    line goes and its samples are run again."""
+    """Any altered byte in any line but the last makes the journal invalid. A torn or altered last line is removed, and
+    its samples are run again."""
     campaign = load_campaign(write(), MONTECARLO)
     path = tmp_path / journal.NAME
     with journal.Journal(tmp_path, campaign, restart=False) as kept:
@@ -609,7 +609,7 @@ def test_damaged_journal(tmp_path: Path, write: Callable[..., Path]) -> None:
 
 @pytest.fixture
 def short(tmp_path: Path, cases: Path) -> str:
-    """A case whose DEM run lasts a moment; so short a cycle is not quite quasi-static."""
+    """A case whose DEM run is short; its cycle is not quite quasi-static."""
     text = (cases / "table1.toml").read_text()
     for old, new in (("period_s = 1.0", "period_s = 0.05"), ("samples_per_cycle = 2000", "samples_per_cycle = 400")):
         assert old in text
@@ -692,7 +692,7 @@ def test_umbrella_in_either_model(tmp_path: Path, cases: Path, write: Callable[.
 
 
 def test_a_cluster_of_ones_own_leaves_no_thread_and_no_open_file() -> None:
-    """The first one leaves what the package loads once."""
+    """The first cluster loads modules that stay loaded."""
     case = sj.load("table1")
 
     def left() -> tuple[int, int]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Capabilities of kinds: every function that a kind names takes what its protocol says, and a case is one object."""
+"""Capabilities of kinds: every named function has the arguments of its protocol, and a case is a single object."""
 from __future__ import annotations
 
 import inspect

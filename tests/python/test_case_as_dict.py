@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A case as a dict: what it gives is what it is made of."""
+"""A case as a dict: its dict makes an equal case."""
 from __future__ import annotations
 
 from pathlib import Path

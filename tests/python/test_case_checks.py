@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is wrong between several keys of a case: every check just within and just beyond, and what cases calculate."""
+"""Checks between several keys of a case, just within and just beyond the limit, and values derived by cases."""
 from __future__ import annotations
 
 import copy
@@ -22,7 +22,7 @@ DOCUMENTS: dict[str, dict[str, Any]] = {}
 
 
 def document(name: str, changes: dict[str, Any]) -> dict[str, Any]:
-    """A case file that comes with the program, or what a list of changes by ``section.key`` makes of it."""
+    """A shipped case file, changed by a list of values by ``section.key``."""
     if name not in DOCUMENTS:
         DOCUMENTS[name] = tomllib.loads((REPOSITORY / "cases" / f"{name}.toml").read_text(encoding="utf-8"))
     found = copy.deepcopy(DOCUMENTS[name])
@@ -58,7 +58,7 @@ def test_a_bar_on_a_slider() -> None:
     assert case.thermal_expansion_per_K == 23.4e-6 and case.samples_per_cycle == 2000 and case.friction_force_N == 30
     assert case.temperature_range_K == (-50, 100) == case.turning_changes_K
     assert case.thermal_strain(-50) == pytest.approx(-50 * 23.4e-6) and case.bar_program is case.thermal
-    # The stop is at pad and clearance with the slot's coefficient, the pad grows by its own.
+    # The stop expands with the coefficient of the slot from pad radius plus clearance, the pad with its own.
     for side, start in ((1, 2e-3), (-1, 1e-3)):
         assert case.clearance_m(side, 30.0) == pytest.approx(start + 30 * (1e-5 * (0.05 + start) - 2e-5 * 0.05), rel=1e-12)
 
@@ -68,10 +68,10 @@ def test_a_bar_whose_coefficient_follows_the_temperature() -> None:
     changes = {"link__thermal_expansion_per_K": None, "thermal": TABLE}
     case = made("table1", **changes, expansion={"temperature_change_K": rows, "thermal_expansion_per_K": alpha})
     assert case.thermal_expansion_per_K == 3e-5
-    assert case.turning_changes_K == pytest.approx((-50, 75, 100))  # of zeros at -75, 75 and 133 that within
+    assert case.turning_changes_K == pytest.approx((-50, 75, 100))  # zeros at -75, 75 and 133; 75 is in range
     assert case.thermal_strain(100) == pytest.approx(1e-3) and case.thermal_strain(-50) == pytest.approx(-1e-3)
     assert case.bar_program is not case.thermal
-    # Zeros at the ends of the program are there once.
+    # Zeros at the ends of the program are not repeated.
     ends = made("table1", **changes, expansion={"temperature_change_K": [-50, 0, 100], "thermal_expansion_per_K": [0, 1e-5, 0]})
     assert ends.turning_changes_K == (-50, 100)
     assert refused("table1", link__thermal_expansion_per_K=None) == (
@@ -81,7 +81,7 @@ def test_a_bar_whose_coefficient_follows_the_temperature() -> None:
     short = {"temperature_change_K": [-10, 200], "thermal_expansion_per_K": [1e-5, 2e-5]}
     assert refused("table1", **changes, expansion=short) == failure("expansion_too_narrow", key="expansion.temperature_change_K", value=[-10.0, 200.0], reached_K=-50.0)
     assert refused("table1", **changes, expansion={**short, "temperature_change_K": [10, 200]}) == failure("expansion_temperatures", key="expansion.temperature_change_K", value=[10.0, 200.0])
-    # 1 + strain is 0 at the end of this one.
+    # 1 + strain is 0 at the end of this program.
     cold = {"shape": "table", "table_time_s": [0, 1, 2], "table_temperature_change_K": [0, -2000, 0]}
     table = {"temperature_change_K": [-2000, 0], "thermal_expansion_per_K": [5e-4, 5e-4]}
     assert refused("table1", link__thermal_expansion_per_K=None, thermal=cold, expansion=table) == (
@@ -92,7 +92,7 @@ def test_a_bar_whose_coefficient_follows_the_temperature() -> None:
 
 def test_checks_of_a_bar_on_a_slider() -> None:
     for key in ("clearance_minus_m", "clearance_plus_m"):
-        # The pad grows by 100 K · 1e-4 · 0.05 m = 5e-4 m, the other stop stands off.
+        # The pad grows by 100 K · 1e-4 · 0.05 m = 5e-4 m; the other stop is farther away.
         grows = {"joint__pad_thermal_expansion_per_K": 1e-4, f"joint__{key}": 5e-4}
         assert refused("table1", **grows) == (
             failure("clearance_closes", key=f"joint.{key}", value=0.0005, at_K=100.0))
@@ -116,7 +116,7 @@ def test_checks_of_a_bar_on_a_slider() -> None:
     stable = stable_step.stable_time_step(made("table1"))
     assert made("table1", dem__time_step_s=stable).dem_settings.time_step_s == stable
     assert refused("table1", dem__time_step_s=nextafter(stable, 1)) == failure("above_stable_time_step")
-    # A link that heating or cooling leaves no length.
+    # Heating or cooling reduces the length of the link to zero.
     cold = {"shape": "table", "table_time_s": [0, 1, 2], "table_temperature_change_K": [0, -1000, 0]}
     assert refused("table1", link__thermal_expansion_per_K=1e-3, thermal=cold) == failure("link_without_length")
     made("table1", link__thermal_expansion_per_K=9.9e-4, thermal=cold)
@@ -149,7 +149,7 @@ COLD = {"shape": "table", "table_time_s": [0, 1, 2], "table_temperature_change_K
 
 
 def test_checks_of_the_geometry_of_a_rib() -> None:
-    # Links of 1/2 and 1/4 m, whose sum and difference are exact.
+    # Links of 1/2 and 1/4 m have an exact sum and difference.
     ends = {**STILL, "link_ab__stress_free_length_m": 0.5, "link_bc__stress_free_length_m": 0.25}
     for frame in (0.25, 0.75, 0.2, 0.8):
         assert refused("umbrella_damped", **ends, frame__length_m=frame) == (
@@ -183,7 +183,7 @@ def test_checks_of_the_joint_of_a_rib() -> None:
     assert refused("umbrella_damped", **speeds) == (
         failure("friction_velocities_unordered", key="joint.friction_v1_m_per_s", value=0.001, friction_v0_m_per_s=0.001))
     made("umbrella_damped", **{**speeds, "joint__friction_v1_m_per_s": 1.1e-3})
-    # Only a law that knows no restitution of its own takes none.
+    # Only laws without a built-in restitution accept restitution 0.
     refusing = {"joint__dissipation_law": "flores", "joint__restitution": 0.0}
     assert refused("umbrella_damped", **refusing) == (
         failure("restitution_zero", key="joint.restitution", value=0.0, law="flores"))
@@ -334,7 +334,7 @@ def test_programs_of_a_truss() -> None:
     assert case.resolve() is case.resolve()
     assert truss_refused(thermal=thermal, program=[{**own[1], "cycles": 4}]) == (
         failure("program_duration_differs", item="program 'shade'", key="period_s", value=2.0, cycles=4, lasts=8.0, wanted_s=6.0))
-    # Durations that are the same but for 1e-9 are the same.
+    # Durations that differ by less than 1e-9 count as equal.
     truss(thermal=thermal, program=[{**own[1], "period_s": 2.0 * (1 + 0.9e-9)}])
     assert truss_refused(thermal=thermal, program=[{**own[1], "period_s": 2.0 * (1 - 1.1e-9)}]) == failure("program_duration_differs", wanted_s=6.0)
     assert truss_refused(program=[{"name": "sun", "shape": "triangle"}]) == failure("missing_key", item="program 'sun'", key="temperature_change_max_K")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs and files beside each other by hand: rows of the kinds, of finite elements, of two files."""
+"""Comparisons by hand: rows of the kinds, of finite elements, of two files."""
 from __future__ import annotations
 
 import json
@@ -74,7 +74,7 @@ def test_comparisons(tmp_path: Path) -> None:
     assert [path.name for path in found.write(tmp_path)] == ["comparison.json", "comparison.csv"]
     told = json.loads((tmp_path / "comparison.json").read_text())
     assert (told["pass"], told["reasons"], [row["name"] for row in told["quantities"]]) == (False, ["too fast"], ["a", "b"])
-    # Rows of finite elements are relative to the reduced model, theirs are not; to nothing at all as they are.
+    # Differences of finite-element rows are relative to the reduced model; for a value of 0 they are absolute.
     more = [Quantity("c", "m", {"reduced": own, "fe": 1.0}, by, 0.5, True) for own, by in ((-4.0, 0.25), (0.0, 0.25), (2.0, None))]
     whole = replace(found, notes=("here",)).with_fe(more, ["there"])
     assert whole.notes == ("here", "there") and [row.name for row in whole.rows] == ["a", "b", *3 * ["c, finite elements"]]
@@ -109,7 +109,7 @@ def test_comparison_of_a_slider() -> None:
     assert rows["energy_residual_over_friction_work"].tolerance == case.tolerance.energy_balance_relative
     assert rows["displacement_rms_over_largest"].reduced == 0 and "loop_drift_over_largest_displacement" not in rows
     assert slider.energy_residual(dem) == pytest.approx(RESIDUE)
-    # Without work of friction what was stored at most is the scale.
+    # Without friction work, the largest stored energy is the scale.
     rows = by_name(list(slider.compare(case, *slider_runs(case, friction_dissipation_J=0.0)).rows))
     assert rows["energy_residual_over_largest_stored"].dem == pytest.approx((RESIDUE + 10) / 3.25)
     smooth = case_of("table1_frictionless", dem__samples_per_cycle=10)
@@ -197,12 +197,12 @@ def test_comparison_of_a_rib_without_damping_ends_at_the_largest_temperature() -
     assert not [name for name in rows if name.endswith("_jump")]
     assert rows["theta2_largest_difference_over_range_until_largest_temperature"].dem == pytest.approx(0.02 / 0.4)
     assert umbrella.largest_temperature(rib_run(OURS, largest=3)) == 3
-    # The play that the program does not use up has no first contact, in neither model.
+    # If the program does not close the clearance, neither model has a first contact.
     wide = case_of("umbrella_damped", joint__radial_clearance_m=1e-3)
     rows = by_name(list(umbrella.compare(wide, rib_run(OURS), rib_run(OURS, [Event("first_contact", 0.1, 9.0)])).rows))
     ours, other = (rows[f"first_contact_temperature_change, closed form and {name}"] for name in ("reduced", "DEM"))
     assert ours.passed and ours.closed_form is None and not other.passed and other.dem == 9
-    # Just used up at the largest temperature of the program.
+    # The clearance is just closed at the largest temperature of the program.
     just = case_of("umbrella_damped", joint__radial_clearance_m=23.75e-6 * 0.12 * 100 * (1 - 1e-12))
     rows = by_name(list(umbrella.compare(just, rib_run(OURS), rib_run(OURS)).rows))
     assert rows["first_contact_temperature_change, closed form and reduced"].closed_form == pytest.approx(100)
@@ -285,7 +285,7 @@ def test_verdict_of_a_truss(cycles: int, monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_the_end_of_the_last_loop_belongs_to_it() -> None:
-    """Of four samples a cycle the ninth is the end of the second loop and the start of the third."""
+    """With four samples per cycle, the ninth sample is the end of the second loop and the start of the third."""
     x = np.zeros(13)
     x[12] = 5e-5
     assert slider.loop_drift(run_of({"displacement_m": x}), 4, 3) == pytest.approx(5e-5)
@@ -294,7 +294,7 @@ def test_the_end_of_the_last_loop_belongs_to_it() -> None:
     case = SimpleNamespace(samples_per_cycle=4, thermal=SimpleNamespace(cycles=3))
     assert truss.loop_drift_m(case, run_of({"displacement_m": nodes})) == pytest.approx(5e-5)
     early = np.zeros(13)
-    early[:4] = 1.0  # of the first loop, which nothing is compared with
+    early[:4] = 1.0  # in the first loop, which is not compared
     assert slider.loop_drift(run_of({"displacement_m": early}), 4, 3) == 0
 
 
@@ -382,13 +382,13 @@ def test_columns_of_two_files() -> None:
                     energy={"work_J": Column(np.zeros(3))}, summary={"state_jump_m": 7.5, "loops": 1.0})
     found = two(ours, other)
     columns = {one.name: one for one in found.columns}
-    # At the times of the first: 0, 2.5, 5, 7.
+    # At the times of the first run: 0, 2.5, 5, 7.
     assert set(columns) == {"history/temperature_change_K", "history/displacement_m", "history/push_N"}
     x = columns["history/displacement_m"]
     assert (x.largest, x.time_s, x.range) == (3, 4, 6)
     assert columns["history/push_N"].largest == 0
     assert found.names == ("reduced", "reduced") and found.lacking == ["energy/work_J", "history/lone_N", "history/own_N"]
-    assert found.not_finite == ["history/push_N"]  # at 1 s, where the second is between nothing and 1
+    assert found.not_finite == ["history/push_N"]  # at 1 s, where the second run lies between NaN and 1
     events = {one.kind: (one.counts, one.first_K) for one in found.events}
     assert events == {"first_slip": ((2, 1), (5.0, 5.5)), "stop": ((1, 0), (8.0, None)), "left": ((0, 1), (None, 9.0))}
     summary = {row[0]: row[1:] for row in found.summary}

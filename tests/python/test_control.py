@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Control of the state jump: searches, measures, sentences, files."""
+"""Control of the state jump: searches, measures, messages, files."""
 from __future__ import annotations
 
 import csv
@@ -32,7 +32,7 @@ def table1(cases: Path):
 
 
 def command(*arguments: object) -> None:
-    """Run as the command line does, without ending the interpreter."""
+    """Run the command line without ending the interpreter."""
     control_command.main([str(argument) for argument in arguments], standalone_mode=False)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Convergence of the DEM: its table and its text follow from the case and the numbers."""
+"""Convergence of the DEM: table and text follow from the case and the numbers."""
 from __future__ import annotations
 
 import csv
@@ -18,7 +18,7 @@ from studies.paper import convergence
 
 
 def dem_like(case: SpringSliderCase, error_m: float) -> Run:
-    """The exact run as a DEM would give it, off by a known error that grows over the run."""
+    """The exact run in the form of a DEM run, with a known error that grows over the run."""
     exact = case.reduced()
     columns = exact.flat()
     stage = columns.pop("stage")
@@ -34,7 +34,7 @@ def dem_like(case: SpringSliderCase, error_m: float) -> Run:
 
 
 def found_of(case: SpringSliderCase) -> convergence.Convergence:
-    """A study whose errors fall with the period, and in proportion to the step."""
+    """A study whose errors decrease with the rate, and in proportion to the step."""
     slower, finer = convergence.variants(case)
     runs = ([dem_like(variant, 1e-8 / (1 + place)) for place, variant in enumerate(slower)],
             [dem_like(variant, 1e-8 * variant.dem_settings.time_step_fraction) for variant in finer])
@@ -69,7 +69,7 @@ def test_table_and_text_follow_from_the_numbers(table1: SpringSliderCase, tmp_pa
     with table.open() as stream:
         rows = list(csv.DictReader(stream))
     assert len(rows) == 12 and rows[0]["displacement_rms_from_finest_step_m"] == rows[-1]["first_slip_error_K"] == ""
-    # The jump is off by 1e-8 m, of 30 N / 1.26 MN/m.
+    # The jump has an error of 1e-8 m; the jump is 30 N / 1.26 MN/m.
     assert float(rows[0]["state_jump_error_relative"]) == pytest.approx(1e-8 / (30 / 1.26e6), rel=1e-6)
     said = text.read_text()
     assert "Made by `statejump convergence cases/table1.toml`." in said
@@ -78,7 +78,7 @@ def test_table_and_text_follow_from_the_numbers(table1: SpringSliderCase, tmp_pa
     depth = (100 / (4 / 3 * 70e9 / (2 * 0.91) * math.sqrt(0.05))) ** (2 / 3)
     share = -(0.3 * depth + depth**2 / (2 * 30 / 1.26e6)) / 0.5
     assert "δ = 4.2 µm" in said and f"{share:.2g} of the jump" in said and f"{share:.2g}" == "-3.3e-06"
-    # Errors that grow instead are told as such.
+    # Errors that grow instead are reported as such.
     worse = replace(found, slower=tuple(reversed(found.slower)))
     assert "relative error of the jump does not fall, 7e-05 to 0.00042" in "\n".join(convergence.explanation(worse))
 

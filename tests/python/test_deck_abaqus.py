@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Decks of CalculiX and Abaqus: keywords, sets, steps and every kind of keyword with its closed form."""
+"""Decks of CalculiX and Abaqus: keywords, sets, steps, and closed forms for every kind of keyword."""
 from __future__ import annotations
 
 import time
@@ -14,7 +14,7 @@ from failures import failure
 import statejump as sj
 from statejump.kinds.truss.importing import Options, case_document, read
 
-# A rod of 7e6 N/m along x, held but along x at its end; 7000 N stretch it by 1 mm.
+# A rod of 7e6 N/m along x, free only along x at its end; 7000 N elongate it by 1 mm.
 MODEL = """*NODE, NSET=NALL
 1, 0., 0., 0.
 2, 1., 0., 0.
@@ -58,7 +58,7 @@ def refusal(folder: Path, text: str, **options: Any) -> sj.StatejumpError:
 
 
 NODES = MODEL[:MODEL.index("*ELEMENT")]
-SAME = {  # what is replaced in the deck without changing it
+SAME = {  # replacements in the deck that do not change its meaning
     "elements before nodes": (MODEL, MODEL.replace(NODES, "") + NODES),
     "abbreviated parameters": ("*STEP", "*AMPLITUDE, NAME=RAMP, DEF=TABULAR\n0., 0., 1., 1.\n*STEP, NLGEO=NO, PERT"),
     "quoted names with commas": ("ELSET=BARS", 'ELSET="bars, left"'),
@@ -143,7 +143,7 @@ def test_steps_loads_and_springs(name: str, tmp_path: Path) -> None:
     assert moved(made(tmp_path, model + text, **options)) == pytest.approx(wanted, rel=1e-9, abs=1e-18)
 
 
-SECTIONS = {  # parameters and sizes of *BEAM SECTION, options and area; checked with CalculiX 2.20 but I, L, TRAPEZOID
+SECTIONS = {  # parameters and sizes of *BEAM SECTION, options, area; checked with CalculiX 2.20 except I, L, TRAPEZOID
     "RECT": ("20., 30.", {}, 600), "RECT of one length": ("20.", {}, 400), "CIRC": ("10., 20.", {}, pi * 50),
     "CIRC as radius": ("10.", {"circ": "radius"}, pi * 100), "CIRC as diameter": ("10.", {"circ": "diameter"}, pi * 25),
     "PIPE": ("10., 2.", {}, pi * 36), "BOX": ("20., 30., 1., 2., 3., 5.", {}, 600 - 16 * 23),
@@ -293,14 +293,14 @@ def test_what_matters_and_is_not_supported_is_named(name: str, tmp_path: Path) -
 
 @pytest.mark.parametrize("peak", [120.0, 60.0, -40.0])
 def test_coefficients_follow_the_temperature_from_their_zero(peak: float, tmp_path: Path) -> None:
-    """Secants of 2e-5, 2.5e-5 and 2.2e-5 1/K at 0, 50 and 100 degrees from ZERO=10; free of stress at 20, with 2.2e-5."""
+    """Secants of 2e-5, 2.5e-5 and 2.2e-5 1/K at 0, 50 and 100 degrees with ZERO=10; stress-free at 20, with 2.2e-5."""
     text = MODEL.replace("*EXPANSION\n2.3e-5\n", "*EXPANSION, ZERO=10.\n2.e-5, 0.\n2.5e-5, 50.\n2.2e-5, 100.\n")
     text += f"*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNALL, 20.\n*STEP\n*STATIC\n*TEMPERATURE\nNALL, {peak}\n*END STEP\n"
     case = sj.load(made(tmp_path, text, None))
     assert case.link[0].expansion == "X1" and case.thermal.temperature_change_max_K == peak - 20
     secant = {120.0: 2.2e-5, 60.0: 2.44e-5, -40.0: 2e-5}[peak]
     wanted = secant * (peak - 10) - 2.2e-5 * 10
-    # A jump of 2e-5 1/K at most, spread over 0.2 K, is right to its square.
+    # A jump of at most 2e-5 1/K, spread over 0.2 K, is exact to second order.
     assert case.expansion[0].strain(np.array([peak - 20]))[0] == pytest.approx(wanted, abs=1e-8)
 
 
@@ -322,4 +322,4 @@ def test_reading_is_linear(tmp_path: Path) -> None:
         begun = time.process_time()
         read(tmp_path / "deck.inp")
         took.append(time.process_time() - begun)
-    assert took[1] < 2 * took[0] + 1  # most is the reading of the nodes, which is the same
+    assert took[1] < 2 * took[0] + 1  # most of the time is reading the nodes, which are equal

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rigid bodies, equations, moments and springs of decks, where they act on a truss, with their closed forms."""
+"""Rigid bodies, equations, moments and springs of decks that act on a truss, with closed forms."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -17,7 +17,7 @@ from statejump.kinds.truss.importing import Options, case_document, checked, rea
 
 HEAD = "SOL 101\nCEND\nSPC = 1\nLOAD = 5\nMPC = 7\nBEGIN BULK\n"
 BARE = HEAD.replace("LOAD = 5\n", "")
-# Rods of 7e6 N/m along x, at the nodes 2 and 3, which are at one place; 7000 N stretch each by 1 mm.
+# Rods of 7e6 N/m along x that end at the nodes 2 and 3 at one position; 7000 N elongate each by 1 mm.
 RODS = """GRID,1,,0.,0.,0.
 GRID,2,,1.,0.,0.
 GRID,3,,1.,0.,0.
@@ -100,19 +100,19 @@ def bent(text: str) -> str:
     ("what is held on both sides needs none", "MPC,7,2,1,-2.,3,1,2.\nSPC1,1,23,2,THRU,3\n"),
 ])
 def test_nodes_at_one_place_become_one(name: str, cards: str, tmp_path: Path) -> None:
-    """The nodes 2 and 3 are one: both rods stretch by 1 mm."""
+    """The nodes 2 and 3 are merged, so both rods elongate by 1 mm."""
     document = made(tmp_path, HEAD + RODS + END + cards)
     assert {item["name"] for item in document["node"]} == {"N1", "N2", "N4"}
     assert moved(document, "N4")[0] == pytest.approx(2e-3, rel=1e-12)
 
 
 def test_springs_masses_and_supports_move_with_their_node(tmp_path: Path) -> None:
-    """In y a spring of 1e6 N/m holds 1000 N, in x the node 3 is held: its rod alone stretches."""
+    """In y a spring of 1e6 N/m carries 1000 N; in x node 3 is held, so only its rod elongates."""
     cards = "SPC1,1,1,3\nCELAS2,8,1.+6,3,2\nFORCE,5,3,,1000.,0.,1.,0.\nCONM2,2,3,,4.\nCONM2,1,2,,3.\n"
     document = made(tmp_path, HEAD + RODS + END + cards + "RBAR,9,2,3,123456\n")
     joint = next(item for item in document["node"] if item["name"] == "N2")
     assert joint["mass_kg"] == 7
-    # Rods of 1 m that turn by 1e-3 are 5e-7 m shorter along x, and pull back 7 N.
+    # Rods of 1 m that rotate by 1e-3 become 5e-7 m shorter along x and pull back with 7 N.
     assert moved(document, "N4")[0] == pytest.approx(1e-3, rel=1e-3)
     assert moved(document, "N2")[1] == pytest.approx(1e-3, rel=0.01)
 
@@ -146,7 +146,7 @@ def test_an_equation_of_one_displacement_is_a_support(tmp_path: Path) -> None:
 ])
 def test_equations_between_nodes_at_which_bars_end_are_constraints(name: str, cards: str, moves: float,
                                                                    tmp_path: Path) -> None:
-    """The first rod ends at node 2, the second pulls node 3 with 7000 N, each stretches by 1 mm for 7000 N."""
+    """The first rod ends at node 2, the second pulls node 3 with 7000 N; 7000 N elongate each by 1 mm."""
     document = made(tmp_path, HEAD + RODS + END + cards)
     assert document["constraint"]
     assert moved(document, "N4")[0] == pytest.approx(moves, rel=1e-9)
@@ -160,7 +160,7 @@ def test_a_mass_moves_with_the_node_of_an_equation(tmp_path: Path) -> None:
 
 
 def test_a_mean_shares_its_load_by_weights_and_levers(tmp_path: Path) -> None:
-    """Of the weights 1 and 3 on nodes 2 and 4 a force along both has 1/4 and 3/4."""
+    """With weights 1 and 3, the nodes 2 and 4 carry 1/4 and 3/4 of a force along both."""
     rest = RODS.replace("CROD,2,1,3,4", "CROD,2,1,2,4").replace("GRID,3,,1.,0.,0.\n", "").replace("2.,.5,0.", "9.,0.,0.")
     cards = "RBE3,9,,5,12,1.,123,2,3.,\n,123,4\nFORCE,5,5,,7000.,1.,0.,0.\n"
     document = made(tmp_path, HEAD + rest + cards)
@@ -310,7 +310,7 @@ def test_equations_of_calculix_between_nodes_are_constraints(tmp_path: Path) -> 
     document = made(tmp_path, INP + held + "*EQUATION\n2\n2, 1, 1., 3, 1, -2.\n" + STEP.format(more=""))
     assert document["constraint"] == [
         {"name": "C1", "nodes": ["N2", "N3"], "directions": ["x", "x"], "coefficients": [1.0, -2.0]}]
-    # The first rod has half of 7000 N and stretches by 0.5 mm: node 3 moves by half of that.
+    # The first rod carries half of 7000 N and elongates by 0.5 mm; node 3 moves by half of that.
     assert moved(document, "N4")[0] == pytest.approx(1.25e-3, rel=1e-9)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Decks of Nastran: the fields of cards as the manuals have them, and every kind of card with its closed form."""
+"""Decks of Nastran: fields of cards as in the manuals, and closed forms for every kind of card."""
 from __future__ import annotations
 
 from math import pi
@@ -16,7 +16,7 @@ from statejump.kinds.truss.importing.profiles import NASTRAN, nastran
 
 E, A = 7e10, 1e-4
 CONTROL = "SOL 101\nCEND\nSPC = 1\nLOAD = 5\nBEGIN BULK\n"
-# One rod of 7e6 N/m along x, held but along x at its end; 7000 N stretch it by 1 mm.
+# A rod of 7e6 N/m along x, free only along x at its end; 7000 N elongate it by 1 mm.
 ROD = """GRID,1,,0.,0.,0.
 GRID,2,,1.,0.,0.
 CROD,1,1,1,2
@@ -129,7 +129,7 @@ def test_includes_that_are_refused(name: str, sentence: Failure, tmp_path: Path)
     assert failure("include_outside", included="'link.inc'") == refusal(tmp_path, "INCLUDE 'link.inc'\n" + ROD)
 
 
-SPRUNG = {  # cards beside the rod, and what its end does then
+SPRUNG = {  # cards besides the rod, and the resulting displacement of its end
     "spring to the ground": ("CELAS2,2,7.+6,2,1\n", 0.5e-3),
     "spring by a property": ("CELAS1,2,9,2,1\nPELAS,9,2.1+7\n", 0.25e-3),
     "spring along its line": ("GRID,3,,3.,0.,0.\nSPC1,1,123,3\nCELAS2,2,7.+6,2,1,3,1\n", 0.5e-3),
@@ -147,7 +147,7 @@ def test_springs_and_loads(name: str, tmp_path: Path) -> None:
     bulk = ROD + cards
     if name == "load along the bar":
         bulk = bulk.replace("CROD,1,1,1,2", "CBAR,1,1,1,2,0.,1.,0.").replace("PROD", "PBAR")
-        # 2000 N/m from end to end: half of it at each end, as in the exact solution of the bar.
+        # 2000 N/m over the whole length: half of the load at each end, as in the exact solution of the bar.
         assert moved(made(tmp_path, bulk, beams_as_bars=True)) == pytest.approx(8000 / 7e6, rel=1e-12)
         return
     assert moved(made(tmp_path, bulk)) == pytest.approx(wanted, rel=1e-9)
@@ -251,7 +251,7 @@ def test_coordinate_systems(name: str, tmp_path: Path) -> None:
 
 
 def test_supports_and_forces_in_their_own_systems(tmp_path: Path) -> None:
-    """A rod at 30 degrees, whose end slides along it: guided, and pulled in the direction of the rod."""
+    """A rod at 30 degrees whose end is guided along it and pulled in its direction."""
     turned = ROD.replace("GRID,2,,1.,0.,0.", "GRID,2,5,1.,0.,0.,5").replace("FORCE,5,2,", "FORCE,5,2,5")
     turned += "CORD2R,5,,0.,0.,0.,0.,0.,1.\n,.8660254037844387,.5,0.\n"
     document = made(tmp_path, turned)
@@ -327,12 +327,12 @@ def test_a_repeated_card_has_its_own_continuation(tmp_path: Path) -> None:
 
 
 def test_an_equation_of_one_node_is_a_support_in_its_direction(tmp_path: Path) -> None:
-    # The end slides along (1, 1): of a force along x the bar carries all, and half of it goes on along y.
+    # The end slides along (1, 1): the bar carries the whole force along x, and half of it acts along y.
     bulk = ROD.replace("SPC1,1,23,2", "SPC1,1,3,2") + "MPC,9,2,1,1.,2,2,-1.\n"
     document = made(tmp_path, bulk, CONTROL.replace("SPC = 1", "SPC = 1\nMPC = 9"))
     assert document["node"][1]["guide_normal"] == pytest.approx([.5**.5, -.5**.5], rel=1e-12)
     document["node"][1]["force_N"] = [7.0, 0.0]
-    assert moved(document, axis=1) == pytest.approx(1e-6, rel=1e-5)  # strain 1e-6: what is not linear is as small
+    assert moved(document, axis=1) == pytest.approx(1e-6, rel=1e-5)  # strain 1e-6, so nonlinear terms are as small
     assert moved(document, axis=0) == pytest.approx(1e-6, rel=1e-5)
 
 
@@ -363,7 +363,7 @@ def test_sets_of_supports_are_combined(tmp_path: Path) -> None:
     assert moved(made(tmp_path, bulk)) == pytest.approx(1e-3, rel=1e-12)
 
 
-REFUSED = {  # cards beside the rod and what the refusal says
+REFUSED = {  # cards besides the rod, and the reason of the refusal
     "shell": ("CQUAD4,2,1,1,2,2,1\n", failure("deck_not_supported", card="CQUAD4", reason="no_truss", line=14)),
     "unknown": ("CNEW,2,1\n", failure("deck_not_supported", card="CNEW", reason="unknown_card")),
     "rigid": ("RJOINT,9,1,2,1\n", failure("deck_not_supported", card="RJOINT", reason="no_truss")),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the command prints to check, hints at wrong units, and options that name them."""
+"""Printed quantities for a check, hints at wrong units, and options that set the units."""
 from __future__ import annotations
 
 from pathlib import Path

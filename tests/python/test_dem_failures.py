@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Failures of runs in YADE name the joint of the case: every kind of case, every sort of part.
+"""Failures of runs in YADE name the joint of the case, for every kind of case and every type of part.
 
-What a case file cannot bring about is brought about in the values that go to YADE.
+Failures that a case file cannot cause are caused by changing the input of YADE.
 """
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def resolved(name: str) -> Values:
 
 @pytest.fixture(scope="module")
 def values() -> Callable[[str], Values]:
-    """Return what goes to YADE; every case is resolved once."""
+    """Return a function that returns the input of YADE; every case is resolved once."""
     known: dict[str, Values] = {}
 
     def of(name: str) -> Values:
@@ -42,7 +42,7 @@ def values() -> Callable[[str], Values]:
 
 
 def coarse(found: Values) -> None:
-    """One step per sample: far above every stable step."""
+    """One step per sample, far above every stable step."""
     times = found["dem"]["number_of_steps"] / found["number_of_samples"]
     found["dem"]["number_of_steps"] = found["number_of_samples"]
     found["dem"]["time_step_s"] *= times
@@ -70,7 +70,7 @@ def above_the_floor(found: Values) -> None:
 
 
 def floors_everywhere(found: Values) -> None:
-    """All pads in one contact group, on floors that reach under their neighbours."""
+    """All pads in one contact group, on floors that extend below their neighbours."""
     count = len(found["slider"]["names"])
     found["slider"].update(group=[0] * count, reach_m=[2.0] * count, pad_radius_m=[0.7] * count)
 
@@ -105,7 +105,7 @@ def test_failure_names_what_the_case_names(name: str, values: Callable[[str], Va
     assert (caught.value.details["reason"], caught.value.details["part"]) == reason
     assert not re.search(r"\bbod(y|ies)\b", message)
     assert failure.get("joint") == joint
-    # All of them fail at once, where every program begins.
+    # All of them fail in the first step, at the start of every program.
     assert (failure["time_s"], failure["temperature_change_K"]) == (0, 0)
     assert "(" not in failure["cause"] and f": {failure['cause']} (" in message
     assert re.fullmatch(remedy, failure.get("remedy", ""))
@@ -116,7 +116,7 @@ def test_failure_names_what_the_case_names(name: str, values: Callable[[str], Va
             "steps_per_cycle": found.get("period_s", 0) / float(number),
             "time_step_fraction": float(number) / found["dem"].get("time_step_fraction", 1) * found["dem"]["time_step_s"],
         }[key]
-        # Stable for the part that failed; the whole scene may need less.
+        # The step is stable for the failed part; the whole scene may require a smaller one.
         assert step <= float(re.search(r", (\S+) s$", failure["cause"])[1])
 
 
@@ -131,7 +131,7 @@ def test_remedy_of_a_step_helps(values: Callable[[str], Values]) -> None:
 
 
 def test_number_that_is_none(values: Callable[[str], Values]) -> None:
-    # Checks of case files keep these out; whatever lets one through ends here.
+    # Checks of case files prevent these values; the engine is the last check.
     nan = float("nan")
     for name, section, key, quantity, part, joint in (
         ("table1", "joint", "friction_coefficient", "ThermalFrictMat.frictionAngle", "the slider", None),
@@ -164,7 +164,7 @@ def described(taken: Values | None, stable_s: float = 1e-5, error: Exception | N
 
 
 def test_failure_keeps_its_own_time() -> None:
-    # The contact fails in one step, the engine that says it may act in the next.
+    # The contact fails in one step, and the engine that reports it may act in the next.
     for bodies in (7, 4), (4, 7):
         assert described({**TAKEN, "bodies": bodies}) == {
             **FIELDS, "joint": "J", "place": "revolute 'J'", "part": "revolute 'J'", "cause": "too deep"}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The whole way through YADE: what the project promises about Table 1."""
+"""End-to-end runs through YADE: the promised results for Table 1."""
 from __future__ import annotations
 
 import json
@@ -47,7 +47,7 @@ def test_compare(statejump, cases: Path, tmp_path: Path, name: str) -> None:
 
 
 def test_a_missed_tolerance_is_named(statejump, edited) -> None:
-    # The pads of the stop sink in by micrometres, so an RMS tolerance of 1e-4 cannot be met.
+    # The pads of the stop penetrate by micrometres, so an RMS tolerance of 1e-4 cannot be met.
     path = edited(("displacement_rms_relative = 0.01", "displacement_rms_relative = 1e-4"),
                   ("period_s = 1.0", "period_s = 0.1"))
     outcome = statejump("compare", path)
@@ -66,14 +66,14 @@ def test_preload_spring_in_the_dem(statejump, edited, tmp_path: Path) -> None:
 
 
 def started(friction: str) -> tuple[str, str]:
-    """Return the edit that selects how the block starts."""
+    """Return the edit that selects the initial friction."""
     return "[thermal]", f'[start]\nfriction = "{friction}"\n\n[thermal]'
 
 
 @pytest.mark.parametrize("friction, jump_N", [("stuck", 60.0), ("frictionless", 30.0)])
 def test_preload_force_in_the_dem(statejump, edited, tmp_path: Path, friction: str, jump_N: float) -> None:
-    # Both models start at 630 or 600 over 1.26e6 + 2e5 m, beyond the middle; the stop + is reached at a lower
-    # temperature. Where friction held at the start, it changes from one limit to the other.
+    # Both models start at 630 or 600 N over 1.26e6 + 2e5 N/m, beyond the middle, so the stop + is reached at a lower
+    # temperature. If friction carried load at the start, it changes from one limit to the other.
     path = edited(("clearance_plus_m = 1e-3", "clearance_plus_m = 1e-3\npreload_force_N = -630\n"
                    "preload_stiffness_N_per_m = 2e5"), ("period_s = 1.0", "period_s = 0.25"), started(friction))
     outcome = statejump("compare", path)
@@ -95,14 +95,15 @@ def test_block_that_a_preload_force_seats_on_a_stop_in_the_dem(
     history = read_columns(tmp_path / "results" / "table1" / "dem_history.csv")
     x, stop = history["displacement_m"], history["stop_force_N"]
     depth = -1e-3 - x
-    # The bar carries k (c + depth) of the 1350 N, friction what it holds, the stop the rest from the first step on, to
-    # what a step of heating adds, 1e-6 of it.
+    # Of the 1350 N the bar carries k (c + depth), friction its part, and the stop the rest from the first step on,
+    # except for the heating in one step, 1e-6 of it.
     assert stop[0] == pytest.approx(1350 - carried_N - 1.26e6 * (1e-3 + depth[0]), abs=1e-4)
-    # The first sample heats by 0.157 K, 2.3 N of the bar. An error of the start would swing the block by more than a
-    # Hertzian stop of 3/2 F/depth gives to that.
+    # The first sample heats by 0.157 K, 2.3 N in the bar. An error of the start would move the block by more than the
+    # compliance of a Hertzian stop, depth/(3/2 F), allows.
     assert abs(x[1] - x[0]) < 2.32 / (1.5 * stop[1] / depth[1])
-    # It comes back to the stop. Friction carries f of the load at the end: the jump is what the stop, less deep by then
-    # if friction carried none at the start, gives. 1 N: friction ends that far from its limit, as the tangential spring follows the load.
+    # The block returns to the stop. Friction carries f at the end, so the stop carries less, and the jump is its change
+    # of depth if friction carried nothing at the start. 1 N: at the end friction is that far from its limit, because
+    # the tangential spring follows the load.
     assert stop[-1] == pytest.approx(1350 - 30 - 1.26e6 * (1e-3 + depth[-1]), abs=1.0)
     # The dashpot of the stop adds 0.04 N, 70 N s/m at 0.5 mm/s.
     assert depth[-1] / depth[0] == pytest.approx((stop[-1] / stop[0]) ** (2 / 3), rel=1e-3)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Codes of errors: each is declared once and used, and each error gives every field that its sentence names."""
+"""Codes of errors: each is declared once and used, and every error provides the fields in its sentence."""
 from __future__ import annotations
 
 import ast
@@ -17,30 +17,30 @@ from statejump.kinds.truss.importing.reasons import REASONS
 
 PACKAGE = REPOSITORY / "python" / "statejump"
 TREES = [(path, ast.parse(path.read_text(encoding="utf-8"))) for path in sorted(PACKAGE.rglob("*.py"))]
-# Keywords of the classes of errors. What else an error is given is one of its details.
+# Keywords of the classes of errors. All other arguments of an error are details.
 OWN = {"what", "code", "file", "place", "case", "item", "key", "value", "allowed", "joint", "nodes", "time_s",
        "temperature_change_K", "cause", "remedy", "beside", "section", "needs", "run", "fault", "loose", "address"}
 
 
 def names_in(declared: Code) -> set[str]:
-    """Return the details of a code: those that its sentences name, and further ones."""
+    """Return the details of a code: those in its sentences, and further ones."""
     return {*declared.further, *(
         name for text in (declared.what, declared.beside, declared.cause, declared.remedy)
         for _, name, _, _ in string.Formatter().parse(text) if name is not None)}
 
 
 def called(node: ast.Call) -> str:
-    """Return the name of the function that is called, without its module or object."""
+    """Return the name of the called function, without its module or object."""
     return str(getattr(node.func, "id", None) or getattr(node.func, "attr", ""))
 
 
 def is_refusal_of_deck(node: ast.Call) -> bool:
-    """Whether a call is one of ``Deck.refuse``, which takes a reason."""
+    """Return whether a call is ``Deck.refuse``, whose argument is a reason."""
     return isinstance(node.func, ast.Attribute) and node.func.attr == "refuse"
 
 
 def given() -> Iterator[tuple[str, str, set[str], bool]]:
-    """Yield place, code, details of every error that the package makes, and whether it may have further ones."""
+    """Yield place, code and details of every error in the package, and whether it may have further details."""
     for path, tree in TREES:
         for node in ast.walk(tree):
             if isinstance(node, ast.Call):
@@ -63,9 +63,9 @@ def given() -> Iterator[tuple[str, str, set[str], bool]]:
 
 CLASSES = {name for name, found in vars(errors).items()
            if isinstance(found, type) and issubclass(found, errors.StatejumpError)}
-# Functions that make an error. Their second argument is its code.
+# Functions that make an error from the code in their second argument.
 HELPERS = {"fail", "refuse", "_unusable"}
-# Each of them has one code, whatever it is raised for.
+# Classes with a single code.
 OF_ONE_CODE = {"MissingKey", "TolerancesMissed", "Interrupted"}
 GIVEN = list(given())
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Coefficients of expansion that follow the temperature: the strain is their integral, in solver and DEM alike."""
+"""Temperature-dependent coefficients of expansion: the strain is their integral, in solver and DEM."""
 from __future__ import annotations
 
 from copy import deepcopy
@@ -48,14 +48,14 @@ def pushed_block(play_m: float = PLAY_M, **thermal: Any) -> dict[str, Any]:
 
 
 def slip_K(strain: float, bound_K: float = 0.0) -> float:
-    """Return the ΔT from 0 to 40 K at which the integral of the coefficient has grown by a strain from that at a ΔT."""
+    """Return the ΔT within 0 to 40 K at which the strain exceeds that at ``bound_K`` by ``strain``."""
     slope = (ALPHA_PER_K[2] - ALPHA_PER_K[1]) / ROWS_K[2]
     total = strain + integral(bound_K)
     return float((-ALPHA_PER_K[1] + np.sqrt(ALPHA_PER_K[1]**2 + 2 * slope * total)) / slope)
 
 
 def integral(change_K: float) -> float:
-    """Return ∫ α dΔT from 0 by a quadrature that knows the corners of α."""
+    """Return ∫ α dΔT from 0 by a quadrature that includes the corners of α."""
     corners = [row for row in ROWS_K if min(change_K, 0.0) < row < max(change_K, 0.0)]
     return quad(lambda at: np.interp(at, ROWS_K, ALPHA_PER_K), 0.0, change_K, points=corners or None)[0]
 
@@ -66,7 +66,7 @@ def test_a_free_bar_is_as_long_as_the_integral_of_the_coefficient_says(peak_K: f
     times = np.linspace(0.0, 1.0, 61)
     at = run.at(times)
     wanted = np.array([integral(change) for change in at.history["temperature_change_K"].values])
-    # The chord of a parabola: CHORD of the range; the solver's 1e-9 of it is far below.
+    # A chord of a parabola has an error of CHORD of the range; the solver's 1e-9 is far smaller.
     assert np.abs(at.links["thermal_strain"].values[:, 0] - wanted).max() < CHORD * np.ptp(wanted)
     assert at.history["displacement_m"].values[-31, 1, 0] == pytest.approx(LENGTH_M * integral(peak_K), rel=1e-9)
 
@@ -83,9 +83,9 @@ def test_a_table_of_one_value_is_that_coefficient() -> None:
 def test_the_block_slips_where_the_integral_reaches_its_strain() -> None:
     run = sj.load(bar(FRICTION_N)).reduced()
     first = next(event for event in run.events if event.joint == "S")
-    # Stuck at its drawn length l the bar of the free length l (1 + e) is compressed by E A e/(1 + e) = f.
+    # A stuck bar of length l and free length l (1 + e) is compressed by E A e/(1 + e) = f.
     change = slip_K(FRICTION_N / (RIGIDITY_N - FRICTION_N))
-    # A chord moves an event by its share of the range of the strain over the coefficient.
+    # A chord shifts an event by its error, a fraction of the range of the strain, over the coefficient.
     assert first.temperature_change_K == pytest.approx(change, abs=CHORD * integral(130.0) / ALPHA_PER_K[1])
     assert run.summary["largest_jump_m"] == pytest.approx(FRICTION_N * LENGTH_M / RIGIDITY_N, rel=1e-9)
 
@@ -103,7 +103,7 @@ def test_the_dem_interpolates_the_same_strain() -> None:
 
 
 def test_a_bar_on_a_slider_follows_the_integral_of_the_coefficient() -> None:
-    """Slip, stop and way back at the strains of the closed forms, told at the temperatures of the program."""
+    """Slip, stop and return at the strains of the closed forms; events have the temperatures of the program."""
     case = sj.load(pushed_block())
     run = case.reduced()
     first = {event.kind: event for event in reversed(run.events)}
@@ -130,7 +130,7 @@ def test_a_bar_on_a_slider_follows_the_integral_of_the_coefficient() -> None:
 
 
 def test_where_the_coefficient_changes_its_sign_the_bar_turns() -> None:
-    """Heated on, a bar whose coefficient falls below 0 shrinks again: the block is pulled back while it is heated."""
+    """If the coefficient falls below 0, the bar shrinks during heating, and the block is pulled back."""
     data = pushed_block(temperature_change_max_K=200.0)
     data["expansion"] = {"temperature_change_K": [0.0, 100.0, 200.0], "thermal_expansion_per_K": [2e-5, 0.0, -2e-5]}
     case = sj.load(data)
@@ -161,7 +161,7 @@ def test_histories_of_members_are_exact_at_their_rows(tmp_path: Any) -> None:
 
 
 def put(section: str, **values: Any) -> Callable[[dict[str, Any]], None]:
-    """Return what changes the first item of a section, or the section."""
+    """Return a function that changes the first item of a section, or the section."""
     def change(data: dict[str, Any]) -> None:
         item = data[section][0] if isinstance(data[section], list) else data[section]
         item.update(values)

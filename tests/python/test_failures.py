@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Failures for programs: JSON with the fields that are known, exit statuses, and the page of mistakes."""
+"""Failures for programs: JSON with the known fields, exit statuses, and the page of mistakes."""
 from __future__ import annotations
 
 import importlib.util
@@ -74,7 +74,7 @@ def test_run_in_yade_that_cannot_go_on(
     assert [field for field in errors.FIELDS if field in failure] == list(failure)
     assert failure.get("joint") == joint and "bodies" not in failure["message"]
     assert failure["cause"] in failure["message"] and failure["time_s"] >= 0
-    # The sentence says the same as the fields.
+    # The sentence contains the values of the fields.
     assert f"time {failure['time_s']:.9g} s, temperature change {failure['temperature_change_K']:.9g} K)" in (
         failure["message"])
     assert failure.get("remedy", "") in failure["message"]
@@ -90,7 +90,7 @@ def test_run_in_yade_that_cannot_go_on(
                      cause="it moves", remedy="hold it"),
 ], ids=lambda error: type(error).__name__)
 def test_fields_do_not_depend_on_the_sentence(error: errors.StatejumpError) -> None:
-    # A path that holds a colon or has another suffix loses nothing, and neither does a failure that was pickled.
+    # Neither a colon or another suffix in a path nor pickling changes a failure.
     for one in (error, pickle.loads(pickle.dumps(error))):
         found = one.fields()
         assert found["message"] == str(error)
@@ -163,6 +163,6 @@ def test_exit_statuses(
     assert cli.run(["--json", "compare", "a.toml"]) == status
     failure = json.loads(capsys.readouterr().err)
     assert (failure["kind"], failure["exit_status"]) == (kind, status)
-    # Without --json a fault of the program shows where it is; nothing else has a traceback.
+    # Without --json an internal error prints a traceback; no other failure does.
     assert cli.run(["compare", "a.toml"]) == status
     assert ("Traceback" in capsys.readouterr().err) == (kind == "internal")

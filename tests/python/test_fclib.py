@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Frictional contact problems: files of FCLIB, the command, and what is said of files that are not right."""
+"""Frictional contact problems: files of FCLIB, the command, and errors for invalid files."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -17,14 +17,14 @@ h5py = pytest.importorskip("h5py")
 
 
 def pressed(dimension: int = 3, contacts: int = 4) -> sj.fclib.Problem:
-    """One body that rests on more contacts than it needs, pushed sideways."""
+    """One body on more contacts than it needs, pushed sideways."""
     random = np.random.default_rng(7)
     h = random.normal(size=(dimension * contacts, 3 * (dimension - 1)))
     return sj.fclib.Problem(h @ h.T, h @ random.normal(size=h.shape[1]), np.full(contacts, 0.4), dimension, "pressed")
 
 
 def as_stored(matrix: np.ndarray, form: int) -> dict[str, Any]:
-    """A matrix as FCLIB stores it: columns (-1), rows (-2), or entry by entry (0)."""
+    """Store a matrix as FCLIB does: by columns (-1), by rows (-2), or as triplets (0)."""
     from scipy import sparse
 
     if form == 0:
@@ -38,7 +38,7 @@ def as_stored(matrix: np.ndarray, form: int) -> dict[str, Any]:
 
 def write_raw(path: Path, problem: sj.fclib.Problem, form: int = -2,
               change: Callable[[Any], None] = lambda file: None) -> Path:
-    """Write the file with nothing but h5py, and change it."""
+    """Write the file with h5py only, and change it."""
     with h5py.File(path, "w") as file:
         group = file.create_group("fclib_local")
         group["spacedim"] = np.array([problem.dimension], dtype=np.int32)
@@ -71,7 +71,7 @@ def test_what_is_written_is_read_again(tmp_path: Path, dimension: int) -> None:
     (stored,) = found.stored
     assert stored.name == "solution"
     assert sj.fclib.merit(found, stored.reactions).largest <= 1e-10
-    # Of the same numbers in the same order: dense and sparse products round alike to 1e-12.
+    # The same numbers in the same order: dense and sparse products agree to 1e-12.
     assert np.allclose(found.velocities(stored.reactions), solution.velocities, rtol=0, atol=1e-12)
 
 
@@ -156,7 +156,8 @@ def test_files_that_are_not_right(tmp_path: Path, wrong: str) -> None:
 
 
 def test_a_data_set_that_was_never_written_has_its_fill_value(tmp_path: Path) -> None:
-    """HDF5 allocates nothing for it, which is valid: Siconos makes solutions so. Too large a one is refused still."""
+    """HDF5 allocates nothing for it, which is valid: Siconos writes such solutions. A too large one is still
+    refused."""
     problem = pressed()
 
     def made(file: Any, size: int) -> None:
@@ -194,7 +195,7 @@ def test_arguments_out_of_range() -> None:
 
 
 def test_merit_is_that_of_siconos() -> None:
-    """The formula of fc3d_compute_error, written apart: r - P_K(r - û) over the largest of |q|, |r| and |u|."""
+    """An independent implementation of fc3d_compute_error: r - P_K(r - û) over the largest of |q|, |r| and |u|."""
     problem = pressed()
     r = np.random.default_rng(3).normal(size=problem.q.size)
     u = problem.velocities(r)

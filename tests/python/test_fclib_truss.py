@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Frictional contact problems along paths of trusses: written, read and solved, they give the path back."""
+"""Frictional contact problems along paths of trusses: their solutions reproduce the path."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -43,12 +43,12 @@ def test_problems_are_solved_by_the_forces_of_the_path_and_give_them_back(tmp_pa
         problem = fclib.read(tmp_path / "step.hdf5")
         solution = fclib.solve(problem)
         assert solution.solved, one.time_s
-        # The merits of both are at most 1e-10 of |q|, in units in which W is 1 in the mean.
+        # Both merits are at most 1e-10 of |q|, in units in which the mean of W is 1.
         stiffness = 1 / np.diag(one.problem.delassus).mean()
         scale = np.linalg.norm(one.problem.q)
         condition = np.linalg.cond(one.problem.delassus)
         assert solution.velocities == pytest.approx(one.velocities, rel=0, abs=1e-8 * scale), one.time_s
-        if condition < 1e4:  # else forces are determined less well than motions
+        if condition < 1e4:  # otherwise forces are determined less accurately than motions
             path = one.problem.stored[0].reactions
             assert solution.reactions == pytest.approx(path, rel=0, abs=1e-9 * condition * scale * stiffness)
         slid += int(np.count_nonzero(np.abs(one.velocities[1::2]) > 1e-6 * scale))
@@ -56,7 +56,7 @@ def test_problems_are_solved_by_the_forces_of_the_path_and_give_them_back(tmp_pa
 
 
 def test_matrix_of_a_chain_is_its_compliance() -> None:
-    """Sliders of a chain: forces at i and j stretch the bars up to the nearer one. Normal forces are given."""
+    """Sliders of a chain: forces at i and j elongate the bars up to the nearer one. Normal forces are given."""
     case = parse_case(GENERATORS["chain"](5, name="t"))
     truss = case.resolve()
     rigidity = truss.links.young_modulus_Pa * truss.links.cross_section_area_m2
@@ -72,16 +72,16 @@ def test_matrix_of_a_chain_is_its_compliance() -> None:
 
 
 def test_siconos_solves_them() -> None:
-    """The library that FCLIB's collection is made with, where it is installed."""
+    """Siconos, which FCLIB's collection was made with, solves them too, if it is installed."""
     numerics = pytest.importorskip("siconos.numerics")
     for one in problems("ring", 4, number=4):
         problem = one.problem
-        # In its units W is 1 in the mean and q of order 1: its tolerance is absolute.
+        # In its units the mean of W is 1 and q of order 1, because its tolerance is absolute.
         stiffness, scale = 1 / np.diag(problem.delassus).mean(), np.abs(problem.q).max()
         theirs = numerics.FrictionContactProblem(2, np.asfortranarray(problem.delassus * stiffness),
                                                  problem.q / scale, problem.mu)
         reactions, velocities = np.zeros(problem.q.size), np.zeros(problem.q.size)
-        # Its sweeps do not converge where W has no symmetry: friction that follows a normal turns with it.
+        # Its sweeps do not converge if W is not symmetric: friction that follows a normal rotates with it.
         options = numerics.SolverOptions(numerics.SICONOS_FRICTION_2D_LEMKE)
         assert numerics.fc2d_driver(theirs, reactions, velocities, options) == 0
         assert velocities * scale == pytest.approx(one.velocities, rel=0, abs=1e-9 * scale * problem.contacts)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cases in CalculiX, which shares no line with this project, beside the reduced model."""
+"""Comparison of cases in CalculiX, which shares no code with this project, and the reduced model."""
 from __future__ import annotations
 
 import shutil
@@ -21,7 +21,7 @@ BAR = {"young_modulus_Pa": 7e10, "cross_section_area_m2": 1e-4, "thermal_expansi
 
 
 def truss(dimension: int = 2, **more: Any) -> dict[str, Any]:
-    """Return a square of bars with both diagonals, or a tetrahedron on three supports, every bar of its own ΔT."""
+    """Return a square of bars with both diagonals, or a tetrahedron on three supports; ΔT differs between bars."""
     if dimension == 2:
         points = {"A": [0.0, 0.0], "B": [1.0, 0.0], "C": [1.0, 1.1], "D": [0.1, 0.9]}
         pairs = ["AD", "BC", "DC", "AC", "BD"]
@@ -40,7 +40,7 @@ def truss(dimension: int = 2, **more: Any) -> dict[str, Any]:
 
 
 def free() -> dict[str, Any]:
-    """Return a triangle on a pin and a roller: it expands without force."""
+    """Return a triangle on a pin and a roller, which expands without force."""
     data = truss()
     data["node"] = [{"name": "A", "position_m": [0.0, 0.0], "fixed": ["x", "y"]},
                     {"name": "B", "position_m": [1.0, 0.0], "fixed": ["y"]}, {"name": "C", "position_m": [0.0, 1.0]}]
@@ -49,7 +49,7 @@ def free() -> dict[str, Any]:
 
 
 def with_slider() -> dict[str, Any]:
-    """Return the square with a slider on a tilted axis, which is locked."""
+    """Return the square with a locked slider on a tilted axis."""
     data = truss()
     data["node"][2]["guide_normal"] = [-0.6, 0.8]
     data["slider"] = [{"name": "S", "nodes": ["C"], "axis": [0.8, 0.6], "friction_coefficient": 0.3,
@@ -58,7 +58,7 @@ def with_slider() -> dict[str, Any]:
 
 
 def with_iwan_joint() -> dict[str, Any]:
-    """Return the square with a bolted joint within a diagonal, which is locked."""
+    """Return the square with a locked bolted joint within a diagonal."""
     data = truss()
     data["node"].append({"name": "J", "position_m": data["node"][2]["position_m"]})
     data["link"][3]["nodes"] = ["A", "J"]
@@ -68,7 +68,7 @@ def with_iwan_joint() -> dict[str, Any]:
 
 
 def between_walls() -> dict[str, Any]:
-    """Return a bar that is held at both ends: nothing moves."""
+    """Return a bar held at both ends, so that nothing moves."""
     data = truss()
     data["node"] = [{"name": "A", "position_m": [0.0, 0.0], "fixed": ["x", "y"]},
                     {"name": "M", "position_m": [0.5, 0.0], "fixed": ["y"]},
@@ -78,7 +78,7 @@ def between_walls() -> dict[str, Any]:
 
 
 def with_revolute() -> dict[str, Any]:
-    """Return the square whose diagonal ends in a clearance joint, which is locked."""
+    """Return the square with a locked clearance joint at the end of a diagonal."""
     data = truss()
     data["node"].append({"name": "J", "position_m": data["node"][2]["position_m"]})
     data["link"][3]["nodes"] = ["A", "J"]
@@ -115,12 +115,12 @@ def test_the_deck_of_a_truss_is_imported_again(what: str, statejump: Callable[..
         assert told.status == 0, told.errors
     runs = case.reduced(), sj.load(tmp_path / "again.toml").reduced()
     for own, other in zip(*((run["displacement_m"], run.links["axial_force_N"].values) for run in runs)):
-        # Sixteen digits of a number pass through the deck; forces of a free triangle are none, of the solver's rounding.
+        # The deck has sixteen digits; forces of a free triangle are only rounding of the solver.
         assert np.abs(own - other).max() <= 1e-9 * max(np.abs(own).max(), 1e-3)
 
 
 def with_play() -> dict[str, Any]:
-    """Return the square with a slider within a diagonal, between two stops, heated there and back, then cooled."""
+    """Return the square with a slider between two stops within a diagonal, heated, returned, then cooled."""
     data = truss()
     data["node"].append({"name": "J", "position_m": data["node"][2]["position_m"]})
     data["link"][3]["nodes"] = ["A", "J"]
@@ -133,7 +133,7 @@ def with_play() -> dict[str, Any]:
 @with_calculix
 @pytest.mark.parametrize("what", ["chain", "stops"])
 def test_sliders_slip_in_both_alike(what: str) -> None:
-    """Friction that sticks and bricks that are stretched leave a few millionths."""
+    """Elastic sticking and strains of the bricks cause differences of a few millionths."""
     case = sj.load("cases/trusses/chain_10.toml" if what == "chain" else with_play())
     rows = {row.name: row for row in calculix.answer(case.definition).rows}
     moved = rows["largest_displacement_sliding"]
@@ -152,7 +152,7 @@ def test_events_and_jump_of_table_1_agree_within_a_thousandth(statejump: Callabl
     rows = {row.name: row for row in calculix.answer(sj.load("table1").definition).rows}
     assert list(rows) == ["slide_1_temperature_change", "rest_2_temperature_change", "slide_3_temperature_change",
                           "state_jump"]
-    # Sticking that gives way by 1/STICK, stops by 1/PUSH of what the bar does.
+    # Compliance of sticking (1/STICK) and of stops (1/PUSH) relative to the bar.
     assert all(row.difference < 1e-4 for row in rows.values())
     assert rows["state_jump"].values["fe"] == pytest.approx(30.0 * 0.5 / (70e9 * 9e-6), rel=1e-6)
 

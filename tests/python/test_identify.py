@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Joints from loops: the forward models, the estimates, what is refused."""
+"""Joints from loops: forward models, estimates, refusals."""
 from __future__ import annotations
 
 import tomllib
@@ -22,7 +22,7 @@ from statejump.identification.models import MODELS, parts_of
 
 
 def block_by_block(path: np.ndarray, joint: dict[str, float], block: float = 0.0) -> np.ndarray:
-    """Return the force of a slide between hard stops, step by step: it moves no further than equilibrium needs."""
+    """Return the force of a slide between rigid stops, step by step; the block moves only as far as necessary."""
     stiffness, spring = joint["stiffness"], joint["preload_stiffness"]
     forces = []
     for there in path:
@@ -34,7 +34,7 @@ def block_by_block(path: np.ndarray, joint: dict[str, float], block: float = 0.0
 
 
 def test_slide_between_stops_is_that_of_small_steps() -> None:
-    """A random path crosses and remembers everything; rounding of some hundred sums is left."""
+    """A random path with all crossings and memory; the difference is rounding of some hundred sums."""
     path = np.concatenate([np.linspace(a, b, 40) for a, b in zip(
         *(lambda ends: (ends[:-1], ends[1:]))(np.random.default_rng(3).uniform(-1e-3, 1e-3, 60)))])
     joint = {name: JOINT[name] for name in MODELS["coulomb_clearance_spring"].parameters}
@@ -44,8 +44,8 @@ def test_slide_between_stops_is_that_of_small_steps() -> None:
 
 
 def resting(path: np.ndarray, joint: dict[str, float], block: float) -> np.ndarray:
-    """Return the force of a slide behind a spring with play, between stops that give, step by step: at every row the
-    block moves, found by halving, until friction holds it."""
+    """Return the force of a slide behind a spring with play, between soft stops, step by step: at every row bisection
+    finds the position at which friction holds the block."""
     gap, slack = joint.get("play", 0.0) / 2, 1 - joint.get("play_ratio", 0.0)
 
     def forces(there: float, at: float) -> tuple[float, float]:
@@ -71,13 +71,13 @@ def resting(path: np.ndarray, joint: dict[str, float], block: float) -> np.ndarr
 @pytest.mark.parametrize("model", ["coulomb_play", "coulomb_soft_play", "coulomb_soft_stops"])
 @pytest.mark.parametrize("start", [-1.0, 0.0, 0.4])
 def test_play_and_soft_stops_are_those_of_small_steps(model: str, start: float) -> None:
-    """From any friction in the first row; the preload needs one more row to be taken up, where there is no play."""
+    """For any friction in the first row; without play the preload needs one more row."""
     path = np.interp(np.linspace(0, 9, 400), np.arange(10), 1e-3 * np.array([0, .2, -.1, .5, -.6, 1, -1, .3, -.2, 1]))
     values = {name: JOINT[name] for name in MODELS[model].parameters} | {"preload": 0.0}
     loop = read_loop({"displacement_m": path, "force_N": path})
     width = values["friction"] / values["stiffness"] + (1 - values.get("play_ratio", 0.0)) * values.get("play", 0.0) / 2
     found = MODELS[model].answer({**values, "initial_friction": start}, path, loop.memory)
-    # Halving to 1 m/2^60 leaves 1e-12 N; 1e6 N/m times rounding of the path 1e-10 N.
+    # Bisection to 1 m/2^60 leaves 1e-12 N; rounding of the path times 1e6 N/m is 1e-10 N.
     np.testing.assert_allclose(found, resting(path, values, -start * width), rtol=0, atol=1e-9)
 
 
@@ -95,21 +95,21 @@ def test_columns_of_other_sensors_are_left_out_by_name(tmp_path: Path, statejump
 
 
 def test_a_slide_may_slip_before_its_play_is_used_up() -> None:
-    """Friction of 150 N holds 0.3 mm of a play of 1 mm with 0.5 kN/mm."""
+    """With 0.5 kN/mm within the play, friction of 150 N holds 0.3 mm of a play of 1 mm."""
     path = 1e-3 * np.sin(np.linspace(0, 4 * np.pi, 400))
     values = {"stiffness": 1e6, "friction": 150.0, "preload": 0.0, "play": 1e-3, "play_ratio": 0.5}
     found = MODELS["coulomb_soft_play"].answer(values, path, remembered(path, fresh=True))
-    # Halving to 1 m/2^60 leaves 1e-12 N; 1e6 N/m times rounding of the path 1e-10 N.
+    # Bisection to 1 m/2^60 leaves 1e-12 N; rounding of the path times 1e6 N/m is 1e-10 N.
     np.testing.assert_allclose(found, resting(path, values, 0.0), rtol=0, atol=1e-9)
 
 
 def test_a_play_that_is_not_empty_is_wider_than_an_empty_one() -> None:
-    """With 0.2 of the stiffness in it, an empty play of 0.8 of its width has as long a path between sliding forth and
-    back; a case has such a play."""
+    """A play with 0.2 of the stiffness inside has the same displacement between forward and backward slip as an empty
+    play of 0.8 of its width, which a case can represent."""
     found = sj.identify(measured("coulomb_soft_play", JOINT), start="cycled")
     assert found.model == "coulomb_soft_play"
     play = found.intervals["play"]
-    # 3 standard deviations, which the interval has 1.96 of.
+    # 3 standard deviations; the interval covers 1.96 of them.
     assert abs(found.values["play"] - 4e-4) < 1.5 * (play.high - play.low) / 2
     assert found.changes()["joint.play_m"] == pytest.approx(found.values["play"] * (1 - found.values["play_ratio"]), rel=1e-12)
     assert any(note.startswith("the play of a case carries no force") for note in found.notes)
@@ -117,7 +117,7 @@ def test_a_play_that_is_not_empty_is_wider_than_an_empty_one() -> None:
 
 @pytest.mark.parametrize("fresh", [True, False])
 def test_partial_slip_is_that_of_the_kernel(fresh: bool) -> None:
-    """Memory of the kernel and Masing's rule here share no line; the path has loops in loops, and closes them."""
+    """Memory of the kernel and Masing's rule share no code; the path has nested loops and closes them."""
     contact = dict(effective_young_modulus_Pa=38.5e9, effective_shear_modulus_Pa=7.9e9, effective_radius_m=0.01,
                    friction_coefficient=0.3)
     corners = 1e-7 * np.array([0, 3, -1, 2, -1, 2, -2, 4, -5, 5, 0, 7, -7])  # gross slip from 5.7 on
@@ -128,12 +128,13 @@ def test_partial_slip_is_that_of_the_kernel(fresh: bool) -> None:
     radius = (3 * 10.0 * 0.01 / (4 * 38.5e9)) ** (1 / 3)
     values = {"friction": 3.0, "stiffness": 8 * 7.9e9 * radius, "preload": 0.0}
     found = MODELS["mindlin"].answer(values, path, remembered(path, fresh))
-    # The kernel solves the slide of a force to 1e-12 of the limit.
+    # The kernel solves for the slide of a force to 1e-12 of the limit.
     np.testing.assert_allclose(found, answer["tangential_force_N"][-len(path):], rtol=0, atol=3e-10)
 
 
 def test_iwan_joint_is_a_sum_of_its_sliders() -> None:
-    """Sliders in the density of the law, at 4000 midpoints: the error is that of the sum, 1/4000 squared and its end."""
+    """Sliders at 4000 midpoints of the density of the law: the error of the sum is 1/4000 squared, and that at its
+    end."""
     friction, stiffness, chi, beta = 300.0, 1e6, -0.5, 1.0
     last = friction * (1 + beta) / (stiffness * (beta + (chi + 1) / (chi + 2)))
     share = ((np.arange(4000) + 0.5) / 4000) ** (1 / (chi + 1))  # equal stiffness each
@@ -151,7 +152,7 @@ def test_iwan_joint_is_a_sum_of_its_sliders() -> None:
 
 @pytest.mark.parametrize("model", list(MODELS))
 def test_every_joint_is_known_again(model: str) -> None:
-    """Chosen by BIC among all, every parameter within 4 standard deviations: one of 16 000 is beyond by chance."""
+    """BIC selects the joint among all; parameters are within 4 standard deviations, 1 in 16 000 beyond by chance."""
     known = {**JOINT, "friction": 300.0, "iwan_exponent": -0.5, "iwan_ratio": 1.0}
     if model in ("coulomb_clearance", "coulomb_soft_stops", "coulomb_soft_stops_spring"):
         known["friction"] = 150.0
@@ -178,7 +179,7 @@ def test_loop_that_meets_no_stop_says_so() -> None:
     wide = {"stiffness": 1e6, "friction": 150.0, "preload": 20.0, "clearance_minus": 2e-3, "clearance_plus": 2e-3}
     found = sj.identify(measured("coulomb_clearance", wide), start="cycled")
     assert found.model == "coulomb"
-    for name in ("clearance_minus", "clearance_plus"):  # the block goes 1e-3 - 150/1e6 each way, 20/1e6 less or more
+    for name in ("clearance_minus", "clearance_plus"):  # the block moves 1e-3 - 150/1e6 each way, plus or minus 20/1e6
         assert 8e-4 < found.limits[name][1].low < 9e-4 and found.limits[name][1].high == np.inf
         assert any(note.startswith(f"{name} is not identifiable from this loop, the path meets no stop") for note in
                    found.notes)
@@ -203,7 +204,8 @@ def test_partial_slip_extrapolates_and_says_so() -> None:
 
 @pytest.mark.parametrize("amplitude", [np.linspace(0.05, 1, 401), np.linspace(1, 0.05, 401)], ids=["growing", "shrinking"])
 def test_growing_and_shrinking_cycles_are_used_whole(amplitude: np.ndarray) -> None:
-    """From rest, as test standards have them. Nothing says so: friction of the first row is sought too."""
+    """From rest, as in test standards. The fit does not know this, so it also determines the friction of the first
+    row."""
     path = 1.5e-3 * amplitude * np.sin(np.linspace(0, 14 * np.pi, 401))
     joint = {name: JOINT[name] for name in MODELS["coulomb_spring"].parameters} | {"preload": 0.0}
     loop = read_loop({"displacement_m": path, "force_N": path}, "fresh")
@@ -216,7 +218,7 @@ def test_growing_and_shrinking_cycles_are_used_whole(amplitude: np.ndarray) -> N
 
 
 def test_no_joint_fits_worse_than_one_that_it_contains() -> None:
-    """A stiff slide slides nearly everywhere: stops that a search starts from never get out of the way by themselves."""
+    """A stiff slide slips nearly everywhere; a search that starts with stops would not remove them by itself."""
     fits = Fits(read_loop(measured("coulomb", {"stiffness": 1e7, "friction": 100.0, "preload": 0.0}), "fresh"))
     for model in MODELS.values():
         for part in parts_of(model.name):
@@ -231,7 +233,7 @@ def test_intervals_have_a_width_and_clearances_are_not_negative() -> None:
 
 
 def test_parameter_at_the_end_of_its_range_takes_others_along() -> None:
-    """Partial slip of a hundred sliders down to the softest: the stiffness of sticking rises without end as χ nears
+    """Partial slip of a hundred sliders down to the softest: the sticking stiffness grows without bound as χ approaches
     -1."""
     loop = measured("iwan", {"stiffness": 1e9, "friction": 300.0, "iwan_exponent": -0.995, "iwan_ratio": 1e-3,
                              "preload": 0.0})
@@ -243,7 +245,7 @@ def test_parameter_at_the_end_of_its_range_takes_others_along() -> None:
 
 
 def test_misfit_that_every_cycle_repeats_is_no_evidence() -> None:
-    """Friction that grows along the path is none of the joints; stops must not be found in its place."""
+    """No joint has friction that grows along the path; the fit must not report stops instead."""
     path = 1e-3 * np.sin(np.linspace(0, 40 * np.pi, 2001))
     loop = read_loop({"displacement_m": path, "force_N": path}, "cycled")
     force = MODELS["coulomb"].answer({"stiffness": 1e6, "friction": 100.0, "preload": 0.0}, path, loop.memory)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Columns of texts: every text once, as bytes, by its number."""
+"""Columns of texts: every text is stored once, as bytes with a number."""
 from __future__ import annotations
 
 import random

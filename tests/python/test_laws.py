@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The catalogue through Python: names, forces against formulas written down again, the figures."""
+"""The catalogue in Python: names, forces against independent formulas, figures."""
 from __future__ import annotations
 
 import json
@@ -64,7 +64,7 @@ def test_traits(kind: str, name: str, traits: set[str], parameters: tuple[str, .
 
 
 def test_parameters_are_those_of_the_cases() -> None:
-    """Unit, lower end and default of a case's keys are the law's own; its upper end may be lower."""
+    """Unit, lower end and default of keys of a case are those of the law; the upper end may be lower."""
     keys = {"restitution": "restitution", "smallest_impact_speed": "smallest_impact_speed_m_per_s",
             "v0": "friction_v0_m_per_s", "v1": "friction_v1_m_per_s", "contact_length": "contact_length_m",
             "friction_coefficient": "friction_coefficient"}
@@ -74,10 +74,10 @@ def test_parameters_are_those_of_the_cases() -> None:
     assert {parameter.name for parameter in seen} == set(keys)
     for parameter in seen:
         told = joint[keys[parameter.name]]
-        # one of two ranges of the restitution is without its lower end
+        # the restitution has two ranges, one without its lower end
         low = told.get("exclusiveMinimum", told.get("minimum"))
         assert (told["x-unit"], low) == (parameter.unit, parameter.low), parameter.name
-        if parameter.name != "friction_coefficient":  # of the pair, so a case has to say it
+        if parameter.name != "friction_coefficient":  # a property of the pair, which a case must give
             assert told["default"] == parameter.default, parameter.name
         assert parameter.allows(told["maximum"]) and not parameter.allows(float("nan"))
         assert parameter.allows(parameter.low) != parameter.low_excluded
@@ -101,7 +101,7 @@ def test_hertz(name: str, radius: float) -> None:
 
 @pytest.mark.parametrize("name, shift", [("johnson", -1.0), ("esdu_78035", 1.0)])
 def test_logarithmic_line_contact(name: str, shift: float) -> None:
-    """The laws give force from depth; the literature prints depth from force."""
+    """The laws give force from depth; the literature gives depth from force."""
     limit = _engine.largest_depth_m(name, R1, R2)
     assert limit == pytest.approx(4 * CLEARANCE * np.exp(shift - 1), rel=1e-12)
     depth = np.geomspace(1e-9, limit * (1 - 1e-6), 50)
@@ -118,7 +118,7 @@ def test_persson() -> None:
     found = table("persson", depth)
     t = np.tan(found["contact_width_m"] / R1 / 2) ** 2
     line = 2 * pi * MODULUS * CLEARANCE * t * (1 + t) / (2 - np.log1p(t) - 2 * t**2)
-    # near the largest arc the divisor tends to zero and loses digits
+    # near the largest arc the divisor approaches zero and loses digits
     np.testing.assert_allclose(found["force_N"], line * LENGTH, rtol=1e-6)
     light = np.array([1e-9])
     assert table("persson", light)["force_N"] == pytest.approx(table("johnson", light)["force_N"], rel=1e-3)
@@ -161,7 +161,7 @@ def test_wrong_use() -> None:
     ("flores", 1.6 * 0.2 / 0.8),
 ])
 def test_impact(name: str, ratio: float) -> None:
-    """a - ln(1 + a) = -a e' - ln(1 - a e') whatever the elastic law; a = chi/K times the speed."""
+    """a - ln(1 + a) = -a e' - ln(1 - a e') for any elastic law; a = chi/K times the speed."""
     joint = curves.paper_joint()
     assert _engine.damping_ratio_s_per_m(name, 0.8, 0.1) * 0.1 == pytest.approx(ratio, rel=1e-14)
     found = curves.impact(name, joint)

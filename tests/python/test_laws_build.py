@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Laws of one's own: one header, compiled apart, known by its name in cases, listings and YADE scripts."""
+"""User laws: one header, compiled separately, known by name in cases, listings and YADE scripts."""
 from __future__ import annotations
 
 import json
@@ -66,14 +66,14 @@ def test_compiles_in_seconds(folder: Path, tmp_path: Path) -> None:
     spent = os.times()
     assert written == tmp_path / "dissipation_twin.so" and written.is_file()
     assert list(tmp_path.iterdir()) == [written]
-    # Seconds of one processor, however busy the machine is; a change of the catalogue costs 167.
+    # CPU time [s], independent of other load; a change of the catalogue takes 167 s.
     assert spent.children_user + spent.children_system - start.children_user - start.children_system < 20
     assert sorted(path.name for path in folder.iterdir()) == [
         "dissipation_twin.so", "friction_smooth.so", "normal_cubic.so"]
 
 
 def test_same_text_same_bits(folder: Path) -> None:
-    """A law of one's own in a case: the twin of hunt_crossley moves the rib to the last bit as the original does."""
+    """A user law in a case: a copy of hunt_crossley moves the rib exactly as the original, bit for bit."""
     base = {"joint.restitution": 0.7}
     own, twin = (told(rib(folder, "umbrella_damped.toml", {**base, "joint.dissipation_law": name}))
                  for name in ("hunt_crossley", "twin"))
@@ -84,7 +84,7 @@ def test_same_text_same_bits(folder: Path) -> None:
 
 
 def test_new_laws_in_a_case(folder: Path) -> None:
-    """A normal and a friction law that the project does not have: contact, and an account that closes."""
+    """A normal and a friction law that the project does not have: contact occurs, and the energy account closes."""
     found = told(rib(folder, "umbrella_damped.toml", {"joint.friction_law": "smooth", "joint.normal_law": "hertz_internal"}))
     lost = np.array(found["columns"]["friction_dissipation_J"])[-1]
     assert found["contacts"] > 0 and lost > 0
@@ -93,7 +93,7 @@ def test_new_laws_in_a_case(folder: Path) -> None:
 
 
 def test_traits_decide_what_a_case_may_ask(folder: Path, tmp_path: Path) -> None:
-    """The adaptive method takes a law without memory; a loaded start under one that creeps is at 0 only."""
+    """The adaptive method accepts laws without memory; a loaded start with a creeping law is only possible at 0."""
     assert told(rib(folder, "umbrella_damped.toml", {
         "joint.friction_law": "smooth", "reduced.method": "adaptive"}))["contacts"] > 0
     text = (REPOSITORY / "cases" / "umbrella_hold.toml").read_text()
@@ -129,12 +129,12 @@ def test_same_number_in_yade(yade: str, folder: Path) -> None:
         json.dumps([seen["depth"], *seen["radii"], seen["length"], seen["modulus"]])], STATEJUMP_LAWS=str(folder))
     assert json.loads(listed.stdout) == [seen["force"], seen["kn"]], listed.stderr
     assert seen["force"] == pytest.approx(seen["modulus"] / seen["radii"][0] * seen["depth"] ** 3, rel=1e-14)
-    # And the twin through an impact, bit for bit.
+    # The copy also equals the original through an impact, bit for bit.
     assert seen["impact"]["twin"] == seen["impact"]["hunt_crossley"] != seen["impact"]["flores"]
     assert "cubic" in seen["doc"] and "F = E*/R1 delta^3" in seen["doc"]
 
 
-# Which of its wrong answers the law gives is decided when it runs, so that it is compiled once.
+# An environment variable selects the wrong answer at run time, so that the law is compiled once.
 WRONG = '''#include <cmath>
 #include <cstdlib>
 #include <string>
@@ -157,7 +157,7 @@ struct UserLaw {
 
 @pytest.fixture(scope="module")
 def wrong_law(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A compiled law whose answers are wrong, in a folder of its own."""
+    """A compiled law with wrong answers, in a separate folder."""
     made = tmp_path_factory.mktemp("wrong")
     header = made / "wrong.hpp"
     header.write_text(WRONG)
@@ -225,7 +225,7 @@ def test_hash_is_that_of_the_build(tmp_path: Path) -> None:
 
 
 def test_other_kernel_and_two_of_one_name(folder: Path, tmp_path: Path, statejump, cases: Path) -> None:
-    """What cannot be used is known by name: whoever asks for it hears why, whoever does not is not disturbed."""
+    """Unusable laws are known by name: a case that uses one reports the reason, other cases are not affected."""
     old = tmp_path / "old"
     old.mkdir()
     made = build.compile_law(build.find_compiler(), TOYS / "smooth.hpp", "0" * 64, old)
@@ -257,7 +257,7 @@ def test_object_that_is_no_law(statejump, tmp_path: Path) -> None:
 
 
 def test_own_folder(statejump, tmp_path: Path) -> None:
-    """Without --folder the law goes where every program searches."""
+    """Without --folder the law is written to the folder that every program searches."""
     environment = {"XDG_DATA_HOME": str(tmp_path / "data"), "STATEJUMP_LAWS": ""}
     outcome = statejump("laws", "build", TOYS / "twin.hpp", **environment)
     target = tmp_path / "data" / "statejump" / "laws" / "dissipation_twin.so"

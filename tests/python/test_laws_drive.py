@@ -37,7 +37,7 @@ def test_forces_and_displacements_are_inverse() -> None:
 
 
 def test_partial_slip() -> None:
-    """First loading and Masing's rule; the spring of Mindlin is above."""
+    """First loading and Masing's rule; another test has Mindlin's spring."""
     gross = 0.3 * 38.5e9 / (4 * 7.9e9) * 1e-6  # mu E*/(4 G*) depth
     path = {"slide_m": [0, 0.6 * gross, -0.2 * gross, 0.6 * gross], "penetration_depth_m": [1e-6] * 4}
     answer = laws.drive("mindlin_deresiewicz", path, **CONTACT, steps_per_row=20)
@@ -56,7 +56,7 @@ def test_in_the_plane() -> None:
 
 @pytest.mark.parametrize("kind", ["friction", "normal", "dissipation"])
 def test_every_law(kind: str) -> None:
-    """Loaded, slid, parted, loaded: whatever the law, no force where the contact is open."""
+    """Load, slide, open, load: no law has a force while the contact is open."""
     path = {"time_s": np.arange(5) * 1e-3, "slide_m": [0, 1e-7, 1e-7, 0, 1e-7],
             "penetration_depth_m": [1e-7, 1e-6, -1e-6, 1e-6, 1e-6]}
     for law in laws.catalogue(kind):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the machine has not got is refused before the work, and a long run needs no more memory than a short one."""
+"""Missing memory or disk space is reported before a run, and a long run needs no more memory than a short one."""
 from __future__ import annotations
 
 import os
@@ -20,7 +20,7 @@ from statejump.kinds.spring_slider import reduced
 
 
 def peak_bytes(folder: Path, *arguments: object) -> int:
-    """Run a command and return the most memory that it had."""
+    """Run a command and return its peak memory [bytes]."""
     with subprocess.Popen([COMMAND, *map(str, arguments)], cwd=folder, stdout=subprocess.DEVNULL) as run:
         _, status, used = os.wait4(run.pid, 0)
         run.returncode = os.waitstatus_to_exitcode(status)
@@ -37,9 +37,9 @@ def with_cycles(cases: Path, folder: Path, cycles: int) -> Path:
 
 
 def test_many_cycles_need_little_memory(cases: Path, tmp_path: Path) -> None:
-    """Both runs have the first and the last ten cycles. Kept whole, the path of 20 000 cycles had 4.5 kB of segments
-    and events a cycle, 89 MB more than that of 200; what is left is a double a cycle, 0.16 MB. 20 MB stand for what a
-    process needs from run to run."""
+    """Both runs keep the first and the last ten cycles. A whole path had 4.5 kB of segments and events per cycle: 20
+    000 cycles took 89 MB more than 200. Now a double per cycle remains, 0.16 MB. 20 MB allow for variation between
+    processes."""
     few = peak_bytes(tmp_path, "reduced", with_cycles(cases, tmp_path, 200))
     many = peak_bytes(tmp_path, "reduced", with_cycles(cases, tmp_path, 20_000), "--force")
     assert many < few + 20e6

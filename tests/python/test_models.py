@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reduced model through the package, comparison logic and the files it writes."""
+"""Reduced model through the package, comparison logic, and written files."""
 from __future__ import annotations
 
 import csv
@@ -23,7 +23,7 @@ from statejump.kinds.spring_slider import compare, dem, reduced, result, stable_
 from statejump.kinds.spring_slider.case import SpringSliderCase as Case
 
 E, A, L0, ALPHA, FRICTION, CLEARANCE = 70e9, 9e-6, 0.5, 23.4e-6, 30.0, 1e-3
-# Closed forms of a handful of operations: rounding of a few units in the last place each.
+# Closed forms of a few operations: rounding of a few units in the last place each.
 RELATIVE = 1e-12
 
 
@@ -92,7 +92,7 @@ def exact_run(case: Case) -> Run:
 
 
 def synthetic(case: Case) -> Columns:
-    """Columns of a DEM run that repeats the reduced model exactly."""
+    """Columns of a DEM run that equals the reduced model."""
     path = reduced.solve(case)
     columns = exact_run(case).flat()
     count = len(columns["time_s"])
@@ -152,7 +152,7 @@ def test_drift_of_later_cycles_is_noticed(cases: Path) -> None:
         run = result.dem_run(case, {**columns, "displacement_m": displacement_m}, {})
         return compare.loop_drift(run, case.dem_settings.samples_per_cycle, 10)
 
-    assert drift_of(x) < 1e-15  # the exact loop closes to rounding of 1 mm
+    assert drift_of(x) < 1e-15  # the exact loop closes to the rounding of 1 mm
     drift = drift_of(x + np.linspace(0, 1e-5, len(x)))
     assert drift == pytest.approx(8e-6, rel=1e-3)  # eight periods of 1e-5 / 10 each
 
@@ -212,7 +212,7 @@ def test_figure_shows_both_models_and_repeats_bit_for_bit(table1: Case, tmp_path
 
 
 def test_figure_that_has_gone_leaves_nothing(table1: Case, tmp_path: Path) -> None:
-    """matplotlib's constrained layout by itself leaves two grids of each drawing."""
+    """matplotlib's own constrained layout would leave two grids of each drawing."""
     def grids() -> int:
         gc.collect()
         return sum(type(one).__name__ == "LayoutGrid" for one in gc.get_objects())

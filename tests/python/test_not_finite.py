@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Numbers that are none: a verdict that holds one fails and names it, and nothing is dropped in silence."""
+"""Values that are not finite: a verdict with one fails and names it, and nothing is dropped silently."""
 from __future__ import annotations
 
 import math
@@ -57,7 +57,7 @@ def case_of(cases: Path, name: str) -> Case:
 
 
 def as_dem(case: Case, run: Run) -> Run:
-    """The reduced run as if the DEM had given it: energies that only the DEM has are zero."""
+    """The reduced run in the form of a DEM run; energies that only the DEM has are zero."""
     zero = replace(next(iter(run.energy.values())), values=np.zeros(len(run)))
     names = {"elastic_energy_J", "kinetic_energy_J", "contact_energy_J", "preload_energy_J", "damping_dissipation_J",
              "friction_dissipation_J", "thermal_work_J", "external_work_J"}
@@ -107,7 +107,7 @@ def test_either_residue_of_the_umbrella_can_miss(cases: Path) -> None:
     case = case_of(cases, "umbrella_damped")
     runs = [case.reduced(), as_dem(case, case.reduced())]
     for side in (0, 1):
-        # A residue of twice the tolerance on one side alone.
+        # A residue of twice the tolerance in one model only.
         largest = max(float(np.max(np.abs(column.values))) for column in runs[side].energy.values())
         off = list(runs)
         column = runs[side].energy["friction_dissipation_J"].values

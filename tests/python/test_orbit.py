@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Temperatures over an orbit: the equation they follow, closed forms, the file that cases take."""
+"""Temperatures over an orbit: their equation, closed forms, and the file for cases."""
 from __future__ import annotations
 
 import tomllib
@@ -26,7 +26,7 @@ def test_the_equation_holds_between_all_times() -> None:
         sun = member.absorptivity * member.sun_view * orbit.SOLAR_CONSTANT_W_PER_M2 * lit
         loss = member.emissivity * orbit.STEFAN_BOLTZMANN_W_PER_M2_K4 * (middle**4 - 100.0**4)
         rate = (sun - loss) / member.heat_capacity_J_per_m2_K
-        # The midpoint rule's error is of second order in a step of 11 s over a time constant of 300 s and more.
+        # The midpoint rule is second order in a step of 11 s over time constants of at least 300 s.
         assert np.diff(values) / np.diff(found.time_s) == pytest.approx(rate, rel=2e-3, abs=1e-6)
         assert values[0] == values[-1]
 

@@ -47,7 +47,7 @@ O.engines = [
             dissipationLaw="exact_restitution", restitution=restitution, frictionLaw="mindlin_deresiewicz",
         )],
     ),
-    ThermalLinks(),  # none; this engine of the plugin raises errors of contacts
+    ThermalLinks(),  # no links; this engine of the plugin also reports errors of contacts
     NewtonIntegrator(damping=0),
 ]
 

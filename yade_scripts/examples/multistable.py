@@ -37,25 +37,25 @@ shear_modulus = young / (4 * (2 - poisson) * (1 + poisson))  # G*
 
 
 def effective_radius(inner_radius, wall_radius):
-    """Of journal (ball) and wall; a wall that bulges has a negative radius [m]."""
+    """Return the effective radius of journal (ball) and wall [m]; a convex wall has a negative radius."""
     return inner_radius * wall_radius / (wall_radius - inner_radius)
 
 
 def depth_under(force, effective):
-    """Depth at which a Hertz contact carries a force [m]."""
+    """Return the depth [m] at which a Hertz contact carries a force."""
     return hertz_depth(max(force, 0), effective, young, poisson)
 
 
 def creep(effective):
-    """Tangential displacement of the contact at the friction limit [m]: mu F / k_t."""
+    """Return the tangential displacement of the contact at the friction limit [m]: mu F / k_t."""
     contact_radius = sqrt(effective * depth_under(load, effective))
     return friction * load / (8 * shear_modulus * contact_radius)
 
 
 @dataclass
 class Case:
-    """A wall: places on it as (unit normal into the wall, local radius, centre of the journal that
-    just touches there), the force on the journal, and how to make the two bodies."""
+    """A wall: positions on it (unit normal into the wall, local radius, centre of the journal that just touches there),
+    the force on the journal, and functions that make both bodies."""
 
     name: str
     force: Vector3
@@ -69,7 +69,7 @@ class Case:
 
 
 def circle():
-    """Journal in a round bearing: a place for every half degree."""
+    """Journal in a round bearing, with a position every half degree."""
     angles = [radians(0.5 * i + 0.25) for i in range(720)]
     normals = [Vector3(cos(a), sin(a), 0) for a in angles]
     return Case(
@@ -79,7 +79,7 @@ def circle():
 
 
 def sphere():
-    """Ball in a socket: places spread evenly over the part within 45 degrees of the force."""
+    """Ball in a socket, with positions evenly spread within 45 degrees of the force."""
     force = load * Vector3(0.36, 0.48, -0.8)
     frame = Quaternion.Identity
     frame.setFromTwoVectors(Vector3(0, 0, 1), force)
@@ -94,9 +94,8 @@ def sphere():
 
 
 def lobed(name, waves, amplitude, towards, journal=R1, count=600):
-    """Journal in a bore of triangles whose radius is R2 + amplitude cos(waves angle), under a force
-    towards an angle [rad]: places at equal angles of the wall, with normal and curvature of that
-    formula, not of the mesh."""
+    """Journal in a bore of triangles whose radius is R2 + amplitude cos(waves angle), under a force towards an angle
+    [rad]: positions at equal angles of the wall; normals and curvatures are those of the formula, not of the mesh."""
 
     def wall(angle):
         r = R2 + amplitude * cos(waves * angle)
@@ -111,7 +110,7 @@ def lobed(name, waves, amplitude, towards, journal=R1, count=600):
     for i in range(count):
         point, normal, radius = wall(2 * pi * (i + 0.5) / count)
         touching = point - journal * normal
-        # Elsewhere the journal must not be in the wall; else it cannot reach this position.
+        # The journal must not intersect the wall elsewhere; otherwise it cannot reach this position.
         flatter = radius > journal or radius < 0
         if flatter and min((other - touching).norm() for other in others) > journal - 1e-10:
             places.append((normal, radius, touching))
@@ -125,12 +124,12 @@ def lobed(name, waves, amplitude, towards, journal=R1, count=600):
 
 
 def release(case):
-    """Release one journal per position and report which are still there after 8 ms."""
+    """Release one journal per position; report which ones are still there after 8 ms."""
     O.reset()
     metal = O.materials[O.materials.append(
         ThermalFrictMat(young=young, poisson=poisson, frictionAngle=cone)
     )]
-    wall = case.outer()  # one shape for all: the walls are the same
+    wall = case.outer()  # one shape for all walls, because they are equal
     along = case.force.normalized()
     pairs = []
     for i, (normal, radius, touching) in enumerate(case.places):
@@ -180,7 +179,7 @@ def release(case):
 
 
 def wrong(case, beyond):
-    """Number of joints that differ from the prediction, beyond or within 1 degree."""
+    """Return the number of joints that differ from the prediction, beyond or within 1 degree of the cone's edge."""
     return sum(
         (row["predicted"] == "stays") != (row["seen"] == "stayed")
         and (abs(row["angle_to_force_deg"] - degrees(cone)) > 1) == beyond
@@ -189,7 +188,7 @@ def wrong(case, beyond):
 
 
 def parts(case, key, value):
-    """Runs of consecutive positions around the wall whose rows have a value: lists of their indices."""
+    """Return runs of consecutive positions around the wall whose rows have a value, as lists of indices."""
     chosen = [row[key] == value for row in case.rows]
     runs = []
     for first in (i for i, here in enumerate(chosen) if here and not chosen[i - 1]):
@@ -238,7 +237,7 @@ def draw(cases, folder):
         axis.set_axis_off()
     for axis, case in zip(axes.flat, cases):
         if case.name == "sphere":
-            # Seen along the force: the distance from the middle is the angle to it.
+            # View along the force: the distance from the centre is the angle to the force.
             frame = Quaternion.Identity
             frame.setFromTwoVectors(case.force, Vector3(0, 0, 1))
             local = [frame * Vector3(r["normal_x"], r["normal_y"], r["normal_z"]) for r in case.rows]

@@ -30,14 +30,14 @@ from yade.minieigenHP import Vector3
 from yade.wrapper import Omega
 
 O = Omega()
-SIDES = 96  # of a circle; its sagitta is 5e-4 of the radius
+SIDES = 96  # number of sides of a circle; the sagitta is 5e-4 of the radius
 KINDS = {"Journal": 1, "Bearing": 2, "Slider": 3, "SlotFace": 4, "Ball": 5, "Socket": 6,
          "MeshBore": 7}
 
 
 class _Data:
-    """Polylines or points with arrays, filled one by one, and after them meshes. The arrays are there
-    even when no cell is: ParaView wants the same ones at all times."""
+    """Polylines or points with arrays, added one by one, followed by meshes. All arrays exist even without cells,
+    because ParaView requires the same arrays at all times."""
 
     def __init__(self, components: dict[str, int]) -> None:
         self.points, self.lines, self.vertices = vtkPoints(), vtkCellArray(), vtkCellArray()
@@ -50,7 +50,7 @@ class _Data:
             self.arrays[name].SetNumberOfComponents(count)
 
     def add(self, points: list[Vector3], *values: float | Vector3) -> None:
-        """Add one cell: a polyline, or a vertex if it is one point; values in the arrays' order."""
+        """Add one cell: a polyline, or a vertex for a single point. Values are in the order of the arrays."""
         cells = self.lines if len(points) > 1 else self.vertices
         cells.InsertNextCell(len(points))
         for point in points:
@@ -59,8 +59,7 @@ class _Data:
             array.InsertNextTuple(tuple(value) if isinstance(value, Vector3) else (float(value),))
 
     def add_mesh(self, points: np.ndarray, triangles: np.ndarray, *values: float | Vector3) -> None:
-        """Add triangles, a cell each with the same values; VTK counts them after all lines, so add
-        them last."""
+        """Add triangles with the same values. VTK orders them after all lines, so add them last."""
         first = self.points.GetNumberOfPoints()
         for point in points:
             self.points.InsertNextPoint(point)
@@ -90,7 +89,7 @@ class _Data:
 
 
 def _outline(body) -> list[Vector3]:
-    """Return the outline of a body of ours, closed, in the world [m]."""
+    """Return the closed outline of a body of the plugin in space [m]."""
     shape, state = body.shape, body.state
     kind = type(shape).__name__
     grown = 1 + shape.thermalStrain
@@ -103,13 +102,13 @@ def _outline(body) -> list[Vector3]:
     radius = shape.radius * grown
     turn = [2 * pi * i / SIDES for i in range(SIDES + 1)]
     circle = [Vector3(radius * cos(a), radius * sin(a), 0) for a in turn]
-    if kind in ("Ball", "Socket"):  # one more great circle, from the same point
+    if kind in ("Ball", "Socket"):  # one more great circle from the same point
         circle += [Vector3(point[0], 0, point[1]) for point in circle]
     return [state.pos + state.ori * point for point in circle]
 
 
 def _mesh(body, given: np.ndarray) -> np.ndarray:
-    """Return the vertices of a MeshBore in the world [m], from those in its own axes."""
+    """Return the vertices of a MeshBore in space [m], from those in its own axes."""
     shape, state = body.shape, body.state
     centre = np.array(shape.wallCentre())
     local = centre + (1 + shape.thermalStrain) * (given - centre)
@@ -117,21 +116,21 @@ def _mesh(body, given: np.ndarray) -> np.ndarray:
 
 
 class ParaViewRecorder:
-    """Writes the scene as it is now; see the module's description.
+    """Writes the current scene; see the module.
 
-    :param prefix: start of all file names, a folder before it is made
-    :param program: a ThermalProgram whose temperature change is written as well, or None
+    :param prefix: beginning of all file names; missing folders are created
+    :param program: ThermalProgram whose temperature change is also written, or None
     """
 
     def __init__(self, prefix: str, program: sj.ThermalProgram | None = None) -> None:
         self.prefix, self.program = Path(prefix), program
         self.prefix.parent.mkdir(parents=True, exist_ok=True)
         self.series: dict[str, list[dict[str, object]]] = {}
-        # By body: vertices and triangles never change, and YADE makes new lists at each reading.
+        # Vertices and triangles by body: they never change, but YADE makes new lists at each access.
         self.meshes: dict[int, tuple[np.ndarray, np.ndarray]] = {}
 
     def write(self) -> None:
-        """Write one file of each sort for the current step, and the series so far."""
+        """Write one file of each type for the current step, and update the series."""
         change = self.program.temperatureChange(O.time) if self.program else 0.0
         joints = _Data({"body": 1, "kind": 1, "temperature_change_K": 1, "velocity_m_per_s": 3})
         bores = []

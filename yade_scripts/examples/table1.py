@@ -34,7 +34,7 @@ slider.shape = Slider(radius=pad_radius)
 slider.material = O.materials[aluminium]
 slider.bound = Aabb()
 slider.state.mass = density * area * length / 3
-slider.state.blockedDOFs = "zXYZ"  # a guided block: it slides and sinks in, it does not turn
+slider.state.blockedDOFs = "zXYZ"  # a guided block: it slides and penetrates but does not rotate
 # Start at the depth at which the floor carries the normal force.
 slider.state.pos = (0, -hertz_depth(normal_force, pad_radius, young, 0.3), 0)
 slider = O.bodies.append(slider)
@@ -49,7 +49,7 @@ bar = ThermalLink(
 
 O.engines = [
     ForceResetter(),
-    # The JointStepper makes the steps. Without this line YADE's loop makes them: the same numbers, more slowly.
+    # The JointStepper makes the steps. Without this line YADE's loop computes the same numbers more slowly.
     JointStepper(substeps=1000),
     ThermalExpansionEngine(program=orbit),
     InsertionSortCollider([Bo1_Slider_Aabb(), Bo1_SlotFace_Aabb()], verletDist=0.1 * pad_radius),
@@ -65,7 +65,7 @@ O.forces.setPermF(slider, (0, -normal_force, 0))
 O.trackEnergy = True
 
 O.dt = 1e-9
-O.step()  # now the floor is in contact and the stiffness is known
+O.step()  # after this step the floor is in contact, so its stiffness is known
 O.dt = 0.1 * stable_time_step()
 start = O.bodies[slider].state.pos[0]
 O.run(int(round(orbit.period / O.dt)), True)

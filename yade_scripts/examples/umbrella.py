@@ -34,8 +34,8 @@ aluminium = O.materials.append(
 
 
 def tip(shape, mass):
-    """The end of a link at B. A uniform rod on a fixed pin is exactly a massless spring with a
-    third of its mass at the tip. The links move in the x-y plane; ThermalLink rotates the tip."""
+    """Return the body at the end of a link at B. A uniform rod on a fixed pin is exactly a massless spring with a third
+    of its mass at the tip. The links move in the x-y plane; ThermalLink rotates the tip."""
     body = Body()
     body.shape, body.material, body.bound = shape, O.materials[aluminium], Aabb()
     body.state.mass, body.state.pos, body.state.blockedDOFs = mass / 3, start, "zXYZ"
@@ -43,7 +43,7 @@ def tip(shape, mass):
 
 
 def pin(position):
-    """A point of the frame, which neither moves nor expands."""
+    """Return a point of the frame, which neither moves nor expands."""
     body = Body()
     body.state.pos, body.state.blockedDOFs = position, "xyzXYZ"
     return O.bodies.append(body)
@@ -79,7 +79,7 @@ if os.environ.get("PARAVIEW"):
 
 
 def report():
-    """State jump: direction of AB after the temperature cycle minus its direction before."""
+    """Print the state jump: direction of AB after the temperature cycle minus its initial direction."""
     direction = O.bodies[bearing].state.pos
     jump = atan2(direction[1], direction[0]) - atan2(start[1], start[0])
     touched = orbit.temperatureChange(law.firstContactTime)
@@ -98,4 +98,4 @@ if windows:
 
     view = qt.View()
     view.center()
-O.run(steps + 1, not windows)  # with windows: return while the run goes on
+O.run(steps + 1, not windows)  # with windows: do not wait for the end of the run

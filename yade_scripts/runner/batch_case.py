@@ -5,9 +5,8 @@
     export PYTHONPATH=build/python
     yade-batch --job-threads=1 --log=@.log samples.table yade_scripts/runner/batch_case.py
 
-Each line leaves ``samples.table.sample_<number>.csv``, the history, and ``….outcomes.json``, the
-numbers that ``statejump`` itself puts into the row of its table. Nothing is resumed: that is what
-``statejump montecarlo`` is for.
+Each line writes the history ``samples.table.sample_<number>.csv`` and ``….outcomes.json``, the numbers in the row of
+the table of ``statejump montecarlo``. An interrupted batch cannot be resumed; use ``statejump montecarlo`` for this.
 """
 import json
 import os
@@ -34,7 +33,7 @@ history = table_file.with_name(f"{table_file.name}.sample_{sample.index}.csv")
 values, samples = history.with_suffix(".case.json"), history.with_suffix(".samples")
 values.write_text(json.dumps(sample.dem_values()))
 os.environ["STATEJUMP_CASE_JSON"], os.environ["STATEJUMP_OUTPUT"] = str(values), str(samples)
-# The script that statejump starts; it needs the namespace of the main script.
+# The script that statejump starts; it uses the namespace of the main script.
 runner = Path(sys.argv[0]).resolve().with_name("run_case.py")
 exec(compile(runner.read_text(), str(runner), "exec"), globals())
 values.unlink()

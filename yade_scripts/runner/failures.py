@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Failures of a run from a case file, with the names of the case: the plugin knows only the numbers of bodies."""
+"""Failures of a run with names of the case; the plugin knows only body numbers."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
@@ -9,15 +9,15 @@ from typing import Any
 
 
 def pair(one: Any, other: Any) -> frozenset[int]:
-    """Return the key of two bodies, in any order."""
+    """Return the key of two bodies, independent of their order."""
     return frozenset((int(one), int(other)))
 
 
 class SceneFailure(RuntimeError):
-    """A failure found by the script itself; the sentence contains neither time nor temperature.
+    """A failure found by the script; the message contains neither time nor temperature.
 
     :param code: code of the failure
-    :param joint: name of the joint as result files have it
+    :param joint: name of the joint in result files
     :param remedy: remedy, "" if unknown
     :param time_s: time of the state
     """
@@ -30,11 +30,11 @@ class SceneFailure(RuntimeError):
 
 @dataclass
 class Names:
-    """Names of the case for the plugin's numbers of two bodies, or of one."""
+    """Names of the case by the plugin's numbers of one or two bodies."""
 
     joints: dict[frozenset[int], tuple[str, str]] = field(default_factory=dict)  # joint, words for the sentence
     links: dict[frozenset[int], str] = field(default_factory=dict)
-    # As for joints, by the tips of their links.
+    # by the tips of their links, as for joints
     torsion_springs: dict[frozenset[int], tuple[str, str]] = field(default_factory=dict)
     prismatic_joints: dict[frozenset[int], tuple[str, str]] = field(default_factory=dict)  # as joints
     bodies: dict[int, str] = field(default_factory=dict)
@@ -58,7 +58,7 @@ class Names:
     def add_torsion_spring(self, spring: Any, words: str, joint: str = "") -> None:
         """Add a torsion spring; several of them may be between the same links.
 
-        :param joint: name of the joint that it is, if it is one
+        :param joint: name of the joint that the spring represents, if any
         """
         tips = pair(spring.link1.id2, spring.link2.id2)
         before = self.torsion_springs.get(tips)
@@ -66,7 +66,7 @@ class Names:
 
 
 def rounded_down(value: float) -> float:
-    """Return a positive value with two digits, at most the value itself."""
+    """Return a positive value rounded down to two digits."""
     unit = 10.0 ** (floor(log10(value)) - 1)
     return float(f"{floor(value / unit) * unit:.2g}")
 
@@ -79,8 +79,8 @@ def described(
     """Return the fields of a failure: cause, time, temperature; if known, joint, text for its position and remedy.
 
     :param error: the error that ended the run
-    :param taken: the plugin's failure, see ``statejump_yade.take_failure``; None: not from the plugin
-    :param now_s: time of a failure without its own
+    :param taken: the failure from ``statejump_yade.take_failure``; None: the error is not from the plugin
+    :param now_s: time [s] for failures without a time
     :param temperature_change: temperature change [K] of the case's (first) program at a time [s]
     :param stable_time_step: stable step [s] of the whole scene in its current state
     :param step_remedy: returns the key of the case file for a step of at most this many seconds
@@ -109,7 +109,7 @@ def described(
             joint, part = ("", names.links.get(bodies, unknown)) if is_link else known.get(bodies, ("", unknown))
             cause = taken["before"] + part + taken["after"]
         if taken["stable_time_step"] is not None:
-            # The limit of one contact or link exceeds that of all contacts and links of one body.
+            # The stable step of one contact or link exceeds that of all contacts and links of one body together.
             whole = stable_time_step()
             remedy = step_remedy(min(taken["stable_time_step"], whole if isfinite(whole) and whole > 0 else inf))
     if isinstance(error, SceneFailure):

@@ -7,7 +7,7 @@ Both variables name files beside this script by default: ``statejump dem CASE --
 Without ``-x``, YADE keeps the scene after the run or after a failure and shows its prompt. ``STATEJUMP_VIEW=1`` opens
 the 3-D view in place of a run.
 
-The resolved case comes as JSON. The script writes samples, see ``statejump.core.samples``, block by block to
+The input is the resolved case as JSON. The script writes samples, see ``statejump.core.samples``, block by block to
 ``<output>.partial``, and renames this file at the end. A scene's module has ``COLUMNS`` or ``columns(case)``,
 ``build``, ``watched``, ``sample``, ``names``, ``step_remedy`` and ``summary``; the modules beside this script document
 them. The caller reads lines of standard output that begin with ``STATEJUMP``: ``{"progress": fraction}``, or
@@ -31,8 +31,8 @@ from statejump.core.samples import names_line, rows_of
 
 # Samples are processed in blocks, after this time or when they need this much memory.
 SECONDS_OF_A_BLOCK, BYTES_OF_A_BLOCK = 0.1, 2**25
-# Between two checks of the samples a run makes a hundredth of its steps, or for a small scene this number over the
-# number of bodies. This takes the JointStepper some milliseconds; its arrays are copied each time.
+# Between two checks of the samples, a run makes a hundredth of its steps or, for a small scene, this number divided by
+# the number of bodies: some milliseconds in the JointStepper, which copies its arrays at each check.
 STEPS_OF_A_BODY = 100_000
 NO_DISPLAY = 3  # exit status of a view
 
@@ -42,12 +42,12 @@ class CaseFailure(Exception):
 
 
 def report(message):
-    """Report to the caller; YADE may have left a line open."""
+    """Report to the caller, on a new line because YADE may have left a line open."""
     print(f"\nSTATEJUMP {json.dumps(message)}", flush=True)
 
 
 def scene_of(name):
-    """Return the module that builds the scene: one beside this script, or a file of its own."""
+    """Return the module that builds the scene: one beside this script, or a separate file."""
     if not name.endswith(".py"):
         return import_module(name)
     specification = spec_from_file_location(Path(name).stem, name)
@@ -62,10 +62,10 @@ class Block:
     def __init__(self, case, kind, built, recorder, write):
         self._case, self._kind, self._built, self._recorder, self._write = case, kind, built, recorder, write
         self._written = time.perf_counter()
-        self.refused = None  # YADE turns a Python error into a traceback
+        self.refused = None  # kept here, because YADE converts Python errors to tracebacks
 
     def record(self):
-        """Write the samples if they are many or old enough, and report the progress of the run."""
+        """Write the samples if they are many or old enough, and report progress."""
         waited = time.perf_counter() - self._written
         if waited < SECONDS_OF_A_BLOCK and self._recorder.bytes_kept < BYTES_OF_A_BLOCK:
             return
@@ -90,13 +90,13 @@ def run(case, output):
     """Build the scene, run it, write the history and its summary."""
     kind = scene_of(case["scene"])
     steps = case["dem"]["number_of_steps"]
-    # The caller makes the steps a multiple of the samples, so that the last sample is the end.
+    # The caller chooses a multiple of the number of samples, so that the last sample is the end.
     every, rest = divmod(steps, case["number_of_samples"])
     if every == 0 or rest != 0:
         raise ValueError(f"dem.number_of_steps = {steps} is not a multiple of the samples")
     partial = output.with_name(output.name + ".partial")
     with partial.open("wb") as stream:
-        columns = getattr(kind, "columns", None)  # for a kind whose columns depend on the case
+        columns = getattr(kind, "columns", None)  # a function, for a kind whose columns depend on the case
         stream.write(names_line(columns(case) if columns else kind.COLUMNS))
 
         def write(rows):
@@ -114,7 +114,7 @@ def run(case, output):
         globals()["block"] = block = Block(case, kind, built, recorder, write)
         started, started_cpu = time.perf_counter(), time.process_time()
         try:
-            O.run(steps + 1, True)  # the end of the program is recorded one step later
+            O.run(steps + 1, True)  # one more step, because the state at the end is recorded in it
             block.write()
             elapsed, elapsed_cpu = time.perf_counter() - started, time.process_time() - started_cpu
             if O.iter != steps + 1:  # an error in the first steps can end the run without a message
@@ -124,7 +124,7 @@ def run(case, output):
             taken = sj.take_failure()
             if not block.refused:
                 with suppress(Exception):  # the failure may persist
-                    block.write()  # a sample before the failure may raise it, too
+                    block.write()  # writing an earlier sample may raise the failure too
             raise CaseFailure(described(
                 block.refused or error, None if block.refused else taken, kind.names(case, built), O.time,
                 built.program.temperatureChange, sj.stable_time_step, lambda stable: kind.step_remedy(case, stable),
@@ -147,7 +147,7 @@ def run(case, output):
 def step_joints(case, substeps):
     """Let the JointStepper make the steps, if the case selects it.
 
-    :param substeps: that it makes in one step of YADE's loop
+    :param substeps: number of steps that it makes in one step of YADE's loop
     """
     if case["dem"].get("stepper") == "joint":
         O.engines = [O.engines[0], sj.JointStepper(substeps=substeps), *O.engines[1:]]
@@ -161,19 +161,19 @@ def view(case):
 
     scene_of(case["scene"]).build(case, [])
     step_joints(case, max(1, case["dem"]["number_of_steps"] // case["number_of_samples"]))
-    # YADE's main script keeps its namespace, and so both windows.
+    # YADE's main script keeps its namespace, which keeps both windows alive.
     globals()["controller"], globals()["scene_view"] = qt.Controller(), qt.View()
 
 
 def end(failure):
-    """Report a failure. Then end YADE or, without -x, show the traceback and leave the scene to the user."""
+    """Report a failure; then end YADE or, without -x, show the traceback and keep the scene."""
     report({"failure": failure})
     if yade.runtime.opts.exitAfter:
         os._exit(2)
 
 
 def main():
-    """Run the case that the environment names, or that is beside this script."""
+    """Run the case named in the environment, or the one beside this script."""
     here = Path(sys.argv[0]).resolve().parent
     case = json.loads(Path(os.environ.get("STATEJUMP_CASE_JSON", here / "case.json")).read_text())
     if os.environ.get("STATEJUMP_VIEW"):
@@ -188,6 +188,6 @@ try:
 except CaseFailure as failure:
     end(failure.args[0])
     raise
-except Exception as error:  # the caller needs the cause, whatever it is
+except Exception as error:  # any exception, because the caller needs the cause
     end({"cause": " ".join(str(error).split())})
     raise

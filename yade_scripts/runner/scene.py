@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shared by the scenes of all kinds of case. Imported by scripts that run under ``yade``."""
+"""Code shared by the scenes of all kinds; imported by scripts that run under ``yade``."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -37,15 +37,15 @@ def fixed_point(position: tuple[float, float, float]) -> int:
 
 
 def start_sticking(slides: Mapping[int, tuple[float, float, float]]) -> None:
-    """Load the contacts of pads by friction: each contact receives one slide, while its pad does not move.
-    ``O.engines`` and ``O.dt`` are those of the run. Without slides this does nothing.
+    """Load the contacts of pads by friction: each contact gets a slide, while its pad does not move. ``O.engines`` and
+    ``O.dt`` must be those of the run. Without slides the function has no effect.
 
-    :param slides: of each pad [m], by body
+    :param slides: slide of each pad [m], by body
     """
     if not slides:
         return
     tracked, O.trackEnergy = O.trackEnergy, False
-    for share in (0, 1):  # pressed first, then sheared: partial slip depends on the order
+    for share in (0, 1):  # normal load first, then shear, because partial slip depends on the order
         for body, slide in slides.items():
             O.bodies[body].state.vel = tuple(share * way / O.dt for way in slide)
         for engine in O.engines:
@@ -54,7 +54,7 @@ def start_sticking(slides: Mapping[int, tuple[float, float, float]]) -> None:
     for body in slides:
         O.bodies[body].state.vel = (0, 0, 0)
         O.forces.f(body, True)  # sums forces: others are not reset
-    O.forces.reset(resetAll=False)  # a ForceResetter does not in the first step
+    O.forces.reset(resetAll=False)  # a ForceResetter does not reset in the first step
     O.trackEnergy = tracked
 
 
@@ -70,8 +70,8 @@ def joint_engines(
     guides: dict[int, tuple[float, float, float]] | None = None,
     prismatic_joints: tuple[sj.PrismaticJoint, ...] = (),
 ) -> list[wrapper.Engine]:
-    """Return the engines of any scene of joints, links and torsion springs. Recorders see a state
-    of one time: positions, temperature and forces of the current step.
+    """Return the engines of any scene of joints, links and torsion springs. Recorders read positions, temperature and
+    forces of the same time.
 
     :param expansions: ThermalExpansionEngines of the bodies; None: all of them follow ``program``
     :param guides: normals of the planes in which bodies stay, by id

@@ -23,7 +23,7 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class SpringSliderScene:
-    """Objects of the scene of a ``spring_slider`` case for scripts: body ids, links, program."""
+    """Objects of the scene for scripts: body ids, links, program."""
 
     program: sj.ThermalProgram
     slider: int
@@ -32,23 +32,23 @@ class SpringSliderScene:
     stop_plus: int | None
     link: sj.ThermalLink
     preload_link: sj.ThermalLink | None
-    prismatic: sj.PrismaticJoint | None  # soft stops instead of faces, and friction with play
+    prismatic: sj.PrismaticJoint | None  # soft stops instead of faces, and friction of a joint with play
     start_height_m: float  # y of the slider at the start, where the floor carries the normal force
     start_energy_J: float  # of bar and preload at the start
 
     @property
     def pairs(self) -> list[Pair]:
-        """Pairs of the slider with its floor and its rigid stops."""
+        """Return the pairs of the slider with its floor and its rigid stops."""
         return [(self.slider, face) for face in (self.floor, self.stop_minus, self.stop_plus) if face is not None]
 
     @property
     def prismatic_joints(self) -> list[sj.PrismaticJoint]:
-        """The joint of soft stops and of friction with play."""
+        """Return the joint for soft stops and friction with play."""
         return [self.prismatic] if self.prismatic is not None else []
 
     @property
     def has_play(self) -> bool:
-        """Whether the prismatic joint has the friction, not the floor."""
+        """Whether friction acts in the prismatic joint instead of on the floor."""
         return self.prismatic is not None and bool(self.prismatic.play > 0)
 
     @property
@@ -60,8 +60,8 @@ class SpringSliderScene:
 def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSliderScene:
     """Build the scene of a bar with a slider at its tip, in a slot (1-D clearance joint).
 
-    The bar lies along x with its root at -l0. The slider starts in equilibrium: at the slot's centre, or where a
-    preload force has taken it, at the depths at which floor and stop carry their loads, with the friction of its start.
+    The bar lies along x with its root at -l0. The slider starts in equilibrium: at the centre of the slot or displaced
+    by a preload force, with penetration depths that carry the loads of floor and stop, and with its initial friction.
 
     :param case: resolved case, sections and keys as in the case file
     :param recorders: engines that read the state, run before the motion of each step
@@ -147,7 +147,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> SpringSlider
 
 
 def prismatic_joint(case: dict[str, Any], slider: int, depth_m: float) -> sj.PrismaticJoint | None:
-    """Return the joint of soft stops and of friction with play, None for a case with neither."""
+    """Return the joint for soft stops and friction with play; None if the case has neither."""
     joint, dem = case["joint"], case["dem"]
     stops: dict[str, float] = {}
     friction: dict[str, float] = {}
@@ -177,8 +177,8 @@ def watched(built: SpringSliderScene) -> Watched:
 
 
 def sample(case: dict[str, Any], built: SpringSliderScene, states: States) -> list[np.ndarray]:
-    """Return the columns. Forces on the block, axial force in compression positive; the contact's stored forces act
-    on the face."""
+    """Return the columns. Forces are those on the block, and the axial force is positive in compression; YADE stores
+    contact forces on the face."""
     (slider,), (link,) = states.bodies([built.slider]).T, states.links([built.link]).T
     floor, *stops = states.contacts(built.pairs).T
     lost = floor["real"] == 0
@@ -223,7 +223,7 @@ def sample(case: dict[str, Any], built: SpringSliderScene, states: States) -> li
 
 
 def names(case: dict[str, Any], built: SpringSliderScene) -> Names:
-    """Return the case's names of contacts and links; contacts as in result files."""
+    """Return the names of contacts and links; contacts have their names in result files."""
     found = Names()
     faces = ("floor",) if built.has_soft_stops else ("floor", "stop_minus", "stop_plus")
     for contact in faces:
@@ -240,7 +240,7 @@ def names(case: dict[str, Any], built: SpringSliderScene) -> Names:
 
 
 def step_remedy(case: dict[str, Any], stable_s: float) -> str:
-    """Return which key of the case file gives a step of at most ``stable_s``."""
+    """Return a remedy: the key of the case file that sets a step of at most ``stable_s`` [s]."""
     return f"set dem.time_step_s to {rounded_down(stable_s):g} or less, stable in this state"
 
 

@@ -57,14 +57,14 @@ def columns(case: dict[str, Any]) -> list[str]:
 
 
 class Programs:
-    """Temperature programs, one for each program and fraction that an item has."""
+    """Temperature programs of YADE, one for each pair of program and fraction."""
 
     def __init__(self, case: dict[str, Any]) -> None:
         self._case = case["programs"]
         self._made: dict[tuple[int, float], sj.ThermalProgram] = {}
 
     def of(self, number: int, fraction: float) -> sj.ThermalProgram:
-        """Return the program with its temperatures times the fraction."""
+        """Return a program with its temperatures multiplied by a fraction."""
         if (number, fraction) not in self._made:
             given = self._case[number]
             if given["shape"] == "table":
@@ -81,9 +81,9 @@ class Programs:
 
 
 def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
-    """Build the scene in the equilibrium in which the quasi-static path starts.
+    """Build the scene in the initial equilibrium of the quasi-static path.
 
-    :param case: what ``statejump.kinds.truss.dem.resolved`` returns
+    :param case: result of ``statejump.kinds.truss.dem.resolved``
     :param recorders: engines that read the state, run before the motion of each step
     """
     dem = case["dem"]
@@ -98,7 +98,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
         body.state.blockedDOFs = blocked + "XYZ"
         bodies.append(body)
 
-    turning: dict[int, set[int]] = {}  # by link: nodes whose bodies rotate with it
+    turning: dict[int, set[int]] = {}  # nodes whose bodies rotate with a link, by link
     parts_of: dict[tuple[int, float], list[int]] = {}
 
     def turn(link: int, node: int) -> None:
@@ -123,7 +123,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
             O.forces.setPermF(ids[place], Vector3(node["force_N"]))
             scene.loaded.append(place)
 
-    carriers = []  # links without stiffness; each rotates the root of a link that also rotates its tip
+    carriers = []  # links without stiffness that rotate the root of a link, for links whose tip another link rotates
     for place, link in enumerate(links):
         ends = [int(node) for node in link["nodes"]]
         turned = turning.get(place, set())
@@ -153,7 +153,7 @@ def build(case: dict[str, Any], recorders: list[wrapper.Engine]) -> TrussScene:
         for key, parts in parts_of.items()
     ]
     radii = [radius for joints in made for radius in joints.radii()]
-    named = dem["friction_law"] != "mindlin"  # the default law is compiled as one piece
+    named = dem["friction_law"] != "mindlin"  # the default law is a compiled combination
     law = (sj.Law2_JointGeom_JointPhys_JointLaw(frictionLaw=dem["friction_law"]) if named
            else sj.Law2_JointGeom_JointPhys_HertzMindlin())
     O.engines = joint_engines(
@@ -207,14 +207,14 @@ def sample(case: dict[str, Any], built: TrussScene, states: States) -> list[np.n
 
 
 def _bodies(case: dict[str, Any], built: TrussScene) -> dict[int, str]:
-    """Return the texts for all bodies that may touch."""
+    """Return texts for all bodies that may touch."""
     found = {body: f"node {name!r}" for body, name in zip(built.nodes, case["node"]["names"])}
     found.update({face: words for joints in built.joints for face, (_, words) in joints.faces().items()})
     return found
 
 
 def _strangers(case: dict[str, Any], built: TrussScene, states: States) -> Iterator[SceneFailure]:
-    """Yield the first two bodies that touch but must not."""
+    """Yield a failure for the first two bodies that touch but must not."""
     strangers = states.strangers()
     touching = strangers[:, 0] >= 0
     if not touching.any():
@@ -230,7 +230,7 @@ def _strangers(case: dict[str, Any], built: TrussScene, states: States) -> Itera
 
 
 def names(case: dict[str, Any], built: TrussScene) -> Names:
-    """Return the case's names of joints, links, springs and bodies."""
+    """Return the names of joints, links, springs and bodies of the case."""
     words = _bodies(case, built)
     found = Names(bodies=words)
     for joints in built.joints:
@@ -244,7 +244,7 @@ def names(case: dict[str, Any], built: TrussScene) -> Names:
 
 
 def step_remedy(case: dict[str, Any], stable_s: float) -> str:
-    """Return which key of the case file gives a step of at most ``stable_s``."""
+    """Return a remedy: the key of the case file that sets a step of at most ``stable_s`` [s]."""
     fraction = case["dem"]["time_step_fraction"] * stable_s / case["dem"]["time_step_s"]
     return f"set dem.time_step_fraction to {rounded_down(fraction):g} or less, stable in this state"
 

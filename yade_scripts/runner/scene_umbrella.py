@@ -162,7 +162,7 @@ def sample(case: dict[str, Any], built: UmbrellaScene, states: States) -> list[n
 
 
 def names(case: dict[str, Any], built: UmbrellaScene) -> Names:
-    """Return the case's names of joint, links and spring; the joint as in result files."""
+    """Return the names of joint, links and spring; the joint has its name in result files."""
     found = Names({pair(built.bearing, built.journal): ("joint_b", "joint_b")})
     found.bodies.update({built.bearing: "the bearing of joint_b", built.journal: "the journal of joint_b"})
     found.add_link(built.link_ab, "link_ab")
@@ -173,7 +173,7 @@ def names(case: dict[str, Any], built: UmbrellaScene) -> Names:
 
 
 def step_remedy(case: dict[str, Any], stable_s: float) -> str:
-    """Return which key of the case file gives a step of at most ``stable_s``."""
+    """Return a remedy: the key of the case file that sets a step of at most ``stable_s`` [s]."""
     samples = case["output"]["samples_per_cycle"]
     steps = ceil(case["period_s"] / stable_s / samples) * samples
     return f"set dem.steps_per_cycle to {steps} or more, stable in this state"

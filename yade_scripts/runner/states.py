@@ -23,7 +23,7 @@ JOINT = [("slide", NUMBER), ("frictionForce", NUMBER), ("stopForce", NUMBER)]
 
 
 class Watched:
-    """The parts of a scene whose states are recorded, in the order in which they are named."""
+    """The recorded parts of a scene, in the order of their names."""
 
     def __init__(self, bodies: Iterable[int] = (), contacts: Iterable[Pair] = (),
                  links: Iterable[sj.ThermalLink] = (), springs: Iterable[sj.TorsionSpring] = (),
@@ -51,14 +51,14 @@ class States:
         return sum(self._rows[name] for name in names)
 
     def strangers(self) -> np.ndarray:
-        """Return two bodies in contact that are not recorded, -1 if there are none."""
+        """Return two bodies in contact that are not recorded; -1 if there are none."""
         return np.stack([self._rows["stranger1"], self._rows["stranger2"]], axis=1).astype(int)
 
     def _of(self, sort: str, keys: Iterable[Any]) -> np.ndarray:
         return self._rows[sort][:, [self._places[sort, key] for key in keys]]
 
     def bodies(self, ids: Sequence[int]) -> np.ndarray:
-        """Return ``position`` [m], ``velocity`` half a step before [m/s] and ``force`` in free directions [N]."""
+        """Return ``position`` [m], ``velocity`` half a step earlier [m/s], and ``force`` along free directions [N]."""
         return self._of("bodies", ids)
 
     def kinetic_energies(self, ids: Sequence[int]) -> np.ndarray:
@@ -89,14 +89,14 @@ class States:
 class Recorder:
     """A StateRecorder and the meaning of its rows. Place ``engine`` right before the NewtonIntegrator.
 
-    :param every: steps from sample to sample
+    :param every: number of steps between samples
     """
 
     def __init__(self, every: int) -> None:
         self.engine: wrapper.Engine = sj.StateRecorder(iterPeriod=every)
 
     def watch(self, watched: Watched) -> None:
-        """Set the objects to record from now on."""
+        """Set the objects to record from the next step on."""
         engine = self.engine
         engine.bodies, engine.contacts = watched.bodies, [body for pair in watched.contacts for body in pair]
         engine.links, engine.springs, engine.joints = watched.links, watched.springs, watched.joints
@@ -118,7 +118,7 @@ class Recorder:
 
     @property
     def bytes_kept(self) -> int:
-        """Memory of the samples since the last call of :meth:`take` [B]."""
+        """Memory of the samples since the last call of :meth:`take` [bytes]."""
         return self._row.itemsize * self.engine.rows()
 
     def take(self) -> States:
@@ -142,5 +142,5 @@ def in_order(values: np.ndarray) -> np.ndarray:
 
 
 def each(function: Any, *values: np.ndarray) -> np.ndarray:
-    """Return a function of Python's ``math`` of every sample: NumPy's functions differ between processors."""
+    """Return a function of Python's ``math``, applied to every sample; results of NumPy differ between processors."""
     return np.array(list(map(function, *(some.tolist() for some in values))))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measures a bore given as triangles: radius, roundness, lobes, clearance."""
+"""Measurement of a bore from triangles: radius, roundness, lobes, clearance."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ ANGLES = 1024  # samples around a section
 SECTIONS = 5  # along the bore
 HARMONICS = range(2, 13)
 HEADINGS = ("quantity", "value", "unit")
-MARGIN = 0.05  # margin between the end sections and the ends, as a fraction of the length
+MARGIN = 0.05  # distance of the first and last section from the ends, as a fraction of the length
 
 
 @dataclass(frozen=True)
@@ -36,9 +36,9 @@ class Section:
     z_m: float  # from the wall's middle
     mean_radius_m: float
     offset_m: tuple[float, float]  # centre of the circle from the axis
-    deviation_m: np.ndarray  # radius minus that of the circle, at ANGLES equal angles
+    deviation_m: np.ndarray  # radius minus that of the circle, at ANGLES equally spaced angles
     amplitude_m: np.ndarray  # of HARMONICS
-    phase_rad: np.ndarray  # angle of the largest radius of each of HARMONICS, in [0, 2 pi/harmonic)
+    phase_rad: np.ndarray  # angle of the largest radius, for each of HARMONICS, in [0, 2 pi/harmonic)
 
     @property
     def roundness_error_m(self) -> float:
@@ -52,7 +52,7 @@ def angles_rad() -> np.ndarray:
 
 
 def section(mesh: _engine.BoreMesh, z_m: float) -> Section:
-    """Measure a section. Raises StatejumpError if the wall has gaps, or reverses its direction about the centre."""
+    """Measure a section. :raises StatejumpError: the wall has gaps, or reverses its direction about the centre"""
     radii = mesh.section_radii_m(z_m, ANGLES)
     if not np.all(np.isfinite(radii)):
         missing = float(np.degrees(angles_rad()[int(np.argmin(np.isfinite(radii)))]))
@@ -68,7 +68,7 @@ def section(mesh: _engine.BoreMesh, z_m: float) -> Section:
         centre = centre + step[:2]
         if np.linalg.norm(step[:2]) < 1e-15 * distance[0]:
             break
-    # About the centre of the circle the samples are at uneven angles. They are resampled with a smooth periodic curve.
+    # About the centre of the circle the angles are uneven, so a smooth periodic curve resamples them.
     away = points - centre
     around = np.unwrap(np.arctan2(away[:, 1], away[:, 0]))
     if not (np.all(np.diff(around) > 0) and around[-1] < around[0] + 2 * np.pi):
@@ -84,7 +84,7 @@ def section(mesh: _engine.BoreMesh, z_m: float) -> Section:
 
 
 def _resample(around: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Values at other angles, by a periodic cubic spline."""
+    """Return values at other angles from a periodic cubic spline."""
     closed_angles = np.append(around, around[0] + 2 * np.pi)
     spline = CubicSpline(closed_angles, np.append(values, values[0]), bc_type="periodic")
     values_there: np.ndarray = spline(around[0] + np.mod(wanted - around[0], 2 * np.pi))
@@ -95,8 +95,8 @@ def _resample(around: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.
 class Bore:
     """Measurements of a bore.
 
-    :param name: for tables and figures: the file
-    :param mesh: the fitted wall: axis, mean radius, curvatures
+    :param name: name in tables and figures: that of the file
+    :param mesh: the wall with fitted axis, mean radius and curvatures
     :param sections: roundness in SECTIONS sections along the axis
     :param journal_radius_m: radius of the journal in the bore [m]; None: no clearance
     """
@@ -124,7 +124,8 @@ class Bore:
 
     @property
     def dominating_harmonic(self) -> int | None:
-        """Number of waves of the largest lobes of the middle section; None if they are below the mesh's error."""
+        """Number of waves of the largest lobes in the middle section; None if they are smaller than the error of the
+        mesh."""
         largest = int(np.argmax(self.middle.amplitude_m))
         if self.middle.amplitude_m[largest] <= self.mesh.reconstruction_error_m:
             return None
@@ -132,12 +133,12 @@ class Bore:
 
     @property
     def clearance_m(self) -> float | None:
-        """Radial clearance to the journal, from the least-squares radius [m]; None: no journal."""
+        """Radial clearance to the journal from the least-squares radius [m]; None: no journal."""
         return None if self.journal_radius_m is None else self.mesh.mean_radius_m - self.journal_radius_m
 
     @property
     def smallest_clearance_m(self) -> float | None:
-        """Smallest radial clearance of a journal on the axis [m]; None: no journal."""
+        """Smallest radial clearance of a journal centred on the axis [m]; None: no journal."""
         return None if self.journal_radius_m is None else self.smallest_radius_m - self.journal_radius_m
 
     def frame(self) -> pandas.DataFrame:
@@ -210,12 +211,12 @@ class Bore:
         return f"<h4>bore {escape(self.name)}</h4>{html_table(HEADINGS, self._rows())}"
 
 
-# Remedy for each kind of failure: the end of the sentence, and the setting that it names.
+# Remedy for each kind of failure: text at the end of the message, and the setting that it names.
 CURES = {"inside_out": ("; {} turns it", "flip=True"), "too_large": (" Then use {}", "unit_m=0.001")}
 
 
 class NoBore(StatejumpError):
-    """A file or its mesh is no bore that can be measured.
+    """A file or its mesh is not a bore that can be measured.
 
     :param what: the reason
     :param fault: the kind of failure
@@ -235,14 +236,14 @@ def load(file: Path, unit_m: float = 1.0, flip: bool = False) -> _engine.BoreMes
 
     :param unit_m: length of one unit of the file [m]
     :param flip: reverse every face
-    :raises NoBore: the file is no bore
+    :raises NoBore: the file is not a bore
     """
     try:
         return _engine.BoreMesh.read(str(file), scale=unit_m, flip=flip)
     except _engine.EngineFailure as failure:
         what = str(failure)
         if failure.file:
-            assert failure.cause is not None  # the engine gives both for a failure of a file
+            assert failure.cause is not None  # the engine always gives a cause for a fault of the file
             what = failure.cause
         reason = {} if failure.reason is None else {"reason": failure.reason, **failure.details}
         raise NoBore(
@@ -260,7 +261,7 @@ def measure(mesh: _engine.BoreMesh, name: str, journal_radius_m: float | None = 
     """Measure a bore in SECTIONS sections.
 
     :raises NotAllowed: the journal is invalid
-    :raises NoBore: the wall has gaps, or its radius differs too much from the journal's
+    :raises NoBore: the wall has gaps, or its radius differs too much from that of the journal
     """
     check_journal("journal_radius_m", journal_radius_m)
     if journal_radius_m is not None:
@@ -285,7 +286,7 @@ def bore(
     :param unit_m: length of one unit of the file [m]: 0.001 for millimetres
     :param journal_radius_m: radius of the journal in the bore [m]
     :param flip: reverse every face, for a file whose normals point into the material
-    :raises StatejumpError: the file is no bore; the sentence gives reason and position
+    :raises StatejumpError: the file is not a bore; the message has reason and position
     """
     mesh = load(Path(path), unit_m, flip)
     with located(file=path):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Picture of a bore: sections with magnified deviations, and the harmonics of the middle section."""
+"""Picture of a bore: sections with magnified deviations, harmonics of the middle section."""
 from __future__ import annotations
 
 import numpy as np
@@ -11,7 +11,7 @@ from statejump.core.figures import panels, style
 
 
 def magnification(bore: Bore) -> float:
-    """Magnification of deviations in the figure: a round number."""
+    """Return the magnification of deviations in the figure, a round number."""
     largest = max(float(np.max(np.abs(each.deviation_m))) for each in bore.sections)
     largest = max(largest, bore.mesh.reconstruction_error_m, 1e-12)
     wanted = 0.25 * bore.mesh.mean_radius_m / largest
@@ -20,7 +20,7 @@ def magnification(bore: Bore) -> float:
 
 
 def drawn(bore: Bore, axes: tuple[Axes, Axes] | None = None) -> Figure:
-    """Return the picture, or draw it into given axes: sections and harmonics."""
+    """Return the picture, or draw sections and harmonics into two given axes."""
     if axes is not None:
         _sections(axes[0], bore)
         _harmonics(axes[1], bore)
@@ -36,7 +36,7 @@ def drawn(bore: Bore, axes: tuple[Axes, Axes] | None = None) -> Figure:
 
 
 def _sections(panel: Axes, bore: Bore) -> None:
-    # Plain axes, because matplotlib's polar axes do not write the same bytes twice.
+    # Plain axes, because files of matplotlib's polar axes are not reproducible.
     times = magnification(bore)
     angle = np.append(angles_rad(), 2 * np.pi)
     direction = np.array((np.cos(angle), np.sin(angle)))

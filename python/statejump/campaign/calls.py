@@ -22,14 +22,14 @@ def sweep(
 ) -> Campaign:
     """Run a case on a grid of its parameters.
 
-    :param values: values by key. Keys are ``section.key``, ``section.item.key`` of one item of a list,
+    :param values: values by key. Keys are ``section.key``, ``section.item.key`` of one item of a list, or
         ``section.*.key`` or ``section.joint*.key`` of all matching items. A value is a list, or the fields of a
         ``[[vary]]`` table: ``{"start": 0.1, "stop": 1, "count": 10, "spacing": "log"}``
     :param model: ``reduced`` or ``dem``
     :param workers: number of processes; None: one for each core, or no separate process if the grid is small
     :param outputs: further outputs to record of every run, for example ``jump:displacement_m[P].x``: end, jump, max,
         min or range of any column of a run at one item; see :mod:`statejump.campaign.outputs`
-    :raises StatejumpError: a key is unknown, or the kind of case has no outcomes
+    :raises StatejumpError: a key is unknown, or the kind has no outcomes
     """
     tables: dict[str, dict[str, Any]] = {
         key: {"key": key, **plain(wanted)} if isinstance(wanted, Mapping) else {"key": key, "values": _values(wanted)}
@@ -47,7 +47,7 @@ def montecarlo(
     :param distributions: for each key the fields of a ``[[vary]]`` table, for example ``{"distribution": "normal",
         "relative": 0.1}``
     :param samples: number of samples
-    :param seed: of the random numbers: the same seed gives the same samples
+    :param seed: seed of the random numbers; the same seed gives the same samples
     :param model: ``reduced`` or ``dem``
     :param workers: as for :func:`sweep`
     :param outputs: as for :func:`sweep`
@@ -61,7 +61,7 @@ def montecarlo(
 
 
 def _values(values: Any) -> Any:
-    """Return values as a list of Python numbers, also from an array; a single number gives a list of one."""
+    """Return a list of Python numbers from a list, an array or a single number."""
     if isinstance(values, Iterable) and not isinstance(values, (str, np.ndarray)):
         values = list(values)
     found = plain(values)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Campaign files: case, model, and what varies. They are checked as strictly as a case."""
+"""Campaign files: case, model, and varied parameters, checked as strictly as a case."""
 from __future__ import annotations
 
 import difflib
@@ -50,7 +50,7 @@ class MonteCarloHeader(SweepHeader):
 
 
 def _as_given(name: str, value: Any) -> list[Any]:
-    """Leave ``[[vary]]`` unchecked: its rules depend on the case, see :func:`vary_of`."""
+    """Return ``[[vary]]`` unchecked: its rules depend on the case, see :func:`vary_of`."""
     return list(value) if isinstance(value, list) else []
 
 
@@ -77,7 +77,7 @@ def load_campaign(path: Path, command: str) -> Plan:
     """Return the checked campaign of a TOML file.
 
     :param command: ``montecarlo`` or ``sweep``
-    :raises StatejumpError: one failure: file, key, value, what is allowed
+    :raises StatejumpError: one failure with file, key, value and allowed values
     """
     text_read, data = read_toml(path, "campaign")
     with located(file=path):
@@ -90,7 +90,7 @@ def _campaign(path: Path, text_read: str, data: Mapping[str, Any], command: str)
         if command == SWEEP and isinstance(header_given, Mapping) and key in header_given:
             raise NotAllowed(f"campaign.{key}", code="sweep_with_distribution")
     _check_sections(data)
-    # The header is checked first, because the rules of ``[[vary]]`` depend on the case that it names.
+    # The header is checked first, because the rules of ``[[vary]]`` depend on the case it names.
     found: Any = structure(FILES[command], {"vary": [{}], **data})
     header = found.campaign
     case = load_case(path.parent / header.case)
@@ -119,10 +119,10 @@ def plan_for(
 ) -> Plan:
     """Return the plan of a campaign without a file.
 
-    :param vary: contents of ``[[vary]]`` tables, and the name of each in messages
-    :param samples: of a Monte Carlo campaign; a sweep has its grid
-    :param seed: of a Monte Carlo campaign
-    :param asked: outputs besides the outcomes of the kind
+    :param vary: ``[[vary]]`` tables, each with its name in messages
+    :param samples: number of samples of a Monte Carlo campaign; None for a sweep, whose grid determines it
+    :param seed: seed of a Monte Carlo campaign
+    :param asked: further outputs, beside the outcomes of the kind
     :raises StatejumpError: as for :func:`load_campaign`
     """
     require(case, Outcomes)
@@ -145,7 +145,7 @@ def plan_for(
 
 
 def vary_tables(path: Path) -> list[tuple[str, Mapping[str, Any]]]:
-    """Return the ``[[vary]]`` tables of a file that contains nothing else, as ``statejump identify`` writes it.
+    """Return the ``[[vary]]`` tables of a file without other content, as ``statejump identify`` writes it.
 
     :raises StatejumpError: the file does not exist, has other sections, or has no such table
     """
@@ -193,7 +193,7 @@ def check_workers(key: str, workers: int | None) -> None:
 def vary_of(given: Iterable[tuple[str, Mapping[str, Any]]], case: Case, command: str) -> tuple[Varied, ...]:
     """Return the varied parameters.
 
-    :param given: tables, and the name of each in messages
+    :param given: tables, each with its name in messages
     :raises StatejumpError: a table is invalid
     """
     found: list[Varied] = []
@@ -216,9 +216,9 @@ def points_of(vary: tuple[Varied, ...]) -> int:
 
 
 def checked(given: Sequence[str], case: Case) -> tuple[str, ...]:
-    """Return the outputs, after computing them once for a run of the reduced model of the case itself.
+    """Return the outputs after computing them for a run of the reduced model.
 
-    :raises NotAllowed: one of them is invalid
+    :raises NotAllowed: one is invalid
     """
     names = tuple(given)
     for place, name in enumerate(names):

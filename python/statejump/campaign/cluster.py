@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Dask's ``distributed``: a cluster on this machine, or a running scheduler."""
+"""Clusters of Dask's ``distributed``: one on this machine, or a running scheduler."""
 from __future__ import annotations
 
 import asyncio
@@ -20,11 +20,11 @@ _QUIET = {
     "logging": {name: "critical" for name in ("distributed", "distributed.client", "bokeh", "tornado", "asyncio")},
     "distributed.comm.timeouts.connect": "5s",
     "distributed.scheduler.allowed-failures": 1,  # a task whose worker dies is tried once more
-    # By default a local cluster drops a worker whose process does not return in time, and starts no other. With this
-    # value its nanny restarts the worker however long that takes.
+    # By default a local cluster drops a worker whose process does not return in time and starts no other. With this
+    # value its nanny restarts the worker at any time.
     "distributed.deploy.lost-worker-timeout": "365 days",
-    # Unused diagnostics: a profile of the workers, which stops the samples a hundred times per second, and the response
-    # times of their event loops.
+    # Disable unused diagnostics: a profile that interrupts the samples a hundred times per second, and response times
+    # of event loops.
     "distributed.worker.profile.enabled": False,
     "distributed.admin.tick.interval": "1s",
 }
@@ -39,7 +39,7 @@ from statejump.core.scratch import scratch  # noqa: E402
 OPTION = "--scheduler"
 ADDRESS = "must be the address of a running dask scheduler, as 'tcp://host:8786'"
 CONNECT_S = 5
-WORKERS_S = 10  # longest wait for workers of a scheduler [s]
+WORKERS_S = 10  # longest wait for the workers of a scheduler [s]
 
 
 class SchedulerUnusable(StatejumpError):
@@ -123,7 +123,7 @@ def kill_workers(cluster: LocalCluster) -> None:
 def _close(cluster: LocalCluster) -> None:
     kill_workers(cluster)
     cluster.close(timeout=10)
-    cluster.__exit__(None, None, None)  # only this ends the thread of its event loop, and the one that watches it
+    cluster.__exit__(None, None, None)  # only this ends the thread of its event loop and the thread that watches it
 
 
 @contextmanager
@@ -138,7 +138,7 @@ def _interrupt_blocked() -> Iterator[None]:
 
 @contextmanager
 def _no_main_file() -> Iterator[None]:
-    """Hide the running script from new processes, which would run it again."""
+    """Hide the running script from new processes, which would otherwise run it again."""
     main = sys.modules["__main__"]
     hidden = {name: main.__dict__.pop(name) for name in ("__file__", "__spec__") if name in main.__dict__}
     main.__dict__["__spec__"] = None
@@ -155,7 +155,7 @@ def _existing(address: str) -> Iterator[Client]:
         raise NotAllowed(OPTION, address, ADDRESS, code="scheduler_address")
     _check_security(address)
     try:
-        # Check the connection before Dask begins to retry.
+        # Try the connection once before Dask, which retries for a long time.
         socket.create_connection((found[1].strip("[]"), int(found[2])), timeout=CONNECT_S).close()
         client = Client(address, timeout=CONNECT_S, set_as_default=False)
     except (OSError, ValueError, asyncio.TimeoutError):
@@ -167,7 +167,7 @@ def _existing(address: str) -> Iterator[Client]:
             raise SchedulerUnusable(address, code="scheduler_without_workers", workers_s=WORKERS_S) from None
         try:
             versions = client.run(_version)
-        except Exception as problem:  # the package is missing there, or is another version
+        except Exception as problem:  # the package is missing on the workers, or has another version
             raise SchedulerUnusable(address, code="scheduler_without_statejump",
                                     cause=f"{type(problem).__name__}: {problem}", here=__version__) from None
         for worker, version in versions.items():
@@ -180,8 +180,8 @@ def _existing(address: str) -> Iterator[Client]:
 
 
 def _check_security(address: str) -> None:
-    """Raise SchedulerUnusable if Dask's configuration requires encryption that the address lacks, or has no readable
-    certificates for TLS."""
+    """Raise SchedulerUnusable if Dask's configuration requires encryption that the address does not provide, or has no
+    readable TLS certificates."""
     from distributed.security import Security  # loaded only for addresses tls://
 
     security = Security()

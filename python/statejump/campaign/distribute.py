@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Samples of a campaign in batches on a Dask cluster."""
+"""Distribution of the samples of a campaign, in batches, to a Dask cluster."""
 from __future__ import annotations
 
 import time
@@ -16,16 +16,16 @@ from statejump.core.errors import StatejumpError
 
 from distributed import Client, Future, KilledWorker, wait  # noqa: E402, after cluster set it up
 
-QUEUED = 2  # tasks per worker, so that no worker waits for the next one
-LOOK_S = 5.0  # interval [s] at which workers are counted while no task finishes
+QUEUED = 2  # tasks queued per worker, so that no worker has to wait
+LOOK_S = 5.0  # interval [s] at which the workers are counted while no task finishes
 NO_WORKERS_S = 60.0  # longest wait [s] for a cluster without workers
-RESTART_S = 900.0  # the same for a local cluster that restarts them, which takes over a minute on a busy machine
+RESTART_S = 900.0  # the same for a local cluster that restarts workers, over a minute on a busy machine
 KEPT = "finished samples are kept, the same command goes on with the others"
 
 
 @dataclass(frozen=True)
 class Workers:
-    """A cluster that is ready.
+    """A cluster that is ready to run samples.
 
     :param count: number of samples that it runs at the same time
     :param run: yields finished batches of the samples with the given numbers, and the seconds that each took
@@ -54,8 +54,8 @@ def _slots(client: Client) -> int:
 def _finished(
     client: Client, recipe: Recipe, missing: list[int]
 ) -> Iterator[tuple[float, Batch]]:
-    """Yield finished batches. Samples whose worker died are repeated at the end, each alone. A sample that kills its
-    worker again is the cause."""
+    """Yield finished batches. Samples whose worker died are repeated at the end, one by one. A sample whose worker dies
+    again is reported as the cause."""
     batches = Batches(missing, recipe.model, QUEUED)
     running: set[Future] = set()
     asked: dict[str, list[int]] = {}
@@ -94,8 +94,8 @@ Given = TypeVar("Given")
 
 
 def _patiently(client: Client, ask: Callable[[], Given]) -> Given:
-    """Wait for a result. TimeoutError: not yet. :raises StatejumpError: the cluster is gone, or has been without
-    workers for too long"""
+    """Wait for a result; TimeoutError means that it is not available yet. :raises StatejumpError: the cluster is gone,
+    or has been without workers for too long"""
     alone_since: float | None = None
     while True:
         try:
@@ -118,8 +118,8 @@ def _some_of(client: Client, running: set[Future]) -> set[Future]:
 
 
 def _answer(client: Client, future: Future) -> tuple[float, Batch] | None:
-    """Result of a batch; None: its worker died. A result is lost with its worker, and is then computed again. :raises
-    StatejumpError: see :func:`_patiently`"""
+    """Return the result of a batch; None: its worker died. A result that is lost with its worker is computed again.
+    :raises StatejumpError: see :func:`_patiently`"""
     try:
         return _patiently(client, lambda: future.result(timeout=LOOK_S))
     except KilledWorker:

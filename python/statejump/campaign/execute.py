@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs the missing samples of a campaign: a few in this process, many on a Dask cluster. A sample depends on the seed
-and its number alone, so the table is the same."""
+"""Runs the missing samples of a campaign: a few in this process, many on a Dask cluster. A sample depends only on the
+seed and its number, so the table does not depend on where samples are run."""
 from __future__ import annotations
 
 import os
@@ -12,9 +12,9 @@ from statejump.campaign.plan import Plan
 from statejump.campaign.work import Batch, Batches, run_samples
 from statejump.core.progress import OnProgress
 
-# Time for which samples are run in this process before workers are started: about the start time of workers.
+# Time [s] for which samples are run in this process before workers are started: about the start time of workers.
 HERE_S = 2.0
-# Number of samples before the time of the others is estimated, because the first is not representative.
+# Number of finished samples from which the time of the others is estimated; the first sample is slower than the others.
 FORESEEN_FROM = 3
 
 
@@ -26,7 +26,7 @@ class Statistics:
     run_now: int = 0
     workers: int = 0
     wall_time_s: float = 0.0  # samples and start of the cluster
-    start_time_s: float = 0.0  # part of it before the cluster was ready
+    start_time_s: float = 0.0  # part of the run time before the cluster was ready
     worker_time_s: float = 0.0  # sum over all tasks
     batch_sizes: list[int] = field(default_factory=list)
     note: str = ""  # note of the journal
@@ -57,12 +57,12 @@ def run_missing(
 ) -> Statistics:
     """Run the missing samples. Every finished batch is stored before the next is counted.
 
-    :param kept: the stored samples; receives finished ones
+    :param kept: stored samples; finished samples are added
     :param scheduler: address of a running scheduler; None: a cluster on this machine
-    :param workers: number of processes of that cluster; None: one per core, or none for a reduced model that takes this
-        process about as long as starting them
+    :param workers: number of processes of that cluster; None: one per core, or none for a reduced model if this process
+        needs about the start time of workers
     :param on_progress: called with the finished fraction of all samples
-    :raises StatejumpError: no cluster; finished samples are stored
+    :raises StatejumpError: no cluster is available; finished samples are stored
     """
     missing = [index for index in range(campaign.samples) if index not in kept.finished]
     done = Statistics(already_there=campaign.samples - len(missing))
@@ -78,8 +78,8 @@ def run_missing(
 
 
 def _here(campaign: Plan, missing: list[int], account: _Account) -> list[int]:
-    """Run samples in this process. Return the remaining ones when the time is up, or when workers, with their start
-    time, would finish them sooner."""
+    """Run samples in this process. Return the remaining samples when HERE_S has passed, or when workers would finish
+    them sooner, including their start."""
     batches, started, done = Batches(missing, campaign.model, 1), time.perf_counter(), account.done
     cores = len(os.sched_getaffinity(0))
     done.workers = 1
@@ -98,7 +98,7 @@ def _here(campaign: Plan, missing: list[int], account: _Account) -> list[int]:
 def _on_workers(
     campaign: Plan, missing: list[int], scheduler: str | None, workers: int | None, account: _Account
 ) -> None:
-    from statejump.campaign.distribute import workers_for  # Dask, 0.6 s; small campaigns run without it
+    from statejump.campaign.distribute import workers_for  # Dask, 0.6 s; small campaigns do not need it
 
     done = account.done
     wanted = min(workers or len(os.sched_getaffinity(0)), len(missing))

@@ -41,10 +41,10 @@ class Kept:
 
 
 class Journal(Kept):
-    """The journal of one campaign; a context manager. ``note`` describes a removed line, "" without one."""
+    """The journal of one campaign, a context manager. ``note`` reports a removed line; "" if there is none."""
 
     def __init__(self, folder: Path, campaign: Plan, restart: bool) -> None:
-        """Open or create it. :raises StatejumpError: it belongs to another campaign, or is damaged"""
+        """Open or create the journal. :raises StatejumpError: it belongs to another campaign, or is damaged"""
         super().__init__()
         self.path, self.note = folder / NAME, ""
         self._columns = len(campaign.outcomes)
@@ -105,7 +105,7 @@ class Journal(Kept):
             raise NotWritten(code="write_failed", file=self.path, cause=failure.strerror) from None
 
     def add(self, batch: Batch) -> None:
-        """Store finished samples; on return they are on disk."""
+        """Store finished samples; they are on disk when the method returns."""
         self._append(_entry(batch))
         super().add(batch)
 
@@ -122,7 +122,7 @@ def _line(entry: Any) -> bytes:
 
 
 def _entry_of(line: bytes) -> Any:
-    """Return the content of a line. :raises ValueError: it is torn or altered"""
+    """Return the content of a line. :raises ValueError: the line is incomplete or altered"""
     digest, _, text = line.removesuffix(b"\n").partition(b" ")
     if not line.endswith(b"\n") or digest != hashlib.sha256(text).hexdigest().encode():
         raise ValueError

@@ -3,9 +3,9 @@
 
 An output is ``HOW:COLUMN[ITEM].AXIS``, for example ``jump:displacement_m[P].x`` or ``max:links.axial_force_N[L3]``.
 Columns are those of the CSV files. Columns of links and contacts begin with ``links.`` or ``contacts.``. A vector
-without axis counts by its length. Columns of a reflecting surface, for example ``max:surface.pointing_error_rad``, are
-those of :func:`statejump.surface.history`. ``repeat`` is the largest distance of a later return from the first. Returns
-are times at which the temperature is back at its first value.
+without axis is replaced by its length. Columns of a reflecting surface, for example ``max:surface.pointing_error_rad``,
+are those of :func:`statejump.surface.history`. ``repeat`` is the largest difference of a value between a later return
+and the first one. A return is a time at which the temperature has its initial value again.
 """
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from statejump.core.units import split_unit, unit_of
 _HISTORY = Later("statejump.surface:history")
 FORM = re.compile(r"(?P<how>\w+):(?:(?P<group>links|contacts|surface)\.)?(?P<column>\w+)(?:\[(?P<item>.*)\])?"
                   r"(?:\.(?P<axis>\w+))?")
-# Functions of a column over time. ENDS need only the ends of a run, the others every sample.
+# Functions of a column over time. Those in ENDS need only start and end of a run, the others every sample.
 ENDS: dict[str, Callable[[np.ndarray], np.ndarray]] = {"end": lambda values: values[-1],
                                                        "jump": lambda values: values[-1] - values[0]}
 ALL: dict[str, Callable[[np.ndarray], np.ndarray]] = {
@@ -36,7 +36,7 @@ HOW: dict[str, Callable[[np.ndarray], np.ndarray]] = {
 WORDS = {"end": "{} at the end", "jump": "jump of {}", "max": "largest {}", "min": "smallest {}",
          "range": "range of {}", REPEAT: "repeatability of {} from cycle to cycle"}
 SURFACE = "surface"
-# For editors, which do not support names of groups.
+# The pattern for editors, which do not support names of groups.
 PATTERN = re.sub(r"\?P<\w+>", "", FORM.pattern)
 LIKE = "must be HOW:COLUMN[ITEM].AXIS, as 'jump:displacement_m[P].x'"
 
@@ -56,13 +56,13 @@ def needs_all_samples(name: str) -> bool:
 
 
 def unit(name: str) -> str:
-    """Return the unit of an output, or of an outcome of a kind of case."""
+    """Return the unit of an output, or of an outcome of a kind."""
     found = FORM.fullmatch(name)
     return unit_of(found["column"] if found else name)
 
 
 def in_words(name: str) -> str | None:
-    """Return an output in words, without unit; None if the name is that of an outcome."""
+    """Return an output in words, without unit; None for the name of an outcome."""
     found = FORM.fullmatch(name)
     if found is None:
         return None
@@ -95,7 +95,7 @@ def values(names: Sequence[str], run: Run) -> dict[str, float]:
 
 
 def _returned(run: Run, name: str) -> Run:
-    """Return the run at the times at which the temperature is back at its first value."""
+    """Return the run at the times at which the temperature has its initial value again."""
     times = run.definition.returns_s()
     if len(times) < 2:
         raise NotAllowed("outputs", name, code="output_without_jump", times=len(times))

@@ -27,12 +27,12 @@ class Recipe:
 
     :param command: ``montecarlo`` or ``sweep``
     :param model: ``reduced`` or ``dem``
-    :param case_data: the case as in its file, without defaults
+    :param case_data: sections and keys of the case as in its file, without defaults
     :param vary: varied parameters
     :param seed: of the random numbers; None in a sweep
-    :param outcomes: names of the recorded values of a run, in the order of the table; outputs last
-    :param outputs: the further outputs among them, see :mod:`statejump.campaign.outputs`
-    :param kinds: modules of kinds outside the project
+    :param outcomes: names of the recorded values of a run in the order of the table, outputs last
+    :param outputs: those of ``outcomes`` that are outputs, see :mod:`statejump.campaign.outputs`
+    :param kinds: modules of users' kinds
     """
 
     command: str
@@ -71,7 +71,7 @@ class Recipe:
 class Plan(Recipe):
     """A checked campaign.
 
-    :param name: of the campaign and of its results folder
+    :param name: name of the campaign and of its results folder
     :param title: one line for figures
     :param case: the case without variation
     :param samples: number of samples
@@ -88,7 +88,7 @@ class Plan(Recipe):
 
     @property
     def recipe(self) -> Recipe:
-        """The part of the plan that is sent to the workers; the case object is not part of it."""
+        """The part of the plan that is sent to workers, without the case object."""
         return Recipe(**{item.name: getattr(self, item.name) for item in fields(Recipe)})
 
     @property
@@ -102,8 +102,8 @@ class Plan(Recipe):
 
     @property
     def key(self) -> str:
-        """SHA-256 of everything that a sample depends on. It excludes name, title and number of samples, so that a
-        campaign may be extended."""
+        """SHA-256 of all data that a sample depends on. Name, title and number of samples are excluded, so that a
+        campaign can be extended."""
         resolved = {
             "version": __version__, "command": self.command, "model": self.model, "seed": self.seed,
             "case": self.case.with_defaults(), "vary": [asdict(parameter) for parameter in self.vary],
@@ -115,7 +115,7 @@ def plan_of(
     case: Case, *, command: str, model: str, vary: tuple[Varied, ...], samples: int, seed: int | None, name: str,
     title: str = "", file: Path | None = None, text: str = "", asked: tuple[str, ...] = (),
 ) -> Plan:
-    """Return the plan of a campaign whose parts are checked.
+    """Return the plan of a campaign whose parts have been checked.
 
     :param asked: outputs beside the outcomes of the kind
     """

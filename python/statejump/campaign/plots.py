@@ -39,7 +39,7 @@ def _label(name: str, unit: str) -> str:
         return output + ("" if unit == "-" else f" [{unit}]")
     section, _, key = split_unit(name)[0].rpartition(".")
     words = key.replace("_", " ").replace("temperature change", "ΔT")
-    # For a parameter of every item, the column has the mean of the values.
+    # If a key varies for every item, the column has the mean of the items.
     every = "every " if section.endswith(".*") else ""
     section = section.removesuffix(".*").replace("_", " ")
     return words + (f" of {every}{section}" if section else "") + ("" if unit == "-" else f" [{unit}]")
@@ -104,7 +104,7 @@ def _bins(there: np.ndarray) -> np.ndarray:
 
 
 def _scatter(campaign: Plan, table: Table) -> Figure:
-    """Every outcome against every varied parameter, with the rank correlation."""
+    """Return scatter plots of every outcome over every varied parameter, with the rank correlation."""
     rows, columns = len(table.outcomes), len(table.parameters)
     size = (max(4.5, 2.25 * columns + 0.6), 1.75 * rows + 0.8)
     drawing, panels = new_panels(rows, columns, size, squeeze=False, sharex="col")
@@ -112,7 +112,7 @@ def _scatter(campaign: Plan, table: Table) -> Figure:
         there = np.isfinite(values)
         for column, (parameter, varied) in enumerate(table.parameters.items()):
             panel = panels[row, column]
-            shown = np.flatnonzero(there)[:MOST_POINTS]  # samples are independent, so the first ones are representative
+            shown = np.flatnonzero(there)[:MOST_POINTS]  # samples are independent, so the first ones represent all
             thin = float(np.clip(100 / max(1, len(shown)), 0.0, 1.0))  # few points are large and opaque
             panel.plot(varied[shown], values[shown], ".", color=BLUE, markersize=2.5 + 4.5 * thin,
                        alpha=0.35 + 0.5 * thin, markeredgewidth=0, rasterized=True)
@@ -134,7 +134,7 @@ def _scatter(campaign: Plan, table: Table) -> Figure:
 
 
 def _sweep(campaign: Plan, table: Table) -> Figure:
-    """Outcomes against the first parameter, one line for every combination of the others."""
+    """Return outcomes over the first parameter, with a line for every combination of the others."""
     first, *others = campaign.vary
     along = table.parameters[first.keys[0]]
     rest = [table.parameters[parameter.keys[0]] for parameter in others]
@@ -155,7 +155,7 @@ def _sweep(campaign: Plan, table: Table) -> Figure:
                 f"{parameter.keys[0]} = {value:g}" for parameter, value in zip(others, combination)
             )
             colour = LINES[number] if few else colormaps["viridis"](number / (len(combinations) - 1))
-            # Lines that cover each other remain visible, because later ones are thinner.
+            # Later lines are thinner, so that lines below them remain visible.
             width = 1.2 + (1.3 * (len(combinations) - 1 - number) if few else 0.0)
             panel.plot(along[here][order], values[here][order], "o-", color=colour, markersize=1.8 + width,
                        linewidth=width, label=text or None)

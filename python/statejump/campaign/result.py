@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A finished campaign: its table, its statistics, its figures, its files."""
+"""A finished campaign: table, statistics, figures, files."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -35,7 +35,7 @@ class Campaign:
 
     :param plan: the plan
     :param table: varied keys and outcomes of every sample
-    :param done: workers and seconds of the run
+    :param done: workers and run time [s]
     """
 
     plan: Plan
@@ -57,7 +57,7 @@ class Campaign:
 
     def frame(self) -> pandas.DataFrame:
         """Return one row per sample: varied keys, outcomes with units in their names, and ``error``, the reason of a
-        failure. NaN: the event did not happen, or the sample failed."""
+        failure. NaN: an event did not happen, or the sample failed."""
         return self.table.frame()
 
     @cached_property
@@ -66,7 +66,7 @@ class Campaign:
 
     def summary(self) -> dict[str, Any]:
         """Return mean, standard deviation, quantiles and extremes of every outcome and every varied key, rank
-        correlations, and the number of failures of each kind."""
+        correlations, and the number of failures by kind."""
         return self._summary
 
     @property
@@ -120,7 +120,8 @@ class Campaign:
         return written
 
     def _write_run(self, folder: Path) -> None:
-        """Write how the last run went. This is separate from the result, which does not depend on it."""
+        """Write data about the last run, such as its workers, into a separate file, because no result depends on
+        them."""
         done = self.done
         write_json(folder / "run.json", {
             "samples_already_there": done.already_there, "samples_run": done.run_now, "workers": done.workers,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Varied parameters, and their values in sample ``i``, which depend on the seed and ``i`` alone."""
+"""Varied parameters and their values in sample ``i``, which depend only on the seed and ``i``."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -14,8 +14,8 @@ DISTRIBUTIONS = ("normal", "truncated_normal", "lognormal", "uniform")
 
 @dataclass(frozen=True)
 class Distribution:
-    """A parameter as a random variable. ``mean`` and ``standard_deviation`` are those of the parameter itself; for a
-    truncated normal variable, those before truncation."""
+    """A parameter as a random variable. ``mean`` and ``standard_deviation`` belong to the parameter (not to its
+    logarithm); for a truncated normal variable, to the distribution before truncation."""
 
     keys: tuple[str, ...]  # paths section.key; all get the same value
     distribution: str
@@ -25,7 +25,7 @@ class Distribution:
     high: float = inf
 
     def draw(self, generator: np.random.Generator) -> float:
-        """Return one value; uses exactly one variate of the generator."""
+        """Return one value. It uses exactly one variate of the generator."""
         if self.distribution == "uniform":
             return float(self.low + (self.high - self.low) * generator.random())
         if self.distribution == "truncated_normal":
@@ -37,8 +37,8 @@ class Distribution:
         return float(exp(log(self.mean) - 0.5 * spread**2 + spread * variate))
 
     def probabilities(self) -> tuple[float, float, float]:
-        """Cumulative probabilities of both limits, and a sign. The sign selects the tail in which small probabilities
-        keep their digits."""
+        """Return the cumulative probabilities of both limits, and a sign that selects the tail in which small
+        probabilities keep their digits."""
         ends = [(end - self.mean) / self.standard_deviation for end in (self.low, self.high)]
         sign = -1.0 if ends[0] > 0 else 1.0
         low, high = sorted(float(ndtr(sign * end)) for end in ends)
@@ -52,14 +52,14 @@ class Distribution:
 
 @dataclass(frozen=True)
 class Independent:
-    """A parameter of every item of a list, ``slider.*.friction_coefficient``: one independent draw per item, as in
+    """A parameter of every item of a list, ``slider.*.friction_coefficient``, drawn independently for each item, as in
     manufacture. Its column has the mean over the items."""
 
     keys: tuple[str, ...]
     items: tuple[Distribution, ...]  # keys with the item's name
 
     def draws(self, generator: np.random.Generator) -> list[float]:
-        """Return one value per item; uses as many variates of the generator, in the order of the items."""
+        """Return one value per item. Each uses one variate of the generator, in the order of the items."""
         return [item.draw(generator) for item in self.items]
 
 
@@ -84,7 +84,7 @@ def number_of_points(vary: Sequence[Values]) -> int:
 def montecarlo_draws(
     vary: Sequence[Random], seed: int, index: int
 ) -> list[tuple[Distribution, float]]:
-    """All single draws of sample ``index``, in the order of the parameters and of their items."""
+    """Return all single draws of sample ``index``, in the order of the parameters and of their items."""
     generator = np.random.default_rng([seed, index])
     found: list[tuple[Distribution, float]] = []
     for parameter in vary:
@@ -96,7 +96,7 @@ def montecarlo_draws(
 
 
 def montecarlo_values(vary: Sequence[Random], seed: int, index: int) -> list[float]:
-    """Values of sample ``index``, one per varied parameter; an independent one gives the mean of its items."""
+    """Return the values of sample ``index``, one per varied parameter: the mean of the items for an independent one."""
     draws = iter(montecarlo_draws(vary, seed, index))
     found = []
     for parameter in vary:
@@ -106,7 +106,7 @@ def montecarlo_values(vary: Sequence[Random], seed: int, index: int) -> list[flo
 
 
 def sweep_values(vary: Sequence[Values], index: int) -> list[float]:
-    """Values of point ``index`` of the grid; the last list varies fastest."""
+    """Return the values of point ``index`` of the grid; the last list varies fastest."""
     found: list[float] = []
     for axis in reversed(vary):
         index, place = divmod(index, len(axis.values))

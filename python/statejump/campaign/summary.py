@@ -19,7 +19,7 @@ QUANTILES = (0.05, 0.5, 0.95, 0.99)
 
 
 def statistics(values: np.ndarray) -> dict[str, float | None]:
-    """Mean, standard deviation, quantiles and extremes of the existing values, and the samples of the extremes."""
+    """Return mean, standard deviation, quantiles and extremes without NaN values, and the samples of the extremes."""
     is_there = np.isfinite(values)
     there = values[is_there]
     places = np.flatnonzero(is_there)
@@ -37,7 +37,7 @@ def statistics(values: np.ndarray) -> dict[str, float | None]:
 
 
 def spearman(parameter: np.ndarray, outcome: np.ndarray) -> float | None:
-    """Rank correlation over the samples that have the outcome; None if one of the two is constant."""
+    """Return the rank correlation over the samples that have the outcome; None if parameter or outcome is constant."""
     from scipy.stats import rankdata  # 0.5 s; workers do without
 
     there = np.isfinite(outcome)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""All samples as one table, in CSV and HDF5. The bytes do not depend on how the campaign was run."""
+"""Table of all samples, as CSV and HDF5. The bytes of the files do not depend on how the samples were distributed."""
 from __future__ import annotations
 
 import json
@@ -28,8 +28,8 @@ class Table:
 
     :param parameters: values by varied key
     :param outcomes: values by outcome
-    :param error: sentences, "" if the sample did not fail
-    :param error_kind: the sentences without the parts that differ between failures of one kind
+    :param error: error messages; "" if the sample did not fail
+    :param error_kind: error messages without the parts that differ between failures of one kind
     """
 
     parameters: dict[str, np.ndarray]
@@ -51,7 +51,7 @@ class Table:
 
 
 def make_table(campaign: Plan, batches: Iterable[Batch]) -> Table:
-    """Collect all samples in their order; batches may contain more than the campaign needs."""
+    """Collect all samples in their order; batches may contain samples that the campaign does not need."""
     parameters = np.array([campaign.values(index) for index in range(campaign.samples)], dtype=float)
     outcomes = np.full((campaign.samples, len(campaign.units)), np.nan)
     errors, kinds = [""] * campaign.samples, [""] * campaign.samples
@@ -73,7 +73,7 @@ def write_csv(table: Table, path: Path) -> None:
     """Write one line per sample, full precision; outcomes of a failed sample are empty."""
     columns = [values.tolist() for values in (*table.parameters.values(), *table.outcomes.values())]
     count = len(table.parameters)
-    # Cells as texts. NaN of a sample that did not fail is a value: the event did not happen.
+    # Cells as texts. NaN is kept for a sample that did not fail: the event did not happen.
     rows = (
         [index, *map(repr, row[:count]), *("" if error else repr(value) for value in row[count:]), error]
         for index, (error, *row) in enumerate(zip(table.error, *columns))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fields of a ``[[vary]]`` table, and their meaning for a case. Most fields depend on each other.
+"""Fields of a ``[[vary]]`` table, and their conversion to varied parameters of a case.
 
-Failures name the key within the table; the caller adds the table.
+Most fields depend on each other. Errors name the key within the table; the caller adds the name of the table.
 """
 from __future__ import annotations
 
@@ -31,13 +31,12 @@ LIKE = "must be section.key as in the case file"
 
 
 def numbers_of(model: type[Case]) -> dict[str, Any]:
-    """Return every key of a kind of case with a single number as value; keys of items of a list as
-    ``section.*.key``."""
+    """Return every key of a kind whose value is a single number; keys of items of a list as ``section.*.key``."""
     return {path: key for path, key in keys_of(model).items() if rule_of(key).form in (NUMBER, WHOLE)}
 
 
 def _expression() -> str:
-    """Regular expression of the keys that can vary, for the completion of editors."""
+    """Return a regular expression for the keys that can vary, for completion in editors."""
     paths = sorted({path for name in names_of_kinds_with(Outcomes) for path in numbers_of(kind(name).Case)})
     return "(?:" + "|".join(re.escape(path).replace(r"\*", ".+") for path in paths) + ")"
 
@@ -115,7 +114,7 @@ def varied(table: Mapping[str, Any], case: Case, command: str) -> Varied:
 
 
 def check_apart(found: list[Varied], case: Case) -> None:
-    """Raise NotAllowed if the last varied parameter shares a key with itself or with another one."""
+    """Raise NotAllowed if the last varied parameter changes a number twice, or one that another parameter changes."""
     taken = [key for parameter in found[:-1] for key in parameter.keys]
     for key in found[-1].keys:
         if any(_overlap(key, other, case) for other in taken) or found[-1].keys.count(key) > 1:
@@ -123,7 +122,7 @@ def check_apart(found: list[Varied], case: Case) -> None:
 
 
 def _overlap(one: str, other: str, case: Case) -> bool:
-    """Return whether two paths share a number of the case."""
+    """Return whether two paths refer to a common number of the case."""
     if pattern_of(one) != pattern_of(other):
         return False
     if one == other:
@@ -133,12 +132,12 @@ def _overlap(one: str, other: str, case: Case) -> bool:
 
 
 def _items(case: Case, path: str) -> list[str]:
-    """Names of the items of the list at the beginning of a path."""
+    """Return the names of the items of the list at the beginning of a path."""
     return [item.name for item in case.value_named(split_path(path)[0])]
 
 
 def _own_value(case: Case, path: str) -> float | None:
-    """The value in the case itself; of a pattern, if its items agree; else None."""
+    """Return the value in the case, or the common value of the items of a pattern; None if they differ."""
     section, item, key = split_path(path)
     if not item:
         found: float | None = getattr(case.value_named(section), key)

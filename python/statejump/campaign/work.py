@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The work of a worker: it runs some samples. Every sample ends with outcomes or with a sentence."""
+"""Runs samples in a worker. Every sample ends with outcomes or with an error message."""
 from __future__ import annotations
 
 import time
@@ -19,13 +19,13 @@ from statejump.kinds import KINDS, has, of, register, require
 from statejump.kinds.loading import parse_case
 from statejump.kinds.protocol import DemModel, QuickModel, ReducedModel
 
-BATCH_S = 0.5  # duration of a task [s]: long against the millisecond that Dask needs for it
+BATCH_S = 0.5  # duration of a task [s], long compared with Dask's overhead of a millisecond
 MOST_IN_BATCH = 20_000
 
 
 @dataclass(frozen=True)
 class Sample:
-    """A finished sample: either values, or an error and its kind."""
+    """A finished sample: either values, or an error message and its kind."""
 
     index: int
     values: tuple[float, ...] | None
@@ -34,7 +34,7 @@ class Sample:
 
 
 def sampled(case: Case, model: str, outputs: Sequence[str]) -> Run:
-    """Run one sampled case. All samples in time are kept only if an output needs them.
+    """Run one sampled case; keep the complete history only if an output needs it.
 
     :raises StatejumpError: the run failed
     """
@@ -53,19 +53,19 @@ def outcome(case: Case, model: str, outputs: Sequence[str] = ()) -> dict[str, fl
     :raises StatejumpError: the run failed
     """
     run = sampled(case, model, outputs)
-    # A program that ends at the reference temperature lacks these outcomes, although other samples may have them.
+    # Outcomes at the end of the program are NaN for a sample whose program ends at the reference temperature.
     nothing = dict.fromkeys(of(case).AT_PROGRAM_END, nan)
     return nothing | of(case).recorded(case, run) | values(outputs, run)
 
 
 def run_sample(recipe: Recipe, index: int) -> Sample:
-    """Run one sample; any failure becomes its error, in one sentence."""
+    """Run one sample; a failure becomes its error message."""
     try:
         found = outcome(parse_case(recipe.data(index)), recipe.model, recipe.outputs)
         return Sample(index, tuple(float(found[name]) for name in recipe.outcomes))
     except StatejumpError as problem:
         return Sample(index, None, _one_line(str(problem)), _one_line(problem.general()))
-    except Exception as problem:  # a failed sample does not end the campaign
+    except Exception as problem:  # any exception: a failed sample must not end the campaign
         said = _one_line(f"the run failed: {type(problem).__name__}: {problem}")
         return Sample(index, None, said, said)
 
@@ -79,8 +79,8 @@ class Batch:
     """Several finished samples.
 
     :param values: outcomes (samples, outcomes); NaN for a failed sample
-    :param errors: sentences of the failed samples, by index
-    :param error_kinds: the sentences without the parts that differ between failures of one kind
+    :param errors: error messages of the failed samples, by index
+    :param error_kinds: error messages without the parts that differ between failures of one kind
     """
 
     indices: tuple[int, ...]
@@ -101,7 +101,7 @@ def batch_of(samples: Sequence[Sample], outcomes: int) -> Batch:
 
 
 def run_samples(recipe: Recipe, indices: Sequence[int]) -> tuple[float, Batch]:
-    """Run several samples; return the seconds that they took, and the samples."""
+    """Run several samples; return the time [s] that they took, and the samples."""
     started = time.perf_counter()
     for place in recipe.kinds:
         if place not in KINDS.values():
@@ -111,10 +111,10 @@ def run_samples(recipe: Recipe, indices: Sequence[int]) -> tuple[float, Batch]:
 
 
 class Batches:
-    """Distributes the missing samples in batches of about BATCH_S, and learns their size.
+    """Distributes the missing samples in batches of about BATCH_S seconds, and adapts their size.
 
     :param missing: numbers of the samples
-    :param model: samples of the DEM are run one by one
+    :param model: ``reduced`` or ``dem``; DEM samples are run one by one
     :param queued: tasks per worker
     """
 
@@ -129,14 +129,14 @@ class Batches:
 
     def next(self, workers: int) -> list[int]:
         """Return the next batch; empty at the end."""
-        # The last batches are smaller, so that all workers end at the same time.
+        # The last batches are smaller, so that all workers finish at about the same time.
         size = 1 if self.one_by_one else max(1, min(self.size, -(-self.left // (self.queued * workers))))
         batch = self.missing[self.given : self.given + size]
         self.given += len(batch)
         return batch
 
     def learn(self, count: int, seconds: float) -> None:
-        """Update the batch size, to at most four times the timed one: the first sample of a worker is not
-        representative."""
+        """Update the batch size from a timed batch, at most to four times its size: the first sample of a worker is
+        slower than the others."""
         fitting = int(BATCH_S / max(seconds / count, 1e-9))
         self.size = max(1, min(fitting, 4 * count, MOST_IN_BATCH))

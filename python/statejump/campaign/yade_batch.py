@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Campaigns with ``yade-batch``: a parameter table, and the data for its script."""
+"""Campaigns with ``yade-batch``: parameter table, and data for its script."""
 from __future__ import annotations
 
 import json
@@ -19,19 +19,19 @@ from statejump.schema.paths import filled
 
 
 def column_of(path: str) -> str:
-    """Column of a varied key: yade-batch requires names of Python variables."""
+    """Return the column of a varied key: yade-batch requires names of Python variables."""
     return path.replace(".", "__")
 
 
 def write_table(campaign: Plan, path: Path) -> None:
-    """Write the table: one line per sample, to be run by ``yade_scripts/runner/batch_case.py``.
+    """Write the table with one line per sample, for ``yade_scripts/runner/batch_case.py``.
 
     The script reads the values from their columns, and case and outcomes from the campaign file.
     """
     if campaign.file is None or "dem" not in of(campaign.case).campaign_models():
         raise NotAllowed("--yade-batch", code="no_yade_batch_of_kind", file=campaign.file, kind=campaign.case.kind)
     columns = [column_of(parameter.keys[0]) for parameter in campaign.vary]
-    # Values in the table contain neither blanks nor '#'.
+    # Values in the table must not contain blanks or '#'.
     file = quote(str(campaign.file.resolve()))
     with write_atomically(path) as stream:
         stream.write(f"# statejump {campaign.command} {campaign.name}: {campaign.samples} samples\n")
@@ -42,7 +42,7 @@ def write_table(campaign: Plan, path: Path) -> None:
 
 
 class BatchSample:
-    """One line of the table, as the script uses it."""
+    """One line of the table, for the script that runs it."""
 
     def __init__(self, line: dict[str, Any]) -> None:
         """:raises StatejumpError: the campaign file or the sampled case is invalid"""
@@ -57,7 +57,7 @@ class BatchSample:
         return of(self.case).dem_values(self.case)
 
     def outcomes(self, samples: Path) -> dict[str, float]:
-        """Return the outcomes of a run that wrote its samples, and its own remarks."""
+        """Return the outcomes of a run from its file of samples and the JSON file beside it."""
         about = json.loads(samples.with_name(samples.name + ".json").read_text(encoding="utf-8"))
         case = self.case
         run = require(case, DemResult).dem_run(case, read_samples(samples), about)

@@ -12,7 +12,7 @@ from statejump.cli.terminal import QUIET, RESULTS, make_console, print_shown
 from statejump.core.errors import NotAllowed
 from statejump.core.results_folder import Results
 
-# The settings of the library, as options of the command.
+# Options of the command by argument of the library, for messages.
 OPTIONS = {"inside_out": "--flip", "too_large": "--scale 0.001"}
 
 

@@ -19,7 +19,7 @@ from statejump.schema.toml import read_toml
 
 
 def _of_case(command: Any) -> Any:
-    """Give a command the options of a campaign without a file."""
+    """Add to a command the options of a campaign without a file."""
     for option in reversed((
         click.option("--vary", "tables", multiple=True, type=click.Path(path_type=Path), metavar="FILE",
                      help="Of a CASE: file of [[vary]] tables, as vary.toml of 'statejump identify'."),

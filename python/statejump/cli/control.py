@@ -17,7 +17,7 @@ from statejump.core.tables import Shown
 from statejump.kinds import require
 from statejump.kinds.protocol import DemInput
 
-LONGEST_NOTE = 60  # characters of a note in a table; control.csv has all of it
+LONGEST_NOTE = 60  # largest number of characters of a note in a table; control.csv has the whole note
 
 
 def _table(title: str, done: Study, sweep: Sweep, unit: str) -> Shown:

@@ -12,7 +12,7 @@ from statejump.core.errors import NotAllowed, StatejumpError, UnknownKey
 from statejump.core.results_folder import Results
 from statejump.identification import identify
 
-# The arguments of the library, as options of the command.
+# Options of the command by argument of the library, for messages.
 OPTIONS = {"model": "--model", "start": "--start", "confidence": "--confidence", "target": "--for",
            "normal_force_N": "--normal-force", "journal_radius_m": "--journal-radius",
            "ignored": "--ignore"}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The ``statejump`` command: its commands, and how their failures are reported. A command's module is loaded when the
-command is called. Exit statuses: docs/reference/mistakes.md."""
+"""The ``statejump`` command: its subcommands, and the report of their failures. The module of a subcommand is imported
+when it is called. Exit statuses: docs/reference/mistakes.md."""
 from __future__ import annotations
 
 import os
@@ -23,7 +23,7 @@ from statejump.core.errors import Interrupted, StatejumpError, TolerancesMissed,
 
 JSON = "--json"
 
-# By task: where each command is, and what ``--help`` says of it.
+# Commands by task: module and function of each command, and its text in ``--help``.
 TASKS: dict[str, dict[str, tuple[str, str]]] = {
     "One case": {
         "reduced": ("models:reduced_command", "Reduced model of CASE: events, state jump, history."),
@@ -71,7 +71,7 @@ COMMANDS = {name: found for commands in TASKS.values() for name, found in comman
 
 
 class Commands(Suggesting):
-    """Loads the module of a command when it is called."""
+    """Group of commands that imports the module of a command when it is called."""
 
     def list_commands(self, context: click.Context) -> list[str]:
         return list(COMMANDS)
@@ -104,14 +104,14 @@ def cli() -> None:
 
 
 def _report_failure(error: BaseException, as_json: bool) -> int:
-    """Tell what ended the command on standard error; return the exit status."""
+    """Report on standard error why the command ended; return the exit status."""
     if isinstance(error, StatejumpError):
         failure = error.fields()
     elif isinstance(error, click.ClickException):
         failure = errors.fields("usage", error.format_message(), 2)
     elif isinstance(error, (click.exceptions.Abort, KeyboardInterrupt)):
         failure = errors.fields("interrupted", "interrupted", Interrupted.exit_status)
-    else:  # a fault of the program: status 1 would say that a tolerance is missed
+    else:  # internal error: status 1 would mean that a tolerance is missed
         failure = errors.fields(
             "internal", f"a fault of statejump itself: {type(error).__name__}: {error}", errors.INTERNAL_STATUS,
             remedy="run the command without --json for the traceback",
@@ -132,14 +132,14 @@ def _wants_json(arguments: Sequence[str]) -> bool:
 
 
 def run(arguments: Sequence[str]) -> int:
-    """Run the command with these arguments and return its exit status; failures go to standard error."""
+    """Run the command with these arguments and return its exit status; failures are reported on standard error."""
     as_json = _wants_json(arguments)
     try:
         try:
             os.getcwd()
         except FileNotFoundError:
             raise StatejumpError(code="working_folder_gone") from None
-        # Figures go to files: a backend of windows that the environment names is none of ours, nor of YADE's.
+        # Figures are files: ignore an interactive backend from the environment, here and in YADE.
         os.environ["MPLBACKEND"] = "agg"
         cli.main(list(arguments), standalone_mode=False)
     except click.exceptions.Exit as end:
@@ -153,7 +153,7 @@ def _ended(number: int, frame: Any) -> None:
     sys.exit(128 + number)
 
 
-# Ended from outside, or by a terminal that is closed, it ends YADE and cleans up as on Ctrl-C.
+# On these signals (kill, closed terminal) the command ends YADE and cleans up as on Ctrl-C.
 ENDING = (signal.SIGTERM, signal.SIGHUP)
 
 
@@ -162,7 +162,7 @@ _WARNED: set[str] = set()  # what was printed
 
 def _warned(message: Warning | str, category: type[Warning], filename: str, lineno: int, file: TextIO | None = None,
             line: str | None = None) -> None:
-    """Report a warning of a library like one of the command: without the line of code, once."""
+    """Report a warning of a library once, in the format of the command and without the line of code."""
     text = printable(str(message))
     if text not in _WARNED:  # a file may be read twice
         _WARNED.add(text)
@@ -178,7 +178,7 @@ def main() -> None:
             signal.signal(number, _ended)
     arguments = sys.argv[1:]
     try:
-        # The launcher was started with these blocked: until now there was nobody to take them.
+        # The launcher blocks these signals until the handlers are installed.
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT, *ENDING})
         status = run(arguments)
     except KeyboardInterrupt as early:

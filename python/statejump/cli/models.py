@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``statejump reduced``, ``dem`` and ``compare``: either model of a case, or both beside each other."""
+"""``statejump reduced``, ``dem`` and ``compare``: one model of a case, or a comparison of both."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -39,14 +39,14 @@ def _warn(case: Case, runs: dict[str, Run], console: Console) -> None:
 
 
 def _check(case: Case, folder: ResultsFolder, *models: str) -> None:
-    """Refuse what the machine has no memory or no room for, before anything is computed."""
+    """Raise NotAllowed or NotWritten, before a run, if memory or disk space is too small for it."""
     for model in models:
         check_memory(case, model)
     folder.check_space(sum(history_of(case, model).disk_bytes for model in models))
 
 
 def _finish(model: str, case: Case, run: Run, folder: ResultsFolder, console: Console) -> None:
-    """Write the run of one model, and tell of it."""
+    """Write the run of one model and print its summary."""
     runs = {model: run}
     written = folder.publish([save(model, case, runs, folder.staged)])
     _print_summary(case, runs, console)
@@ -115,7 +115,7 @@ def _quasi_static(case: Case, results: Results, console: Console) -> None:
 
 
 def _dem(command: str, case: Case, before: dict[str, Run], folder: ResultsFolder, console: Console) -> Run:
-    """Run the DEM; what an interrupted one has is written, with the runs before it."""
+    """Run the DEM. If it is interrupted, its samples are written together with the runs before it."""
     try:
         with progress(console, "DEM") as on_progress:
             return case.dem(on_progress)
@@ -125,7 +125,7 @@ def _dem(command: str, case: Case, before: dict[str, Run], folder: ResultsFolder
 
 def _kept(command: str, model: str, case: Case, before: dict[str, Run], folder: ResultsFolder,
           stopped: Interrupted) -> Interrupted:
-    """Write what an interrupted run has; return what to tell of it."""
+    """Write the samples of an interrupted run; return the error that reports them."""
     if not isinstance(stopped.run, Run):
         return stopped
     written = folder.publish([save(command, case, {**before, model: stopped.run}, folder.staged)])
@@ -210,7 +210,7 @@ def _compare_case(case_file: Path, dynamic: bool, finite: bool, results: Results
         _check(case, folder, "reduced", "dem")
         with progress(console, "reduced model") as on_progress:
             reduced = case.reduced(on_progress, dynamic=dynamic)
-        # What it refuses is refused before YADE runs.
+        # CalculiX runs before YADE, so that its errors appear early.
         elements = None if calculix is None else calculix.answer(case)
         dem = _dem("compare", case, {"reduced": reduced}, folder, console)
         comparison = api.compare(reduced, dem)

@@ -14,12 +14,12 @@ from statejump.core.output import check_suffix
 from statejump.results.layout import SUFFIX
 
 PAGE = "report.html"
-BUDGET_BYTES = 7e6  # size of the histories of all runs; a page stays below 10 MB
+BUDGET_BYTES = 7e6  # size of the histories of all runs [bytes]; a page stays below 10 MB
 
 
 def result_files(run: Path) -> list[Path]:
     """Return the result files of an argument: the file itself, the files of a results folder, or those of the folders
-    in it. A comparison replaces the files of its single models, but not the answers.
+    in it. A comparison supersedes the files of its single models, but not the answers.
 
     :raises Unreadable: there is no result file
     """
@@ -62,7 +62,7 @@ def report_command(runs: tuple[Path, ...], output: Path | None, quiet: bool) -> 
     Example:
       statejump report results/table1
     """
-    from statejump.report import page  # Jinja2 and the report, 0.3 s, for --help
+    from statejump.report import page  # imports Jinja2 and the report (0.3 s), which --help does not need
     from statejump.report.campaign import CampaignDocument, is_campaign  # as page
     from statejump.report.document import Document, of_file  # as page
     from statejump.report.unsolved import UnsolvedDocument, is_case  # as page
@@ -71,7 +71,7 @@ def report_command(runs: tuple[Path, ...], output: Path | None, quiet: bool) -> 
     if output is not None and not os.path.isdir(output):
         check_suffix("--output", output, ".html", ".htm")
     files = list(dict.fromkeys(path for run in runs for path in result_files(run)))
-    with np.errstate(over="ignore", invalid="ignore"):  # numbers that are not finite are refused where they are drawn
+    with np.errstate(over="ignore", invalid="ignore"):  # the page refuses numbers that are not finite
         documents: list[Document | CampaignDocument | UnsolvedDocument] = [
             UnsolvedDocument(loaded(path), _source(path, files), f"run{place}") if is_case(path)
             else CampaignDocument(path, f"run{place}", _source(path, files)) if is_campaign(path)

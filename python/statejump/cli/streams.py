@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""All output of the command to standard output and standard error. It cannot make a run fail.
+"""Standard output and standard error of the command.
 
-Output may be lost: a closed pipe, a full disk, a locale without the needed letters. The run still continues, and its
-files are complete. At the end the command reports why standard output was lost, unless a pipe was closed.
+A failure to print does not end a run. If a pipe is closed, the disk is full or the locale lacks a character, output is
+lost, but the run continues and its files are complete. At the end the command reports why standard output was lost,
+unless a pipe was closed.
 """
 from __future__ import annotations
 
@@ -16,9 +17,9 @@ from statejump.core.errors import NotWritten
 
 
 class Stream(io.TextIOBase):
-    """A text stream that drops what cannot be written.
+    """A text stream that drops output that cannot be written.
 
-    :param stream: the destination; None: nowhere
+    :param stream: the destination; None: all output is dropped
     """
 
     def __init__(self, stream: TextIO | None) -> None:
@@ -59,7 +60,7 @@ class Stream(io.TextIOBase):
                 self._lose(error)
 
     def _lose(self, error: OSError) -> None:
-        """Redirect further output, and the unwritten part of the buffer, to nowhere."""
+        """Redirect further output, and the unwritten part of the buffer, to the null device."""
         self.lost = self.lost or error
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, self.fileno())
@@ -67,8 +68,8 @@ class Stream(io.TextIOBase):
 
 
 def open_standard_files() -> None:
-    """Open closed standard input, output and error. Otherwise a result file would get the number of one of them, and
-    libraries would print into it."""
+    """Open standard input, output and error if they are closed. Otherwise a result file would get one of their numbers,
+    and libraries would print into it."""
     for number in (0, 1, 2):
         try:
             os.fstat(number)
@@ -83,7 +84,7 @@ def install() -> None:
 
 
 def finish() -> NotWritten | None:
-    """Flush the streams. Return the reason, as a text, if standard output was lost."""
+    """Flush the streams. Return the error if standard output was lost, else None."""
     failure = None
     for stream in (sys.stdout, sys.stderr):
         stream.flush()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Programs beside the package, in ``studies/``: the repository has them, an installation has none."""
+"""Access to the programs in ``studies/``, which exist in the repository but not in an installation."""
 from __future__ import annotations
 
 import os
@@ -13,12 +13,12 @@ from statejump.core.errors import StatejumpError
 FOLDER = "studies"
 _SHARE = os.path.join(os.path.dirname(_paths.__file__), _paths._SHARE)
 PRESENT = os.path.isfile(os.path.join(_SHARE, FOLDER, "__init__.py"))
-if PRESENT and _SHARE not in sys.path:  # for kinds of studies as well, which STATEJUMP_KINDS names
+if PRESENT and _SHARE not in sys.path:  # also for users' kinds of studies, which STATEJUMP_KINDS names
     sys.path.append(_SHARE)
 
 
 def module(name: str) -> ModuleType:
-    """Import a module of the studies. :raises StatejumpError: this is an installation"""
+    """Import a module of the studies. :raises StatejumpError: the program is an installation without studies"""
     if not PRESENT:
         raise StatejumpError(code="studies_missing", module=name)
     return import_module(name)

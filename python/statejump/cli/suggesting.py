@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Groups of commands. They suggest the nearest name for a misspelt one, and list their commands in full sentences."""
+"""Groups of commands that suggest the nearest name for a misspelt command, and list commands in full sentences."""
 from __future__ import annotations
 
 from collections.abc import Iterator
@@ -16,7 +16,7 @@ class Suggesting(click.Group):
         try:
             return super().resolve_command(ctx, args)
         except click.UsageError as unknown:
-            from difflib import get_close_matches  # for misspelt words, not to start the command
+            from difflib import get_close_matches  # imported only for misspelt words, because it slows the start
 
             near = get_close_matches(args[0], self.list_commands(ctx), n=1)
             if near and self.get_command(ctx, args[0]) is None:
@@ -24,7 +24,7 @@ class Suggesting(click.Group):
             raise
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """List the commands with the first sentence of their help, whatever its length."""
+        """List the commands with the first sentence of their help, of any length."""
         found = [(name, self.get_command(ctx, name)) for name in self.list_commands(ctx)]
         rows = [(name, command.get_short_help_str(limit=1000)) for name, command in found
                 if command is not None and not command.hidden]
@@ -34,7 +34,7 @@ class Suggesting(click.Group):
 
 
 def commands(command: click.Command, name: str) -> Iterator[tuple[str, click.Command]]:
-    """Yield every executable command: its full name and itself."""
+    """Yield every executable command with its full name."""
     if isinstance(command, click.Group):
         context = click.Context(command, info_name=name)
         for part in command.list_commands(context):

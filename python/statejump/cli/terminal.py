@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shared by commands on the terminal: console, options, progress, tables."""
+"""Code shared by commands: console, options, progress, tables."""
 from __future__ import annotations
 
 import os
@@ -31,7 +31,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 class CaseFile(click.Path):
-    """A case file: the given path or, if it does not exist, a shipped case. So ``cases/table1.toml`` is found from
+    """A case file: the given path or, if it does not exist, a shipped case. ``cases/table1.toml`` is thus found from
     every folder."""
 
     def __init__(self) -> None:
@@ -47,7 +47,7 @@ FORCE = click.option("--force", is_flag=True, help="Replace results of another c
 
 
 def RESULTS(command: Command) -> Command:
-    """Give a command the options of its results folder. They become one argument ``results``."""
+    """Add to a command the options of its results folder, which become one argument ``results``."""
 
     @wraps(command)
     def called(results: Path, wait: bool, force: bool, **values: Any) -> Any:
@@ -65,20 +65,20 @@ QUIET = click.option("--quiet", is_flag=True, help="Print errors only.")
 def make_console(quiet: bool) -> Console:
     """Return the console of a command."""
     made = console(quiet=quiet)
-    if not made.is_terminal:  # a pipe or a log has no width: do not truncate numbers
+    if not made.is_terminal:  # a pipe or a log has no width, so numbers must not be truncated
         made.width = 160
     return made
 
 
 def since_start_s() -> float:
-    """Return the wall time since the process was started [s], the start of Python included."""
+    """Return the wall time since the start of the process [s], including the start of Python."""
     fields = Path("/proc/self/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
-    started_s = int(fields[19]) / os.sysconf("SC_CLK_TCK")  # field 22 of proc(5), in ticks since the system was started
+    started_s = int(fields[19]) / os.sysconf("SC_CLK_TCK")  # field 22 of proc(5), in ticks since system start
     return time.clock_gettime(time.CLOCK_BOOTTIME) - started_s
 
 
 def loaded(case_file: Path, *capabilities: type) -> Case:
-    """Load a case. Refuse it if its kind lacks a capability that the command needs."""
+    """Load a case. Raise NotAllowed if its kind lacks a capability that the command needs."""
     case = load_case(case_file)
     for capability in capabilities:
         require(case, capability)
@@ -134,8 +134,8 @@ def progress(console: Console, label: str) -> Iterator[Callable[[float], None]]:
 
 @contextmanager
 def undivided(console: Console, label: str) -> Iterator[Callable[[float], None]]:
-    """As :func:`progress`, for runs that are written together at the end. On Ctrl-C it reports that nothing was
-    written."""
+    """As :func:`progress`, for runs whose files are written together at the end. After Ctrl-C it reports that nothing
+    was written."""
     try:
         with progress(console, label) as on_progress:
             yield on_progress

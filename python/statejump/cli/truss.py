@@ -52,12 +52,12 @@ def truss_command() -> None:
 
 
 def _shown(key: str) -> str:
-    """Return the option of a key; the help text contains the unit."""
+    """Return the command option of a key, without the unit, which the help text contains."""
     return "--" + split_unit(key)[0].replace("_", "-")
 
 
 def _summary(function: Callable[..., Case]) -> tuple[str, dict[str, str]]:
-    """Return the docstring without its parameters, and the parameters."""
+    """Return the docstring of a generator without its parameters, and the texts of the parameters."""
     text = inspect.getdoc(function) or ""
     described = dict(re.findall(r"^:param (\w+): (.*)$", text, re.MULTILINE))
     return text.split(":param", 1)[0].strip(), described
@@ -130,7 +130,7 @@ def draw_command(case_file: Path, names: bool, results: Results, quiet: bool) ->
     Example:
       statejump truss draw cases/trusses/ring_12.toml
     """
-    from statejump.core.figures import save  # matplotlib, 0.4 s; one command of many draws
+    from statejump.core.figures import save  # imports matplotlib (0.4 s), which other commands do not need
 
     console = make_console(quiet)
     case = loaded(case_file, CaseDrawing)

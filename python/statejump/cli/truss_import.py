@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""``statejump truss import``: a truss of another program as a case file."""
+"""``statejump truss import``: conversion of a truss of another program to a case file."""
 from __future__ import annotations
 
 import os
@@ -19,7 +19,7 @@ from statejump.kinds.truss.sections import sections_in_files
 from statejump.schema.json_schema import head_line
 from statejump.schema.rules import folder_name
 
-# Keys whose number is out of range if the units of a deck are not SI.
+# Keys whose values are out of range if the units of a deck are not SI.
 UNIT_KEYS = ("cross_section_area_m2", "young_modulus_Pa", "density_kg_per_m3", "position_m", "mass_kg")
 # Of the option --tables.
 TABLES: dict[str, Any] = {
@@ -55,12 +55,12 @@ def _thermal(output: Path, file: Path | None, given: dict[str, float | None]) ->
     keys = dict(zip(given, ("reference_temperature_K", "lead_in_s", "lead_out_s")))
     beside = os.path.relpath(file, output.parent)
     said = {keys[option]: value for option, value in given.items() if value is not None}
-    # Each piece between two rows is a branch.
+    # Every row ends a branch, so one increment per branch suffices.
     return {"thermal": {"shape": "table", "members_file": beside, **said}, "reduced": {"increments_per_branch": 1}}
 
 
 def _refuse_units(file: Path, given: dict[str, str | float | None]) -> None:
-    """Refuse unit options for a file that states its own units."""
+    """Raise an error for unit options with a file that states its units."""
     for option, value in given.items():
         if value not in (None, "SI"):
             raise NotAllowed(option, value, code="units_in_columns", file=file)
@@ -179,9 +179,9 @@ def import_command(
 
 
 def new_files(output: Path, tables: bool, force: bool) -> tuple[str, ...]:
-    """Return the lists that go into files beside the case.
+    """Return the lists that are written to files beside the case.
 
-    :param tables: whether there are such files
+    :param tables: whether to write such files
     :param force: whether files may be overwritten
     :raises StatejumpError: a file exists already, or cannot be written
     """

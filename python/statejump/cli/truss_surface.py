@@ -24,7 +24,7 @@ from statejump.surface import Design, repeatability, summary
 if TYPE_CHECKING:
     from rich.console import Console
 
-# The arguments of the library, as options of the command.
+# Options of the command by argument of the library, for messages.
 OPTIONS = {"axis": "--axis", "focal_length_m": "--focal-length", "direction": "--direction", "terms": "--zernike",
            "measure": "--measure", "share": "--share", "length_m": "--length"}
 
@@ -114,7 +114,7 @@ def surface_command(
 def _of_case(
     case: Case, measure: str, console: Console
 ) -> tuple[Design, dict[str, np.ndarray], dict[str, np.ndarray]]:
-    """Return the surface of a case, its displacements in the sample farthest from the design and at the end, and its
+    """Return the surface of a case, its displacements in the sample with the largest error and at the end, and its
     history."""
     design, nodes = surface.reflector_of(case)
     with undivided(console, f"{case.name}, reduced model") as on_progress:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Capabilities of kinds that answer design questions; see :mod:`statejump.kinds.protocol`."""
+"""Capabilities of kinds for design questions; see :mod:`statejump.kinds.protocol`."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
 @capability("control")
 class ControlStudy(Protocol):
-    """A study that makes the state jump smaller. The kind defines its settings."""
+    """A study that reduces the state jump. The kind defines its settings."""
 
     def control(self, case: Any, **settings: Any) -> Study: ...
 
 
 class RestSets(Protocol):
-    """Rest positions of a joint; each kind of case has its own class."""
+    """Rest positions of a joint; each kind has its own class."""
 
     def frame(self) -> pandas.DataFrame:
         """Return the sets as a table, with units in the column names."""
@@ -55,6 +55,6 @@ class DesignAnswers(Protocol):
 
 @capability("truss creak")
 class Creaking(Protocol):
-    """Slips and the acceleration of a node in motion; see :func:`statejump.truss.creak`."""
+    """Slips of joints and the acceleration of a node in motion; see :func:`statejump.truss.creak`."""
 
     def creak(self, case: Any, node: str, on_progress: OnProgress) -> Any: ...

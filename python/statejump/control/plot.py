@@ -17,7 +17,7 @@ RECOMMENDED: dict[str, Any] = dict(color="#009E73", linewidth=1.6, label="recomm
 FLOOR: dict[str, Any] = dict(color="0.3", linewidth=1.0, linestyle=(0, (1, 1)))
 DEM: dict[str, Any] = dict(color="#000000", marker="D", markersize=6, markerfacecolor="white", linestyle="", zorder=6,
                            label="|jump| by DEM (YADE)")
-NOTHING = 1e-4  # fraction of the jump that counts as zero: a joint that never touches leaves 1e-12, below any scale
+NOTHING = 1e-4  # fraction of the jump that counts as zero; a joint without contact leaves 1e-12, which no axis can show
 
 
 def figure(title: str, study: Study, folder: Path) -> list[Path]:
@@ -41,7 +41,7 @@ def figure(title: str, study: Study, folder: Path) -> list[Path]:
         if count < len(places):
             places[count].legend(handles.values(), handles.keys(), loc="center", framealpha=1, handlelength=3.4)
         else:
-            # Of four parameters the clearance has the least effect, so its panel has room for the legend.
+            # The legend is in the last panel: of four parameters, the clearance has the least effect.
             places[count - 1].legend(
                 handles.values(), handles.keys(), loc="lower right" if count == 4 else "best", framealpha=1,
                 handlelength=3.4, fontsize=8

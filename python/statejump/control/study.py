@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parts of a control study of any kind of case: swept parameters, wanted value, searches."""
+"""Parts of a control study of any kind: swept parameters, wanted value, searches."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
@@ -21,14 +21,14 @@ from statejump.schema.paths import attribute_of
 if TYPE_CHECKING:
     import pandas
 
-# Style of a result in figures: its name in the legend, and its line.
+# Line of a result in figures: its name in the legend, and its style.
 Line = tuple[str, Mapping[str, Any]]
 RUNS = 40  # default size of an ensemble
 
 
 @dataclass
 class Row:
-    """One value of one parameter and the result; None: the model has no result, see ``note``."""
+    """One value of a parameter with its results. A result is None if the model has none; ``note`` has the reason."""
 
     value: float
     results: dict[str, float | None]
@@ -38,7 +38,7 @@ class Row:
 
 @dataclass
 class Sweep:
-    """Sweep of one parameter; all others have the values of the case."""
+    """Sweep of one parameter; all others have their values in the case."""
 
     parameter: str  # path section.key, with the unit in the key
     label: str  # label of the axis, without unit
@@ -46,7 +46,7 @@ class Sweep:
     display_scale: float
     own: float
     rows: list[Row]
-    scale: str = "log"  # scale of the axis: log, linear; both show zero
+    scale: str = "log"  # scale of the axis, log or linear; both show zero
     meets: list[tuple[float, float]] = field(default_factory=list)  # ranges with the wanted value
     recommended: float | None = None
 
@@ -59,7 +59,7 @@ class Sweep:
         self.rows = sorted([kept for kept in self.rows if kept.value != row.value] + [row], key=lambda r: r.value)
 
     def column(self, name: str) -> np.ndarray:
-        """Results of all rows; NaN for a missing result."""
+        """Return the results of all rows; NaN for a missing result."""
         return np.array([np.nan if row.results.get(name) is None else row.results[name] for row in self.rows])
 
     def shown(self, most: int = 7) -> list[Row]:
@@ -74,9 +74,9 @@ class Sweep:
 
 @dataclass(frozen=True)
 class DesignChoices:
-    """The node whose jump counts, and the changes that are allowed, for a case with many nodes and parameters.
+    """The node whose jump is evaluated, and the allowed changes, for a case with many nodes and parameters.
 
-    :param node: node whose jump counts; None: the one that moves most
+    :param node: node whose jump is evaluated; None: the one that moves most
     :param add_spring: pairs of nodes between which a spring may be added
     :param scale: parameters that may be scaled, ``section.item.key`` or ``section.*.key``
     """
@@ -91,9 +91,9 @@ class Study:
     """A study of a case.
 
     :param measure: sentence: the measured quantity and the method
-    :param unit: of the jump, m or rad
-    :param results: columns: name with unit, heading
-    :param jump: of the unchanged case [unit]
+    :param unit: unit of the jump, m or rad
+    :param results: headings of the columns by name with unit
+    :param jump: jump of the unchanged case [unit]
     :param wanted: largest allowed jump [unit]; None: there is no jump to control
     :param quantity: name of the results in figures, with their displayed unit
     :param lines: style of the results in figures, by name
@@ -115,7 +115,7 @@ class Study:
     sentences: list[str] = field(default_factory=list)  # the recommendation as sentences
     remarks: list[str] = field(default_factory=list)
     dem: list[dict[str, Any]] = field(default_factory=list)
-    # Lower limit of the jump if only one parameter changes: key of the parameter, name in the legend, value [unit].
+    # Lower bound of the jump while only one parameter changes: key of the parameter, name in the legend, value [unit].
     floor: tuple[str, str, float] | None = None
 
     def sweep(self, parameter: str) -> Sweep:
@@ -144,14 +144,13 @@ def check_wanted(jump_below: float | None, unit: str) -> None:
 
 
 def refuse_runs(runs: int | None, case: Case) -> None:
-    """Raise NotAllowed for an ensemble size if the study runs no ensemble."""
+    """Raise NotAllowed for an ensemble size in a study without ensembles."""
     if runs is not None:
         raise NotAllowed("--runs", runs, code="exact_path_without_ensemble", name_of_case=case.name)
 
 
 def refuse_choices(choices: DesignChoices, case: Case) -> None:
-    """Raise NotAllowed for a choice of nodes and parameters, for a kind of case with one jump and a study of all
-    parameters."""
+    """Raise NotAllowed for choices of nodes and parameters, in a study of all parameters with a single jump."""
     asked = (("--node", [choices.node] if choices.node else []),
              ("--add-spring", [" ".join(ends) for ends in choices.add_spring]), ("--free", choices.scale))
     for option, values in asked:
@@ -169,7 +168,7 @@ def highest(case: Case, path: str) -> float:
 def bisect(
     passes: Callable[[float], bool], bad: float, good: float, relative: float = 1e-12, steps: int = 200
 ) -> tuple[float, float]:
-    """Narrow a bracket of ``bad``, which does not pass, and ``good``, which does. Geometric between positive ends.
+    """Bisect between ``bad``, which does not pass, and ``good``, which passes; geometrically between positive ends.
 
     :return: the bracket, narrower than ``relative`` times its larger end
     """
@@ -192,8 +191,9 @@ def ranges_that_pass(
 ) -> list[tuple[float, float]]:
     """Return the ranges of neighbouring values that pass, with refined ends.
 
-    :param passes: the condition, for bisection of the ends; None: the ends are not refined
-    :param narrow: replaces bisection: takes a value that does not pass and one that does, returns the end that passes
+    :param passes: the condition, for bisection of the ends; None: no refinement
+    :param narrow: replaces bisection: receives a value that does not pass and one that passes, returns the end that
+        passes
     """
     if narrow is None and passes is not None:
         by_bisection = passes
@@ -221,9 +221,9 @@ def ranges_that_pass(
 
 
 def grid(own: float, low: float, high: float, count: int, zero: bool = False) -> list[float]:
-    """Geometric grid from ``low`` to ``high`` with the value of the case, and with zero if wanted."""
+    """Return a geometric grid from ``low`` to ``high``, with the value of the case and, on request, zero."""
     values = {float(value) for value in np.geomspace(low, high, count)}
-    # The value as written in the case replaces values too near to it.
+    # The exact value of the case replaces grid values near it.
     values = {value for value in values if abs(value - own) > 0.02 * abs(value)}
     values.add(float(own))
     if zero:

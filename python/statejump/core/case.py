@@ -46,7 +46,7 @@ class CaseHeader(Section):
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a case comes from.
+    """Origin of a case: given data and file.
 
     :param data: sections and keys as given, without defaults
     :param file: the case file; None: it was made in Python
@@ -123,13 +123,13 @@ class Case(Section):
 
     @property
     def ending(self) -> Ending | None:
-        """Where the temperature program ends, if that is not at the reference temperature."""
+        """End of the temperature program; None if the program ends at the reference temperature."""
         found: Ending | None = self.__dict__["_ending"]
         return found
 
     @property
     def has_jump(self) -> bool:
-        """Whether the program ends at the reference temperature, with its return if one is added."""
+        """Whether the program, including an added return, ends at the reference temperature."""
         return self.ending is None or self.ending.returns
 
     def check_cycles(self) -> None:
@@ -145,7 +145,7 @@ class Case(Section):
 
     @property
     def implausible(self) -> tuple[str, ...]:
-        """Warnings of allowed but implausible values, one sentence each."""
+        """Warnings about values that are allowed but implausible, one sentence each."""
         return ()
 
     def need_jump(self, what: str) -> None:
@@ -326,7 +326,7 @@ class Case(Section):
 
 
 def no_length_left(key: str, thermal_expansion_per_K: float, case: Case) -> None:
-    """Raise NotAllowed for a link whose length the program reduces to zero."""
+    """Raise NotAllowed for a link whose length the temperature program reduces to zero."""
     for change in case.temperature_range_K:
         if 1 + thermal_expansion_per_K * change <= 0:
             raise NotAllowed(key, thermal_expansion_per_K, code="link_without_length", at_K=change)

@@ -52,7 +52,7 @@ def save(case: Case, path: Path) -> Path:
         made["thermal"]["members_file"] = beside.name
     for part in made.values():
         for key, value in part.items() if isinstance(part, dict) else ():
-            if key.endswith("_file") and part is not made.get("thermal"):  # of a mesh, from the folder of the case
+            if key.endswith("_file") and part is not made.get("thermal"):  # of a mesh, relative to the case
                 part[key] = os.path.relpath(case.origin.folder / value, path.parent)
     text = to_toml(made)
     with write_atomically(path) as stream:

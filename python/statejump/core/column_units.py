@@ -111,7 +111,7 @@ def _converted(name: str, base: str, unit: str, key: str) -> Conversion:
 
 
 def accepted(base: str, key: str, wanted: str) -> str:
-    """Return the accepted spellings of a column, for a sentence."""
+    """Return the accepted spellings of a column name, for an error message."""
     shown = [f"{base.strip()} [{unit}]" for unit in (wanted, *EXAMPLES.get(wanted, ()))] if wanted != "-" else [key]
     return f"accepted are {', '.join(dict.fromkeys((key, *shown)))}"
 

@@ -79,8 +79,8 @@ def quantity(name: str, unit: str, tolerance: float, **values: float | None) -> 
 
 
 def share(difference: float, scale: float) -> float:
-    """Return a difference over its scale. It is 0 if both are zero, because then nothing moves, and infinite for a
-    difference without a scale. NaN stays NaN, so its row fails."""
+    """Return difference / scale [-]: 0 if both are zero (nothing moves), infinite if only the scale is zero. NaN stays
+    NaN, so its row fails."""
     if difference == 0 and scale == 0:
         return 0.0
     if scale > 0:

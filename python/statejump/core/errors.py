@@ -60,7 +60,7 @@ ABSENT = _Absent()
 
 
 class _Some:
-    """Stands in a sentence for an unspecified number."""
+    """Placeholder in a message for an unspecified number."""
 
     def __repr__(self) -> str:
         return "…"

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from statejump.core.case import Case
 
-# States of a contact at a sample; a number is an index of this list.
+# States of a contact at a sample; columns hold the index in this list.
 CONTACT_STATES = ("separated", "stick", "slip", "at_stop")
 SEPARATED, STICK, SLIP, AT_STOP = range(len(CONTACT_STATES))
 MODELS = {"reduced": "reduced model", "dem": "DEM"}
@@ -386,7 +386,7 @@ def numbers_of(values: Mapping[str, Any]) -> dict[str, float]:
 
 
 def change(columns: Mapping[str, Any], name: str) -> float:
-    """Return the last value of a column minus its first; 0 if the column does not exist."""
+    """Return the last value of a column minus its first; 0 if the column is missing."""
     if name not in columns:
         return 0.0
     values = columns[name]

@@ -25,8 +25,8 @@ class Start(Section):
 
 
 def carried(friction: Any, limit: Any) -> dict[str, float]:
-    """Return what a summary says of friction at the start: the largest force of any joint [N], and the largest ratio to
-    its limit [-]."""
+    """Return the summary entries on friction at the start: largest force of any joint [N], largest ratio to its limit
+    [-]."""
     force, most = np.abs(np.atleast_1d(friction)), np.atleast_1d(limit)
     share = np.divide(force, most, out=np.zeros_like(force), where=most > 0)
     return {"start_friction_N": float(force.max(initial=0.0)),

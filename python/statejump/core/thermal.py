@@ -81,7 +81,7 @@ class CaseThermal(Thermal):
 
 @dataclass(frozen=True)
 class MemberProgram:
-    """The table of one member, with the interface of a temperature program."""
+    """The temperature table of one member, with the interface of a temperature program."""
 
     table_time_s: Numbers
     table_temperature_change_K: Numbers
@@ -103,7 +103,7 @@ class Ending:
     """End of the rows of a table that does not end at the reference temperature.
 
     :param time_s: of the last row, in the last cycle
-    :param temperature_change_K: there, of the program that is furthest from the reference temperature
+    :param temperature_change_K: ΔT [K] at that time, of the program furthest from the reference temperature
     :param return_s: duration of the added return [s]; 0: none is added
     :param remedy: the setting that adds one
     """
@@ -141,7 +141,7 @@ def ending(
     away.
 
     :param programs: the common one first, as given, without a return
-    :param returns: whether a return is wanted
+    :param returns: whether the case requests a return
     :param period_s: duration of a cycle; None: not given
     :raises NotAllowed: ``period_s`` is before the last row
     """

@@ -11,14 +11,14 @@ from statejump.core.run import Run
 from statejump.core.thermal import LONGEST_PERIOD_S, Thermal, range_K
 from statejump.core.units import text
 
-LOOKED_AT = 4000  # positions of a cycle at which the rate of the temperature is evaluated
-# Fraction of a tolerance above which an oscillation is reported. The other causes have the remainder.
+LOOKED_AT = 4000  # number of points of a cycle at which dΔT/dt is evaluated
+# Fraction of a tolerance above which an oscillation is reported as a cause.
 SHARE_TOLD = 0.1
 
 
 def kink(program: _engine.ThermalProgram) -> float:
     """Return the largest jump of dΔT/dt, divided by the range of ΔT and multiplied by the duration of a cycle [-]: 4
-    for a triangle, π for half a sine. A part would have to change its speed by this value, in ranges per cycle."""
+    for a triangle, π for half a sine. This is the change of speed of a following part, in ranges per cycle."""
     times = np.linspace(-1.5 / LOOKED_AT, 1, LOOKED_AT) * program.period_s
     rates = program.temperature_rate(times) * (times >= 0)
     size = float(np.ptp(program.temperature_change(times)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Frictional contact problems of many contacts: solved, judged, read and written in the layout of FCLIB.
+"""Frictional contact problems of many contacts: solution, merit of solutions, files in the layout of FCLIB.
 
 ::
 
@@ -10,7 +10,7 @@
     solution.merit.largest, solution.reactions
     sj.fclib.write("mine.hdf5", problem, solution)
 
-u = W r + q with Coulomb's law at every contact; docs/theory/complementarity.md says more.
+u = W r + q with Coulomb's law at every contact; see docs/theory/complementarity.md.
 """
 from __future__ import annotations
 

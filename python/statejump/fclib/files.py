@@ -2,8 +2,8 @@
 """Files of FCLIB: the group ``fclib_local`` with its problem, ``solution`` and ``guesses`` with reactions.
 
 The layout is that of fclib.h. A matrix is a group of ``m``, ``n``, ``nz``, ``nzmax``, ``p``, ``i``, ``x``. ``nz`` = -1
-means compressed columns, -2 compressed rows, another value the number of single entries. In single entries ``i`` is the
-row and ``p`` the column, as in CSparse and in the code of FCLIB. The header of FCLIB states the opposite.
+means compressed columns, -2 compressed rows; another value is the number of triplets. In triplets ``i`` is the row and
+``p`` the column, as in CSparse and in the code of FCLIB; the header of FCLIB states the opposite.
 """
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import scipy.sparse
 
 LOCAL = "fclib_local"
-# The other problems of FCLIB, with a description.
+# Problem types of FCLIB that are not supported, with their description.
 OTHERS = {"fclib_global": "global", "fclib_global_rolling": "rolling", "fclib_local_rolling": "rolling"}
 COLUMNS, ROWS = -1, -2
 
@@ -69,7 +69,7 @@ def _problem(file: h5py.File) -> Problem:
 def _without_equations(
     group: h5py.Group, delassus: scipy.sparse.spmatrix, q: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return W and q after the elimination of l from u = W r + V l + q, V^T r + R l + s = 0."""
+    """Return W and q after elimination of l from u = W r + V l + q, V^T r + R l + s = 0."""
     s = _vector(_group(group, "vectors"), "s")
     coupling = _matrix(group, "V", (q.size, s.size)).toarray()
     matrix = _matrix(group, "R", (s.size, s.size)).toarray()

@@ -23,7 +23,7 @@ METHODS: tuple[str, ...] = _engine.FRICTION_METHODS
 
 
 class NotSolved(StatejumpError):
-    """No method reached the tolerance. A solution may still exist.
+    """No method reached the tolerance, although a solution may exist.
 
     :param solution: the best result
     """
@@ -42,7 +42,7 @@ class Merit:
     """Error of reactions as a solution; 0 for an exact one.
 
     :param natural_map: norm of r - P_K(r - û) over the largest of |q|, |r| and |u|, in the problem's units
-    :param scaled: the same over |q|, with W divided by its mean diagonal and r multiplied by it
+    :param scaled: the same norm over |q|, with W divided by its mean diagonal and r multiplied by that value
     """
 
     natural_map: float
@@ -75,16 +75,17 @@ class _Sparse(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """Velocities u = W r + q with Coulomb's law at every contact, the normal component first in a contact's block.
+    """Velocities u = W r + q with Coulomb's law at every contact; the normal component comes first in the block of a
+    contact.
 
     Units are the caller's: r may be forces or impulses, u velocities, displacements or gap rates.
 
     :param delassus: W, a square array or a sparse matrix of scipy, (contacts x dimension) rows
     :param q: velocities without reactions
     :param mu: friction coefficient of each contact [-]
-    :param dimension: numbers of a contact, 2 or 3
-    :param stored: solutions and guesses of the file that it was read from
-    :raises StatejumpError: sizes that do not fit, numbers that are not finite, mu < 0
+    :param dimension: number of components per contact, 2 or 3
+    :param stored: solutions and guesses in the file of the problem
+    :raises StatejumpError: sizes do not match, a number is not finite, or mu < 0
     """
 
     delassus: NDArray[np.float64] | scipy.sparse.spmatrix
@@ -137,7 +138,7 @@ class Solution:
     :param velocities: u = W r + q
     :param solved: whether the merit is within the tolerance
     :param method: the method that found the reactions
-    :param iterations: sweeps of Gauss-Seidel, linear systems of Newton and of the interior point, pivots of Lemke
+    :param iterations: number of Gauss-Seidel sweeps, linear systems (Newton, interior point) or Lemke pivots
     :param seconds: wall time [s]
     """
 
@@ -173,12 +174,12 @@ def solve(
 ) -> Solution:
     """Solve a problem.
 
-    :param tolerance: on both merits
+    :param tolerance: largest allowed value of both merits
     :param method: one of METHODS; ``automatic`` tries them in turn
     :param most_sweeps: largest number of sweeps of Gauss-Seidel
     :param guess: initial reactions
     :param strict: raise an error without solution, instead of returning a result with ``solved`` false
-    :param progress: called with the best merit so far, from time to time
+    :param progress: called at intervals with the best merit so far
     :raises NotSolved: with ``strict``: no method reached the tolerance
     :raises StatejumpError: an argument is out of its range
     """

@@ -11,7 +11,7 @@ from scipy.special import ndtri
 from statejump.core.errors import NotAllowed
 from statejump.identification.fit import Interval
 
-# Targets of an identified joint, and the kind of loop that each needs.
+# Items of a case that an identified joint may become, and the kind of loop that each needs.
 TARGETS = {
     "spring_slider": ("[joint]", "joint", False),
     "slider": ("[[slider]]", "slider.*", False),
@@ -27,10 +27,10 @@ OF_EITHER_SIGN = ("bias_rad", "preload_force_N")
 class Entry:
     """A key of a case.
 
-    :param key: as in its section
-    :param value: None: the loop does not determine it
+    :param key: name of the key in its section
+    :param value: value of the key; None: the loop does not determine it
     :param deviation: standard deviation of the estimate; None: the loop does not bound it
-    :param why: the reason why there is no value
+    :param why: reason for a missing value
     """
 
     key: str
@@ -40,7 +40,7 @@ class Entry:
 
 
 def check(target: str, angular: bool) -> None:
-    """Raise NotAllowed if a loop cannot determine such a joint."""
+    """Raise NotAllowed if this kind of loop cannot determine such an item."""
     if target not in TARGETS:
         raise NotAllowed("target", target, code="not_one_of", allowed=tuple(TARGETS), known=", ".join(TARGETS))
     if TARGETS[target][2] not in (None, angular):
@@ -48,8 +48,8 @@ def check(target: str, angular: bool) -> None:
 
 
 def deviation(interval: Interval, confidence: float) -> float | None:
-    """Return the standard deviation of a normal distribution with an interval of this width; None: the loop does not
-    bound it."""
+    """Return the standard deviation of a normal distribution with this confidence interval; None: the interval is
+    unbounded."""
     if not interval.bounded:
         return None
     return (interval.high - interval.low) / (2 * float(ndtri(0.5 + confidence / 2)))
@@ -61,7 +61,7 @@ def entries(
 ) -> list[Entry]:
     """Return the keys of a section.
 
-    :param values: the parameters of the joint, by name
+    :param values: parameters of the joint, by name
     """
     spread = {name: deviation(interval, confidence) for name, interval in intervals.items()}
 
@@ -99,7 +99,8 @@ def entries(
         if "stop_stiffness" in values:
             stops.append(known("stop_stiffness_N_per_m", "stop_stiffness", ""))
         if "play" in values:
-            # The play of a case carries no force. Its length keeps the path between sliding forth and back.
+            # A play carries no force in a case. This length gives the same displacement between forward and backward
+            # slip.
             stops.append(known("play_m", "play", "", 1 - values.get("play_ratio", 0.0)))
         return friction() + stops + (spring if target == "spring_slider" else [])
     if target == "iwan_joint":
@@ -114,13 +115,13 @@ def entries(
         wide = spread.get("preload")
         if stiffness.value is None or wide is None:
             return [stiffness, Entry("bias_rad", None, why="not identifiable from this loop")]
-        # M = K (angle - bias) equals P at the angle 0.
+        # The moment K (angle - bias) equals the preload P at angle 0.
         return [stiffness, Entry("bias_rad", -values["preload"] / stiffness.value, wide / stiffness.value)]
     return [*friction()[1:], play()]
 
 
 def section(target: str, found: list[Entry], source: str) -> list[str]:
-    """Return the lines of a section of a case file; parameters that the loop does not determine are comments."""
+    """Return the lines of the section of a case file. Parameters that the loop does not determine are comments."""
     lines = [f"# identified from {source}", TARGETS[target][0]]
     for entry in found:
         if entry.value is None:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Least squares of a joint for a loop, intervals by profile likelihood, choice by BIC.
+"""Least-squares fit of a joint to a loop, intervals by profile likelihood, model choice by BIC.
 
-Noise of the force is Gaussian, of one unknown scale σ, and may be correlated from row to row: n rows count as m = n/τ
-independent ones. With the sum of squared residuals RSS, ln L = -m/2 (ln(2π RSS/n) + 1). The interval of a parameter
-ends where its profile exceeds RSS by κ F/(n - p) of RSS. F is the quantile of F(1, m - p), and κ the growth of its
-variance by the correlation.
+The force has Gaussian noise of one unknown standard deviation σ, which may be correlated from row to row: n rows count
+as m = n/τ independent ones. With the sum of squared residuals RSS, ln L = -m/2 (ln(2π RSS/n) + 1). The interval of a
+parameter ends where its profile exceeds RSS by κ F/(n - p) of RSS. F is the quantile of F(1, m - p) for p parameters,
+and κ the factor by which correlation increases the variance.
 """
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ from statejump.identification.models import (
     MODELS, PARAMETERS, POSITIVE, START, Model, containing, with_part)
 from statejump.identification.noise import Noise, noise_of
 
-STARTS = 4  # number of grid points from which searches start
-STARTS_FROM_PART = 2  # the same for a search that starts from the optimum of a part
-CLOSE = 1e-3  # accuracy of an interval's ends, as a fraction of its half width
-NEAREST = 1e-12  # smallest distance of an end, as a fraction of the search range
-AT_END = 0.01  # distance from an end of the search range, below which a parameter counts as at the end
-DEPENDS = 0.25  # motion of a parameter, over its half width, from which it depends on another one near its end
-ROUNDING = 1e-9  # fraction of half of the loop's force: smaller noise is rounding
+STARTS = 4  # number of grid points at which searches start
+STARTS_FROM_PART = 2  # the same for searches that start from the optimum of a part
+CLOSE = 1e-3  # accuracy of the ends of an interval, as a fraction of its half width
+NEAREST = 1e-12  # smallest distance of an end from the optimum, as a fraction of the search range
+AT_END = 0.01  # fraction of the search range within which a parameter counts as at an end of the range
+DEPENDS = 0.25  # shift of a parameter, over its half width, from which it depends on another one at its end
+ROUNDING = 1e-9  # fraction of half the force range of the loop below which noise is rounding
 
 
 @dataclass(frozen=True)
 class Interval:
-    """Interval of a parameter at a level of confidence; an end that the loop does not bound is infinite."""
+    """Confidence interval of a parameter; an end that the loop does not determine is infinite."""
 
     low: float
     high: float
@@ -50,10 +50,11 @@ ENDLESS = dict.fromkeys(("friction", "stop_stiffness", *STOPS), inf)
 
 
 class Problem:
-    """A joint and a loop. Points of the search are in units of the loop's size, positive parameters as logarithms.
+    """A joint and a loop.
 
-    At an end of the search range a parameter of a slide has the value without effect, 0 or infinity. A joint therefore
-    contains its parts.
+    Points of the search are in units of the size of the loop; positive parameters are logarithms. At an end of its
+    search range, a parameter of a slide has no effect: it is 0 or infinite. The search for a joint therefore contains
+    its parts.
     """
 
     def __init__(self, model: Model, loop: Loop) -> None:
@@ -84,7 +85,7 @@ class Problem:
 
     def _sought(self, relative: Sequence[float]) -> np.ndarray:
         found = np.array(relative, dtype=float)
-        with np.errstate(divide="ignore"):  # the value without effect, for a part that lacks the parameter
+        with np.errstate(divide="ignore"):  # a part that lacks the parameter has its value without effect
             found[self.logarithmic] = np.log(found[self.logarithmic])
         return found
 
@@ -98,13 +99,13 @@ class Problem:
         return dict(zip(self.names, found))
 
     def point(self, values: dict[str, float]) -> np.ndarray:
-        """Return the point of the search of parameters in SI units."""
+        """Return the point of the search for parameters in SI units."""
         found = self._sought([(values[name] - offset) / unit
                               for name, offset, unit in zip(self.names, self.offsets, self.units)])
         return np.asarray(np.clip(found, self.low, self.high))
 
     def value(self, place: int, coordinate: float) -> float:
-        """Return one parameter for a coordinate of the search; infinite at an end of the search range."""
+        """Return a parameter for its coordinate in the search; infinite at an end of the search range."""
         if coordinate <= self.low[place]:
             return -inf
         if coordinate >= self.high[place]:
@@ -113,13 +114,13 @@ class Problem:
         return float(relative * self.units[place] + self.offsets[place])
 
     def residual(self, point: np.ndarray) -> np.ndarray:
-        """Return measured minus computed force, in units of half of the loop's force."""
+        """Return measured minus computed force, in units of half the force range of the loop."""
         answered = self.model.answer(self.values(point), self.displacement, self.memory)
         found: np.ndarray = (self.force - answered) / self.half_force
         return found
 
     def squares(self, point: np.ndarray) -> float:
-        """Return the sum of squared residuals, at least that of rounding."""
+        """Return the sum of squared residuals, but at least that of rounding."""
         rest = self.residual(point)
         return max(float(rest @ rest), len(rest) * ROUNDING**2)
 
@@ -144,7 +145,7 @@ class Problem:
         first[free] = np.clip(first[free], self.low[free], self.high[free])
         point[free] = found.x
         ends = self.squares(first), self.squares(point)
-        # The search begins inside of its bounds; that point may be worse than one on a bound.
+        # The search moves its start inside of the bounds; the result may then be worse than the start on a bound.
         return (first, ends[0]) if ends[0] <= ends[1] else (point, ends[1])
 
     def starts(self) -> list[np.ndarray]:
@@ -153,7 +154,8 @@ class Problem:
         return self._lowest(grid, STARTS)
 
     def starts_of(self, part: Fit) -> list[np.ndarray]:
-        """Return the optimum of a part, combined with the best starts of the parameters that the part lacks."""
+        """Return starts of the search: the optimum of a part, combined with the best starts of the parameters it
+        lacks."""
         values = {**dict.fromkeys((START,), 0.0), **part.values}
         there = self.point(with_part(self.model, part.model, values, self.memory, self.displacement))
         more = [name for name in self.names if name not in part.values]
@@ -188,9 +190,9 @@ class Fit:
 
     :param model: the joint
     :param values: its parameters by name, SI units
-    :param noise: σ of the force
+    :param noise: standard deviation σ of the force
     :param rows: number of fitted rows
-    :param rows_each: number of rows that count as one
+    :param rows_each: number of rows that count as one independent row
     """
 
     model: Model
@@ -213,7 +215,7 @@ class Fit:
 
     @property
     def bic(self) -> float:
-        """Schwarz's criterion, smaller is better; σ counts as a parameter."""
+        """Schwarz's criterion; smaller is better, and σ counts as a parameter."""
         return (len(self.values) + 1) * log(self.independent_rows) - 2 * self.log_likelihood
 
 
@@ -224,14 +226,14 @@ def _fit(problem: Problem, point: np.ndarray, squares: float) -> Fit:
 
 
 class Fits:
-    """The fits of all joints to a loop. None is worse than the fit of a joint that it contains."""
+    """The fits of all joints to a loop. The fit of a joint is at least as good as those of the joints it contains."""
 
     def __init__(self, loop: Loop) -> None:
         self.loop = loop
         self._found: dict[str, Fit] = {}
 
     def fit(self, name: str) -> Fit:
-        """Return the fit of a joint with the smallest sum of squares, also over the fits of its parts."""
+        """Return the fit of a joint with the smallest sum of squares, with the fits of its parts as further starts."""
         if name not in self._found:
             model = MODELS[name]
             problem = Problem(model, self.loop)
@@ -242,7 +244,7 @@ class Fits:
         return self._found[name]
 
     def improve(self, better: Fit) -> None:
-        """Replace the fit of a joint by a better point, also in the joints that contain it."""
+        """Replace the fit of a joint by a better one, and update the joints that contain it."""
         self._found[better.model.name] = better
         for name in containing(better.model.name):
             before = self._found.get(name)
@@ -254,7 +256,7 @@ class Fits:
 
     def ranked(self, names: Sequence[str]) -> list[Fit]:
         """Return the fits of joints, the best by BIC first. The residuals of the best fit determine the number of
-        independent rows."""
+        independent rows for all."""
         found = [self.fit(name) for name in names]
         rows_each = noise_at(min(found, key=lambda each: each.squares), self.loop).rows_each
         return sorted((replace(each, rows_each=rows_each) for each in found), key=lambda each: each.bic)
@@ -282,7 +284,7 @@ class Profile:
         self.known = {float(best.point[self.place]): (best.point, 0.0)}
 
     def rise(self, coordinate: float) -> float:
-        """Return the relative increase of the sum of squares."""
+        """Return the relative increase of the sum of squares above that of the fit."""
         near = min(self.known, key=lambda each: abs(each - coordinate))
         if near == coordinate:
             return self.known[near][1]
@@ -296,8 +298,8 @@ class Profile:
         return risen
 
     def end(self, direction: int, step: float, most: float) -> float:
-        """Return the value at which the sum of squares has increased by ``most``; the bound of the search if it does
-        not."""
+        """Return the value at which the sum of squares has increased by the fraction ``most``, or the bound of the
+        search."""
         bound = float((self.problem.high if direction > 0 else self.problem.low)[self.place])
         nearest = NEAREST * float(self.problem.high[self.place] - self.problem.low[self.place])
         centre = float(self.best.point[self.place])
@@ -323,8 +325,8 @@ class Profile:
 
     @cached_property
     def movements(self) -> dict[int, np.ndarray]:
-        """Return, for each end, the changes of all parameters in the last part of the path there; empty for ends that
-        bound the parameter."""
+        """Return, for each end of the search range that the profile reaches, the change of all parameters over the last
+        part of the path to that end."""
         found = {}
         for direction, ends in ((-1, self.problem.low), (1, self.problem.high)):
             bound, widest = ends[self.place], AT_END * (self.problem.high - self.problem.low)[self.place]
@@ -340,8 +342,8 @@ class Profile:
 class Intervals:
     """Intervals of a fit.
 
-    :param of: by parameter
-    :param because: parameters without an end, because another one, which is named, has none
+    :param of: interval by parameter
+    :param because: name of the unbounded parameter that leaves a parameter unbounded, by the name of the latter
     """
 
     of: dict[str, Interval]
@@ -394,8 +396,8 @@ def _intervals(problem: Problem, best: Fit, confidence: float, names: Sequence[s
 def _dependence(problem: Problem, profile: Profile, ends: Sequence[float], profiles: dict[str, Profile]) -> dict[
     int, str
 ]:
-    """Return the ends of an interval that exist only because another parameter is at the end of its search range, and
-    that parameter."""
+    """Return the ends of an interval that exist only because another parameter is at the end of its search range, with
+    the name of that parameter."""
     found = {}
     half = (ends[1] - ends[0]) / 2
     for way, end in zip((-1, 1), ends):

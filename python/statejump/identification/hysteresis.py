@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Friction with memory along a path of displacements: Masing's rule with return points.
 
-Let the backbone B be the force of a first loading. The friction force is a sum of B at half distances between those
-turning points that the memory still contains. The path alone determines them. They are computed once, and the force for
-any parameters is then one matrix product. (G. Masing, Proc. 2nd Int. Congr. Applied Mechanics, 1926.)
+Let the backbone B be the force of a first loading. The friction force is a sum of B at half distances between the
+reversal points in memory, which depend only on the path. They are computed once; the force for any parameters is then
+one matrix product. (G. Masing, Proc. 2nd Int. Congr. Applied Mechanics, 1926.)
 """
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class Memory:
 
     :param half_distance: distances at which the backbone is needed [m or rad]
     :param weights: rows of the path × half distances
-    :param loaded: the same path after sliding downwards and upwards; None: the first row is known
-    :param path: displacements, if ``loaded`` is given
+    :param loaded: memories of the same path after full slip downwards and upwards; None: the initial state is known
+    :param path: displacements; only if ``loaded`` is given
     """
 
     half_distance: np.ndarray
@@ -35,8 +35,8 @@ class Memory:
         """Return the friction force in every row.
 
         :param backbone: force of a first loading from rest, for displacements from 0
-        :param start: friction in the first row as a fraction of its limit, if it is unknown. Several sliders with
-            different limits have more than one such state; the force is interpolated between rest and full slip
+        :param start: friction in the first row as a fraction of its limit, if the initial state is unknown. Sliders
+            with different limits have more than one such state; the force is interpolated between rest and full slip
         """
         found: np.ndarray = self.weights @ backbone(self.half_distance)
         if self.loaded is None or start == 0:
@@ -44,10 +44,10 @@ class Memory:
         return (1 - abs(start)) * found + abs(start) * self.loaded[start > 0].force(backbone)
 
     def stretch(self, width: float, start: float = 0.0) -> np.ndarray:
-        """Return the deflection of a spring in front of one slider that slides at ±width.
+        """Return the deflection of a spring in series with one slider that slips at deflections ±width.
 
-        :param start: as in :meth:`force`. A slider between two paths rests until one of them moves it: x = min(max(x0,
-            x_low), x_high), exactly
+        :param start: as in :meth:`force`. A slider whose start is between the two paths in ``loaded`` rests until one
+            of them moves it: exactly x = min(max(x0, x_low), x_high)
         """
         def clipped(half: np.ndarray) -> np.ndarray:
             return np.minimum(half, width)
@@ -59,9 +59,9 @@ class Memory:
         return np.asarray(np.minimum(np.maximum(self.path - self.path[0] + first, low), high))
 
 
-# Distance, in ranges of the path, after which every slider has slid.
+# Distance, as a multiple of the range of the path, after which every slider has slipped.
 FAR_AWAY = 10.0
-# Terms of the sum: half distance and weight of each.
+# Terms of the sum: half distance and weight.
 Terms = tuple[tuple[float, float], ...]
 
 
@@ -69,8 +69,8 @@ def remembered(path: np.ndarray, fresh: bool) -> Memory:
     """Return the memory of friction along a path.
 
     :param path: displacements, one per row
-    :param fresh: friction is zero in the first row and has no memory. Otherwise the same path was traversed before, and
-        friction is equal at both ends of it
+    :param fresh: friction is zero in the first row and has no memory. Otherwise the path was traversed before, and
+        friction is equal at both of its ends
     """
     if fresh:
         order = np.arange(len(path))
@@ -87,7 +87,7 @@ def remembered(path: np.ndarray, fresh: bool) -> Memory:
             if direction and heading != direction:
                 stack.append((now, _terms(stack, now, fresh)))
             direction = heading
-            # A branch that returns to the end of an older one continues that one.
+            # A branch that reaches the end of an older branch continues the older one.
             while len(stack) > 1 and _closes(stack, new, fresh):
                 del stack[-2 if len(stack) > 2 else -1:]
             now = new

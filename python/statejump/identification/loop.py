@@ -31,12 +31,12 @@ STARTS = ("unknown", "fresh", "cycled")
 UNITS = {"displacement": ("m", "rad"), "force": ("N", "N m"), "stiffness": ("N/m", "N m/rad"), "-": ("-", "-")}
 FORCES, DISPLACEMENTS = ("force", "moment"), ("displacement", "rotation")
 FEWEST_ROWS = 20
-# Energy that a loop may generate, as a fraction of the work of the largest force along the path. The cause are sensors
-# that are not in phase.
+# Energy that a loop may generate, as a fraction of largest force times path length. Phase shifts between sensors cause
+# it.
 PHASE = 0.01
-# Standard deviations of the energy, by the noise of the force, that count as chance.
+# Number of standard deviations of the energy, due to noise of the force, that count as chance.
 CHANCE = 6.0
-# Correlation of force and displacement below which a force pushes instead of resisting.
+# Correlation of force and displacement below which the sign of the force is that of a reaction.
 PUSHES = -0.5
 
 
@@ -44,10 +44,10 @@ PUSHES = -0.5
 class Loop:
     """A loop.
 
-    :param name: for tables and figures: the file
-    :param displacement: of every row [m], or the rotation [rad]
-    :param force: of every row [N], or the moment [N m]
-    :param angular: whether it is moment over rotation
+    :param name: name in tables and figures: that of the file
+    :param displacement: displacement [m] or rotation [rad] of every row
+    :param force: force [N] or moment [N m] of every row
+    :param angular: whether the loop is moment over rotation
     :param start: state of the joint before the first row: ``fresh``: friction is zero; ``cycled``: the joint traversed
         the same path before; ``unknown``: friction is fitted
     """
@@ -66,7 +66,7 @@ class Loop:
         return remembered(self.displacement, self.start == "fresh")
 
     def check_sign(self) -> None:
-        """Refuse a force with the sign of a reaction, as solvers and load cells report it.
+        """Reject a force with the sign of a reaction, as some solvers and load cells report it.
 
         :raises NotAllowed: the joint generates energy along the path, or the force falls as the displacement rises
         """
@@ -80,8 +80,8 @@ class Loop:
             raise StatejumpError(code="loop_falls", remedy=remedy, force=force, displacement=displacement)
 
     def _energy(self) -> tuple[float, float]:
-        """Return the energy that the joint dissipates, and its standard deviation by the noise of the force. The range
-        lies between the first and the last row at the middle of the path, so that springs contribute nothing."""
+        """Return the energy that the joint dissipates, and its standard deviation due to noise of the force. The
+        integral runs from the first to the last row at the middle of the path, so that springs do not contribute."""
         middle = float(np.min(self.displacement) + np.max(self.displacement)) / 2
         above = self.displacement > middle
         crossings = np.flatnonzero(above[1:] != above[:-1])
@@ -93,7 +93,7 @@ class Loop:
         weights = np.zeros(len(force))
         weights[1:] += np.diff(displacement) / 2
         weights[:-1] += np.diff(displacement) / 2
-        # Second differences of a smooth force are noise, because the force has few corners.
+        # The force has few corners, so its second differences are noise.
         noise = 1.4826 * float(np.median(np.abs(np.diff(force, 2)))) / 6**0.5
         return float(weights @ force), noise * float(np.linalg.norm(weights))
 
@@ -106,10 +106,10 @@ def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown", ig
     """Return the loop of a table or of columns.
 
     :param source: columns ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``; ``time_s`` is
-        allowed and not used
+        ignored
     :param ignored: names of columns of a table to omit
     :raises StatejumpError: the file does not exist, a column is missing or unknown, a value is not finite, or the path
-        does not move or has too few rows
+        is constant or has too few rows
     """
     if start not in STARTS:
         raise NotAllowed("start", start, code="not_one_of", allowed=STARTS, known=", ".join(STARTS))
@@ -122,7 +122,7 @@ def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown", ig
 
 
 def _named(source: Mapping[str, Any]) -> dict[str, np.ndarray]:
-    """Return columns by keys that end with their units, in these units; ISO times are omitted."""
+    """Return columns by keys with units, converted to these units; ISO times are omitted."""
     given = {str(name): np.atleast_1d(np.asarray(values)) for name, values in source.items()}
     columns = [column for column in matched(list(given), COLUMNS, WORDS) if not column.iso]
     return {column.key: column.converted(given[column.name]) if given[column.name].dtype.kind in "iuf"

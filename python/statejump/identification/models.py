@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Joints that can be identified: their parameters, their force, and the start of a search.
-
-Force and displacement also stand for moment and rotation. The force depends on the displacement path, not on its speed.
-"""
+"""Joints that can be identified: parameters, force, and starts of a search. Force and displacement also stand for
+moment and rotation. The force depends on the displacement path, not on its rate."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
@@ -24,11 +22,11 @@ class Parameter:
     :param name: without unit
     :param dimension: ``force``, ``displacement``, ``stiffness``, or ``-``
     :param scale: ``positive``: the search uses its logarithm
-    :param low: bound of the search, in units of the loop's size: half of its force, half of its displacement; signed
-        ones are counted from its middle
-    :param high: likewise
-    :param starts: starts of the search, likewise
-    :param meaning: in words
+    :param low: lower bound of the search, in units of the size of the loop (half of its force range, half of its
+        displacement range); signed parameters are relative to its middle
+    :param high: upper bound
+    :param starts: starts of the search, in the same units
+    :param meaning: description in words
     """
 
     name: str
@@ -40,9 +38,9 @@ class Parameter:
     meaning: str
 
 
-# A loop cannot distinguish a joint a million times stiffer than itself from a rigid one.
+# A joint a million times stiffer than a loop cannot be distinguished from a rigid one.
 FAR = 1e6
-# Friction in the first row as a fraction of its limit; a parameter if it is unknown.
+# Friction in the first row as a fraction of its limit, a parameter if the initial state is unknown.
 START = "initial_friction"
 PARAMETERS = {each.name: each for each in (
     Parameter("stiffness", "stiffness", POSITIVE, 1 / FAR, FAR, (1.0, 2.0, 5.0, 20.0),
@@ -68,11 +66,11 @@ Answer = Callable[[Values, np.ndarray, Memory], np.ndarray]
 class Model:
     """A joint.
 
-    :param name: the name with which a user selects it
+    :param name: name by which users select the joint
     :param parameters: names in PARAMETERS
-    :param answer: force for parameters, displacements and the memory of friction
-    :param formula: for tables
-    :param parts: joints that it contains: the parameters that they lack then have values without effect
+    :param answer: function that returns the force for parameters, displacements and the memory of friction
+    :param formula: formula for tables
+    :param parts: joints that it contains if the parameters that they lack have no effect
     """
 
     name: str
@@ -82,17 +80,18 @@ class Model:
     parts: tuple[str, ...] = ()
 
     def starts(self, names: Sequence[str]) -> list[dict[str, float]]:
-        """Return the starts of a search of some parameters, in units of the loop's size."""
+        """Return the starts of a search for some parameters, in units of the size of the loop."""
         lists = [PARAMETERS[name].starts for name in names]
         return [dict(zip(names, values)) for values in product(*lists)]
 
 
 def _coulomb(values: Values, displacement: np.ndarray, memory: Memory) -> np.ndarray:
-    """A slide with friction f, preload P, spring k_p and play p behind a spring k, between stops of stiffness k_s.
+    """Return the force of a slide with friction f, preload P, spring k_p and play p behind a spring k, between stops
+    k_s.
 
-    Its block rests at x while |k (u - x) - g(x)| <= f. g is the force of preload, spring and stops, and rises with x.
-    So g(x) is a play of half width f in k u. The play p widens the play in u. Within p the spring k is slack, or has
-    the fraction r of its stiffness.
+    The block rests at x while |k (u - x) - g(x)| <= f. g is the force of preload, spring k_p and stops; it increases
+    with x. k x + g(x) therefore follows k u with a play of half width f. The play p widens this play in u. Within p the
+    spring k is slack, or has the fraction r of its stiffness.
     """
     stiffness, friction = values["stiffness"], values.get("friction", 0.0)
     preload, spring = values.get("preload", 0.0), values.get("preload_stiffness", 0.0)
@@ -197,7 +196,7 @@ MODELS = {model.name: model for model in (
 
 
 def containing(name: str) -> list[str]:
-    """Return the joints that contain a joint, the smaller first."""
+    """Return the joints that contain a joint, smaller ones first."""
     return [model.name for model in MODELS.values() if name in parts_of(model.name)]
 
 
@@ -207,18 +206,18 @@ def parts_of(name: str) -> set[str]:
 
 
 def with_part(model: Model, part: Model, values: Values, memory: Memory, displacement: np.ndarray) -> dict[str, float]:
-    """Return the parameters with which a joint has the force of a joint that it contains.
+    """Return the parameters for which a joint has the same force as a joint that it contains.
 
-    :param values: of the part
+    :param values: parameters of the part
     """
     limits = {"friction": 0.0, "preload": 0.0, "preload_stiffness": 0.0, "play": 0.0, "stop_stiffness": inf,
               "clearance_minus": inf, "clearance_plus": inf, "iwan_exponent": -0.5, "iwan_ratio": inf, START: 0.0}
     found = {**{name: limits.get(name, 0.0) for name in (*model.parameters, START)}, **values}
-    if part.name == "linear":  # a slide that never slides: its spring is measured from its position without force
+    if part.name == "linear":  # a slide that never slips: its spring is measured from the position without force
         rest = float(np.mean(displacement - memory.stretch(inf)))
         found.update(friction=inf, preload=values["preload"] + values["stiffness"] * rest)
     if model.answer is _iwan and part.answer is _coulomb and values.get("preload_stiffness"):
-        # The spring of a slide is behind k, that of an Iwan joint is parallel to it.
+        # The preload spring of a slide is in series with k, that of an Iwan joint in parallel.
         stiffness, spring = values["stiffness"], values["preload_stiffness"]
         share = stiffness / (stiffness + spring)
         found.update(stiffness=share * stiffness, friction=share * values["friction"],

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Correlation of the noise from row to row: the equivalent number of independent rows, and the growth of intervals.
+"""Correlation of the noise between rows: the equivalent number of independent rows, and the widening of intervals.
 
-Least squares stay unbiased if the noise is correlated, but their variance grows. Let h be the part of a parameter's
-derivative that no other parameter explains. Independent noise of variance s² gives the estimate the variance s²/(h·h).
-Noise with correlations ρ gives κ s²/(h·h) with κ = Σ ρ(i-j) h(i) h(j)/(h·h). An autoregression of the residuals (Burg)
-estimates the correlations; BIC chooses its order.
+With correlated noise, least squares remain unbiased, but the variance of an estimate grows. Let h be the part of a
+parameter's derivative that no other parameter explains. Its estimate has the variance s²/(h·h) for independent noise of
+variance s², and κ s²/(h·h) for noise with correlations ρ, with κ = Σ ρ(i-j) h(i) h(j)/(h·h). An autoregression of the
+residuals (Burg) estimates the correlations; BIC chooses its order.
 
-The misfit of a joint's formula repeats in every cycle, so more cycles do not average it. With the correlation c of
-residuals one cycle apart, C cycles multiply κ by 1 + (C - 1) c.
+The misfit of the formula of a joint repeats in every cycle, so averaging over cycles does not reduce it. With
+correlation c of residuals one cycle apart, C cycles multiply κ by 1 + (C - 1) c.
 """
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from scipy.signal import fftconvolve, lfilter
 
 MOST_LAGS = 12  # largest order of the autoregression
 ROWS_A_LAG = 10
-SAME_PLACE = 0.5  # correlation of the displacement at a lag above which the lag is a whole number of cycles
-CHANCE = 5.0  # standard deviations of a correlation that count as chance: the largest of hundreds is tested
+SAME_PLACE = 0.5  # correlation of the displacement above which a lag counts as a whole number of cycles
+CHANCE = 5.0  # number of standard deviations of a correlation that count as chance; the largest of hundreds is tested
 FORGOTTEN = 1e-4  # correlations below this are omitted
-REFINEMENTS = 5  # iterations of the correction for fitted parameters; it converges within a percent
+REFINEMENTS = 5  # iterations of the correction for fitted parameters; its error is then below a percent
 
 
 @dataclass(frozen=True)
@@ -45,8 +45,8 @@ class Noise:
 
     @cached_property
     def rows_each(self) -> float:
-        """Number of rows that count as one: 1 + 2 Σ ρ up to the first correlation that is not positive, times the
-        factor of the cycles."""
+        """Number of rows that count as one independent row: 1 + 2 Σ ρ up to the first correlation that is not positive,
+        times the factor of the cycles."""
         positive = self.correlations > 0
         last = len(positive) if positive.all() else int(np.argmin(positive))
         return max(1.0, 2 * float(self.correlations[:last].sum()) - 1) * self._by_cycles
@@ -67,10 +67,10 @@ INDEPENDENT = Noise(np.ones(1))
 
 
 def noise_of(residual: np.ndarray, jacobian: np.ndarray, path: np.ndarray) -> Noise:
-    """Return the noise whose residuals have the correlation of the given ones.
+    """Return the noise that explains the correlation of given residuals.
 
-    :param residual: of every row
-    :param jacobian: its derivatives by the parameters (rows, parameters)
+    :param residual: residual of every row
+    :param jacobian: derivatives of the residual by the parameters (rows, parameters)
     :param path: displacements
     """
     near = _near(residual, jacobian)
@@ -101,7 +101,7 @@ def _near(residual: np.ndarray, jacobian: np.ndarray) -> Noise:
     """Return the correlations of successive rows.
 
     A fit absorbs slow noise: its residuals are less correlated than the noise. With an orthonormal basis Q of the
-    Jacobian and the correlations R of the noise, residuals have those of (1 - Q Qᵀ) R (1 - Q Qᵀ).
+    Jacobian and the correlation matrix R of the noise, that of the residuals is (1 - Q Qᵀ) R (1 - Q Qᵀ).
     """
     most = min(MOST_LAGS, len(residual) // ROWS_A_LAG)
     seen = _products(residual, most + 1)
@@ -131,7 +131,7 @@ def _products(values: np.ndarray, lags: int) -> np.ndarray:
 
 
 def _basis(jacobian: np.ndarray) -> np.ndarray:
-    """Return an orthonormal basis of the columns, without dependent ones."""
+    """Return an orthonormal basis of the columns; linearly dependent columns are omitted."""
     scale = np.linalg.norm(jacobian, axis=0)
     columns = jacobian[:, scale > 0] / scale[scale > 0]
     if not columns.shape[1]:
@@ -141,7 +141,7 @@ def _basis(jacobian: np.ndarray) -> np.ndarray:
 
 
 def _lost(basis: np.ndarray, correlations: np.ndarray, order: int) -> np.ndarray:
-    """Return the loss of the mean products of residuals 0 to ``order`` rows apart, compared with those of the noise."""
+    """Return the reduction by the fit of the mean products of noise 0 to ``order`` rows apart."""
     rows = len(basis)
     both = np.concatenate((correlations[:0:-1], correlations))
     turned = np.array([fftconvolve(column, both)[len(correlations) - 1:len(correlations) - 1 + rows]
@@ -175,7 +175,7 @@ def _order(values: np.ndarray, most: int) -> int:
 
 
 def _autoregression(products: np.ndarray) -> np.ndarray | None:
-    """Return the coefficients of the autoregression of some products (Levinson); None: it is not stable."""
+    """Return the coefficients of the autoregression with these products (Levinson); None: it is unstable."""
     coefficients, left = np.zeros(0), float(products[0])
     for lag in range(1, len(products)):
         if not left > 0:
@@ -189,7 +189,7 @@ def _autoregression(products: np.ndarray) -> np.ndarray | None:
 
 
 def _correlations(coefficients: np.ndarray, rows: int) -> np.ndarray:
-    """Return the correlations of an autoregression, up to the last that matters."""
+    """Return the correlations of an autoregression up to the last one that is not negligible."""
     impulse = np.zeros(4 * rows)
     impulse[0] = 1.0
     answer = lfilter([1.0], np.append(1.0, -coefficients), impulse)

@@ -31,7 +31,7 @@ AUTO = "auto"
 CONFIDENCE = Range(0.5, 0.999)
 # A difference of BIC below this is "not worth more than a bare mention" (Kass and Raftery, JASA 90, 1995).
 BARE_MENTION = 2.0
-# Standard deviations of the correlation of independent residuals, 1/sqrt(n), that count as chance.
+# Number of standard deviations, 1/sqrt(n), of the correlation of independent residuals that count as chance.
 CHANCE = 3.0
 PARAMETER_COLUMNS = ("parameter", "unit", "estimate", "low", "high")
 MODEL_COLUMNS = ("model", "parameters", "noise", "log_likelihood", "bic", "bic_difference")
@@ -41,17 +41,17 @@ MODEL_COLUMNS = ("model", "parameters", "noise", "log_likelihood", "bic", "bic_d
 class Identification:
     """A joint identified from a loop.
 
-    :param loop: as measured
+    :param loop: the measured loop
     :param candidates: the fitted joints, the best by BIC first
-    :param fit: the chosen or requested joint
-    :param intervals: of its parameters
-    :param because: parameters that are not identified because another one, which is named, is at the end of its search
-        range
-    :param limits: for parameters that the joint lacks: the larger joint that has them, and their interval there
-    :param confidence: of the intervals
-    :param target: item of a case that the joint becomes, one of case_section.TARGETS
-    :param normal_force_N: in the test; None: unknown
-    :param journal_radius_m: of a joint that rotates; None: unknown
+    :param fit: fit of the chosen or requested joint
+    :param intervals: intervals of its parameters
+    :param because: for parameters that are not identified: name of the parameter at the end of its search range that
+        causes this
+    :param limits: for parameters that the joint lacks: the larger joint that has the parameter, and its interval there
+    :param confidence: confidence level of the intervals
+    :param target: item of a case for the joint, one of case_section.TARGETS
+    :param normal_force_N: normal force in the test; None: unknown
+    :param journal_radius_m: radius of the journal of a joint that rotates; None: unknown
     """
 
     loop: Loop
@@ -95,13 +95,13 @@ class Identification:
         return {f"{before}.{entry.key}": entry.value for entry in self.entries if entry.value is not None}
 
     def distributions(self) -> dict[str, dict[str, float | str]]:
-        """Return the argument of ``sj.montecarlo``: how well this loop determines the parameters of this joint.
-        Parameters are drawn independently. Scatter between joints needs tests of several joints."""
+        """Return the argument of ``sj.montecarlo``. The distributions describe the uncertainty of the parameters of
+        this joint, drawn independently. To estimate joint-to-joint scatter, test several joints."""
         return case_section.distributions(self.target, self.entries)
 
     @cached_property
     def notes(self) -> list[str]:
-        """Parameters that the loop does not determine, and doubtful results."""
+        """Return notes on parameters that the loop does not determine, and on doubtful results."""
         return [*self._choice(), *self._unbounded(), *self._absent(), *self._laws(), *self._extrapolated(),
                 *self._residuals()]
 
@@ -144,7 +144,8 @@ class Identification:
         return sentences
 
     def _extrapolated(self) -> list[str]:
-        """For partial slip, gross slip is extrapolated before it is reached."""
+        """Return a note if the loop has no gross slip, so that a law of partial slip extrapolates the friction
+        limit."""
         if self.fit.model.answer is MODELS["coulomb"].answer or "friction" not in self.fit.values:
             return []
         alone = {**self.fit.values, "preload": 0.0, "preload_stiffness": 0.0}
@@ -201,7 +202,7 @@ class Identification:
         return dict(zip(names, (displacement, force, fitted, force - fitted)))
 
     def plot(self, axes: tuple[Axes, Axes] | None = None) -> Figure:
-        """Draw loop, fit and residual; into two given axes, or into a new figure."""
+        """Draw loop, fit and residual, into two given axes or into a new figure."""
         return _DRAWN(self, axes)
 
     def summary_lines(self) -> list[Shown | str]:
@@ -256,17 +257,17 @@ def identify(
     BIC selects the joint. Notes list the parameters that the loop does not determine.
 
     :param source: a table, or columns: ``displacement_m`` and ``force_N``, or ``rotation_rad`` and ``moment_N_m``, or
-        the same in other units, row by row as measured. A force is positive where it resists a positive displacement
+        the same in other units, row by row as measured. The force is positive if it resists a positive displacement
     :param model: a joint, several, or ``auto``: all of :data:`statejump.identification.models.MODELS`
     :param start: friction before the first row: ``fresh``: zero; ``cycled``: the path was traversed before;
         ``unknown``: it is a parameter
-    :param confidence: of the intervals, 0.5 to 0.999
-    :param target: item of a case that the joint becomes: ``spring_slider`` (default), ``slider``, ``revolute``,
-        ``umbrella`` (default of rotations), ``torsion_spring``, ``iwan_joint``
+    :param confidence: confidence level of the intervals, 0.5 to 0.999
+    :param target: item of a case for the joint: ``spring_slider`` (default), ``slider``, ``revolute``, ``umbrella``
+        (default of rotations), ``torsion_spring``, ``iwan_joint``
     :param normal_force_N: normal force in the test [N]; converts friction to a coefficient
     :param journal_radius_m: radius of the journal [m]; converts a moment of friction to a coefficient
     :param ignored: names of columns of a table that are not used
-    :raises StatejumpError: the file is no loop, or the joint is unknown
+    :raises StatejumpError: the file is not a loop, or the joint is unknown
     """
     for key, given in (("normal_force_N", normal_force_N), ("journal_radius_m", journal_radius_m)):
         if given is not None and not 0 < given < float("inf"):
@@ -299,7 +300,7 @@ def identify(
 
 
 def _larger(name_of_best: str, name: str) -> str | None:
-    """Return the smallest joint that has the parameters of a joint and another one; None: there is none."""
+    """Return the smallest joint that has the parameters of a joint and one more; None: there is none."""
     model = MODELS[name_of_best]
     have = set(model.parameters)
     if name in have or model.name == "linear" and name != "friction":

@@ -16,7 +16,7 @@ from statejump.kinds.protocol import Capability, Kind, needed, supports
 from statejump.schema.rules import check_name
 
 VARIABLE = "STATEJUMP_KINDS"
-# Module and object of each kind; the module is loaded at the first use.
+# Module and object of each kind; a module is imported at the first use of its kind.
 KINDS: dict[str, str] = {
     name: f"statejump.kinds.{name}:KIND" for name in ("spring_slider", "umbrella", "statics", "truss")
 }

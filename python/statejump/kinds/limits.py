@@ -26,7 +26,7 @@ WIDTH = 6
 
 @dataclass(frozen=True)
 class History:
-    """How large the history of a run is."""
+    """Size of the history of a run."""
 
     samples: int
     values: int

@@ -29,7 +29,7 @@ class _HeaderOnly(Section):
 
 
 def _kind_name(data: Mapping[str, Any]) -> str:
-    """Return the value of ``case.kind``, on which everything else depends."""
+    """Return the value of ``case.kind``, which selects all further checks."""
     header = data.get("case")
     wanted = header.get("kind") if isinstance(header, Mapping) else None
     if not isinstance(wanted, str):
@@ -46,7 +46,7 @@ def parse_case(
     :param data: sections and keys, as tomllib returns them
     :param file: its file, for messages and for paths in the case
     :param text: the file as read
-    :param files_from: folder of the files of temperatures and tables that the case names; None: it may name none
+    :param files_from: folder of the temperature files and tables that the case names; None: such names are rejected
     :raises StatejumpError: one failure; of several the first
     """
     with located(file=file):
@@ -66,7 +66,7 @@ def found_case(path: str | Path) -> Path:
     try:
         if path.exists() or path.is_absolute():
             return path
-    except OSError:  # a name too long, a folder without search permission: reading it reports the reason
+    except OSError:  # a name too long, or a folder without search permission: reading the file reports the reason
         return path
     named = path if path.suffix else path.with_suffix(".toml")
     for place in (_paths.SHARE / named, _paths.SHARE / SHIPPED / named, _paths.SHARE / SHIPPED / "trusses" / named):

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a kind of case is: one object with everything that knows the kind.
+"""Contract of a kind of case: one object declares all that other modules know of the kind.
 
-A kind is a subclass of :class:`Kind` that has a name, a class of cases and capabilities. A capability is a protocol of
-one method, or of methods that belong together. A kind that lacks one leaves its methods out, and what needs it refuses
-the case with one sentence. Capabilities of the layers on the right are :mod:`statejump.control.capabilities` (design)
-and :mod:`statejump.report.capabilities` (text, figures, page).
+A kind is a subclass of :class:`Kind` with a name, a class of cases and capabilities. A capability is a protocol of one
+or several related methods. A kind that lacks a capability does not define its methods, and a command that needs it
+rejects the case. :mod:`statejump.control.capabilities` (design) and :mod:`statejump.report.capabilities` (text,
+figures, page) declare the capabilities of later layers.
 
-A kind of the package names the functions of its methods by their places (:class:`.Later`), so that a command loads no
-more than it needs; a kind of one's own may have plain methods.
+A kind of the package refers to the functions of its methods by name (:class:`.Later`), so that a command imports only
+what it needs. A user's kind may have plain methods.
 """
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from statejump.core.run import Columns, Run
 from statejump.schema.structure import structure
 
 Capability = TypeVar("Capability")
-# What a message calls a capability: the command that needs it.
+# Command that needs a capability, for messages.
 _COMMANDS: dict[type, str] = {}
 _OTHERS = Later("statejump.kinds:names_of_kinds_with")
 
@@ -35,7 +35,7 @@ _OTHERS = Later("statejump.kinds:names_of_kinds_with")
 def capability(command: str) -> Callable[[type[Capability]], type[Capability]]:
     """Declare a protocol as a capability of kinds.
 
-    :param command: that needs it, for the message that refuses other kinds
+    :param command: the command that needs it, for the message that rejects other kinds
     """
     def declared(protocol: type[Capability]) -> type[Capability]:
         _COMMANDS[protocol] = command
@@ -51,7 +51,7 @@ def methods_of(protocol: type) -> list[str]:
 
 @capability("reduced")
 class ReducedModel(Protocol):
-    """The reduced model; ``on_progress`` takes the finished share."""
+    """The reduced model; ``on_progress`` receives the finished fraction, 0 to 1."""
 
     def reduced(self, case: Any, on_progress: OnProgress) -> Run: ...
 
@@ -60,49 +60,50 @@ class ReducedModel(Protocol):
 class TracedModel(Protocol):
     """The reduced model with a record of each iteration of its solver.
 
-    ``trace`` is a CSV file, or a function that takes each row."""
+    ``trace`` is a CSV file, or a function that receives each row.
+    """
 
     def traced(self, case: Any, on_progress: OnProgress, trace: Path | Callable[[tuple[Any, ...]], object]) -> Run: ...
 
 
 @capability("reduced --quasi-static")
 class QuasiStaticModel(Protocol):
-    """Paths of infinitely slow heating, of a kind whose reduced model has inertia."""
+    """Paths under infinitely slow heating, for a kind whose reduced model has inertia."""
 
     def quasi_static(self, case: Any) -> Any: ...
 
 
 @capability("reduced --dynamic")
 class DynamicModel(Protocol):
-    """The reduced model with inertia, of a kind whose reduced model has none."""
+    """The reduced model with inertia, for a kind whose reduced model has none."""
 
     def dynamic(self, case: Any, on_progress: OnProgress) -> Run: ...
 
 
 @capability("dem")
 class DemInput(Protocol):
-    """What the scene in YADE needs, as plain values."""
+    """Input of the scene in YADE, as plain values."""
 
     def dem_input(self, case: Any) -> dict[str, Any]: ...
 
 
 @capability("dem --keep-input")
 class DemValues(Protocol):
-    """The data that the script in YADE reads; :class:`Kind` makes it of the input."""
+    """Data that the script in YADE reads; :class:`Kind` makes them from the scene's input."""
 
     def dem_values(self, case: Any) -> dict[str, Any]: ...
 
 
 @capability("dem run")
 class DemResult(Protocol):
-    """A finished or interrupted DEM run of the columns that YADE wrote."""
+    """Makes a finished or interrupted DEM run from the columns that YADE wrote."""
 
     def dem_run(self, case: Any, columns: Columns, about: Mapping[str, Any]) -> Run: ...
 
 
 @capability("dem")
 class DemModel(Protocol):
-    """The DEM as a whole; :class:`Kind` makes it of input and result."""
+    """The whole DEM run; :class:`Kind` composes it from input and result."""
 
     def dem(self, case: Any, on_progress: OnProgress) -> Run: ...
 
@@ -118,7 +119,7 @@ class ModelComparison(Protocol):
 
 @capability("difference")
 class RunDifference(Protocol):
-    """Two runs of one model, at the same times."""
+    """Comparison of two runs of one model at the same times."""
 
     def difference(self, case: Any, first: Run, second: Run) -> list[Quantity]: ...
 
@@ -132,42 +133,42 @@ class ItemNames(Protocol):
 
 @capability("scene")
 class SceneDescription(Protocol):
-    """What to draw of its parts, see :mod:`statejump.results.scene`."""
+    """Parts of a case for drawings, see :mod:`statejump.results.scene`."""
 
     def scene(self, case: Any) -> dict[str, Any]: ...
 
 
 @capability("sweep")
 class Outcomes(Protocol):
-    """What a campaign records of a run, by the names of ``Kind.OUTCOMES``."""
+    """Numbers that a campaign records of a run, by the names in ``Kind.OUTCOMES``."""
 
     def outcomes(self, case: Any, run: Run) -> dict[str, float]: ...
 
 
 @capability("quick")
 class QuickModel(Protocol):
-    """The reduced model with as few samples as its outcomes need."""
+    """The reduced model with as few samples as its outcomes need, for campaigns."""
 
     def quick(self, case: Any) -> Run: ...
 
 
 @capability("laws")
 class JointOfLaws(Protocol):
-    """The joint as the curves of the contact laws need it."""
+    """The joint of a case as input of the contact-law curves."""
 
     def laws(self, case: Any) -> Any: ...
 
 
 @capability("fclib write")
 class ContactProblems(Protocol):
-    """Frictional contact problems of steps of the path."""
+    """Frictional contact problems of steps along the path."""
 
     def contact_problems(self, case: Any, number: int, on_progress: OnProgress) -> list[Any]: ...
 
 
 @capability("truss surface")
 class ReflectorSurface(Protocol):
-    """The drawn surface of a reflector and the positions of its nodes (k, 3) [m]."""
+    """The surface of a reflector in the reference configuration, and the positions of its nodes (k, 3) [m]."""
 
     def surface(self, case: Any) -> tuple[Any, np.ndarray]: ...
 
@@ -183,27 +184,27 @@ class Kind(Generic[CaseType]):
 
     name: ClassVar[str]
     Case: ClassVar[type[Definition]]
-    # Columns of one value a sample in the order of the CSV files, of either model.
+    # Columns with one value per sample, in the order of the CSV files; for both models.
     COLUMNS: ClassVar[tuple[str, ...]] = ()
-    # Words of this kind for report and figures: of columns, contacts, links, stages, by their keys; with "stage "
-    # in front of its name what a stage means.
+    # Labels for report and figures by key: columns, contacts, links, stages. The key ``stage NAME`` has the meaning of
+    # a stage.
     LABELS: ClassVar[Mapping[str, str]] = {}
-    # Names of what a campaign records of a run, in the order of its table; each ends in its unit.
+    # Names of the numbers that a campaign records of a run, in the order of its table; each ends in its unit.
     OUTCOMES: ClassVar[tuple[str, ...]] = ()
-    # Numbers of a run's summary that stand for where a program ends that does not end at the reference temperature.
+    # Summary numbers at the end of a program that does not end at the reference temperature.
     AT_PROGRAM_END: ClassVar[tuple[str, ...]] = ()
     # Models whose runs ``outcomes`` can measure.
     OUTCOMES_OF: ClassVar[tuple[str, ...]] = ("reduced", "dem")
-    # Module that builds the scene in YADE, or the path of its file; by default scene_NAME beside the runner.
+    # Module that builds the scene in YADE, or the path of its file; default: scene_NAME beside the runner.
     SCENE: ClassVar[str] = ""
 
     def dem(self, case: CaseType, on_progress: OnProgress) -> Run:
-        """Run a case in YADE. A kind whose scene needs more than the case itself has its own."""
+        """Run a case in YADE. A kind whose scene needs more than the case overrides this method."""
         return yade_process.run(case, self.dem_values(case), needed(self, DemResult, case).dem_run, on_progress)
 
     def check_dem(self, case: CaseType) -> None:
-        """Raise StatejumpError where the DEM cannot run a case, as far as that is known before anything is solved. A
-        kind whose scene needs a solution has its own."""
+        """Raise StatejumpError if the DEM cannot run a case, as far as this is known before a solution. A kind whose
+        scene needs a solution overrides this method."""
         self.dem_values(case)
         yade_process.find_yade()
 
@@ -212,7 +213,7 @@ class Kind(Generic[CaseType]):
         return {"scene": self.scene_module(), **needed(self, DemInput, case).dem_input(case)}
 
     def has_model(self, model: str) -> bool:
-        """Return whether cases of this kind can be run in a model: ``reduced`` or ``dem``."""
+        """Return whether a model, ``reduced`` or ``dem``, can run cases of this kind."""
         return supports(self, {"reduced": ReducedModel, "dem": DemResult}[model])
 
     def campaign_models(self) -> tuple[str, ...]:
@@ -220,16 +221,17 @@ class Kind(Generic[CaseType]):
         return tuple(model for model in self.OUTCOMES_OF if self.has_model(model))
 
     def outcome_names(self, case: CaseType) -> tuple[str, ...]:
-        """Return the names of ``OUTCOMES`` that a case can have."""
+        """Return the names in ``OUTCOMES`` that apply to a case."""
         return self.OUTCOMES
 
     def recorded(self, case: CaseType, run: Run) -> dict[str, float]:
-        """Return the outcomes of a run, and where its program ends if that is not at the reference temperature."""
+        """Return the outcomes of a run, plus ``AT_PROGRAM_END`` if the program ends at another temperature than it
+        began."""
         found = needed(self, Outcomes, case).outcomes(case, run)
         return found if case.ending is None else {**found, **{name: run.summary[name] for name in self.AT_PROGRAM_END}}
 
     def samples(self, case: CaseType, model: str) -> int:
-        """Return how many samples a run of a model has."""
+        """Return the number of samples of a run."""
         return case.samples_per_cycle * case.thermal.cycles + 1
 
     def scene_module(self) -> str:
@@ -254,7 +256,7 @@ def supports(kind: Kind[Any], protocol: type) -> bool:
 
 
 def needed(kind: Kind[Any], protocol: type[Capability], case: Definition) -> Capability:
-    """Return a kind as what has a capability.
+    """Return a kind, typed as a capability.
 
     :raises NotAllowed: it lacks the capability; the sentence names the kinds that have it
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs of a case in one of its models."""
+"""Runs a case in one of its models."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -51,7 +51,7 @@ def _traced(case: Case, name: str, progress: Progress, trace: Trace) -> Run:
 
 
 def _keeping(case: Case, folder: Path) -> Callable[[Any, OnProgress], Run]:
-    """Return a DEM run whose input is in a folder."""
+    """Return a function that runs the DEM and keeps its input in a folder."""
     make_run = require(case, DemResult).dem_run
     values = require(case, DemValues).dem_values(case)
     yade_process.keep_input(values, folder)
@@ -79,6 +79,6 @@ def quasi_static(case: Case) -> Any:
 
 
 def check_dem(case: Case) -> None:
-    """Check what the DEM of a case needs; see :meth:`statejump.Case.check_dem`."""
+    """Check the requirements of the DEM run of a case; see :meth:`statejump.Case.check_dem`."""
     require(case, DemInput)
     require(case, DemModel).check_dem(case)

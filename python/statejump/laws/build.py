@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""User laws: one header, compiled against the kernel into a shared object that programs find by name."""
+"""User laws: one header, compiled with the kernel into a shared object that programs find by the name of the law."""
 from __future__ import annotations
 
 import hashlib
@@ -16,8 +16,8 @@ from statejump.core.output import write_bytes
 from statejump.core.reading import is_file
 
 COMPILERS = ("c++", "g++", "clang++")
-# The flags of the project, so that results repeat bit for bit. Symbols are hidden, so that no function of this object
-# replaces one of the program.
+# The compiler flags of the project, so that results are bitwise equal. Hidden symbols do not replace functions of the
+# program.
 FLAGS = ("-std=c++17", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-fvisibility=hidden")
 SOURCE = """\
 #include {header}
@@ -39,8 +39,8 @@ def default_folder() -> Path:
 def build(header: Path, folder: Path | None = None) -> Path:
     """Compile the law of a header, and write it to a folder that programs search.
 
-    The header defines a type like those of the catalogue, and names it by ``using UserLaw = ...;``. Its includes are
-    found beside it and in the kernel.
+    The header defines a type like those of the catalogue, and declares it as ``using UserLaw = ...;``. Includes are
+    searched beside the header and in the kernel.
 
     :param header: file of the law
     :param folder: folder of the shared object; None: :func:`default_folder`. Another folder is searched if

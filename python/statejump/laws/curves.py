@@ -19,7 +19,7 @@ from statejump.laws.traits import law, names
 IMPACT_LAW = "hertz_internal"
 RESTITUTION = 0.8
 IMPACT_SPEED_m_per_s = 0.1
-# Okabe-Ito colours, each with its own line style, so that curves differ without colour.
+# Okabe-Ito colours with a line style each, so that curves also differ without colour.
 STYLES = (
     {"color": "#000000", "linestyle": "-", "linewidth": 1.3},
     {"color": "#E69F00", "linestyle": "-", "linewidth": 3.2},
@@ -33,7 +33,7 @@ STYLES = (
 
 @dataclass(frozen=True)
 class Joint:
-    """A revolute joint with clearance, as the normal laws use it, and its effective mass."""
+    """A clearance revolute, as input of the normal laws, and its effective mass."""
 
     title: str
     journal_radius_m: float
@@ -44,18 +44,18 @@ class Joint:
 
 
 def paper_joint() -> Joint:
-    """Joint of the paper's Tables 2 and 3, with the choices of cases/umbrella.toml."""
+    """Return the joint of the paper's Tables 2 and 3, with the settings of cases/umbrella.toml."""
     modulus = _engine.effective_young_modulus_Pa(70e9, 0.3, 70e9, 0.3)
     return Joint("joint of Tables 2 and 3", 5e-3, 5.1e-3, 0.01, modulus, reduced_mass_kg(0.5, 1.0))
 
 
 def reduced_mass_kg(mass_ab_kg: float, mass_bc_kg: float) -> float:
-    """Reduced mass of two links that meet at their tips; each tip has a third of the mass of its link."""
+    """Return the reduced mass of two links that meet at their tips, with a third of each link's mass at its tip."""
     return 1 / (3 / mass_ab_kg + 3 / mass_bc_kg)
 
 
 def normal_force(name: str, joint: Joint, depth_m: np.ndarray) -> dict[str, np.ndarray]:
-    """Force, stiffness, contact width and energy of a normal law; ValueError outside its range."""
+    """Return force, stiffness, contact width, energy of a normal law. :raises ValueError: the depth is out of range"""
     return _engine.normal_force(
         name, depth_m, joint.journal_radius_m, joint.bearing_radius_m, joint.contact_length_m,
         joint.effective_young_modulus_Pa,
@@ -63,10 +63,8 @@ def normal_force(name: str, joint: Joint, depth_m: np.ndarray) -> dict[str, np.n
 
 
 def range_end_m(name: str, joint: Joint) -> tuple[float, bool]:
-    """Return the depth [m] at which a normal law ends, and whether the law itself rejects larger depths.
-
-    A law without such a limit is drawn until its contact is as wide as the journal.
-    """
+    """Return the depth [m] at which the curve of a normal law ends, and whether the law itself rejects larger depths.
+    Without such a limit, the curve ends where the contact is as wide as the journal."""
     end = _engine.largest_depth_m(name, joint.journal_radius_m, joint.bearing_radius_m)
     if end < inf:
         return end, True
@@ -80,7 +78,7 @@ def range_end_m(name: str, joint: Joint) -> tuple[float, bool]:
 
 @dataclass(frozen=True)
 class Impact:
-    """A free impact of the joint's reduced mass, from the beginning to the end of contact."""
+    """A free impact of the joint's reduced mass, from the first to the last instant of contact."""
 
     depth_m: np.ndarray
     force_N: np.ndarray
@@ -91,8 +89,8 @@ def impact(dissipation: str, joint: Joint, restitution: float = RESTITUTION,
            speed_m_per_s: float = IMPACT_SPEED_m_per_s, steps: int = 1000) -> Impact:
     """Integrate one impact on ``IMPACT_LAW`` by Runge-Kutta steps.
 
-    :param restitution: given to the dissipation law
-    :param steps: steps over about a third of the impact
+    :param restitution: coefficient of restitution for the dissipation law
+    :param steps: number of steps in about a third of the impact
     """
     mass = joint.reduced_mass_kg
     ratio = _engine.damping_ratio_s_per_m(dissipation, restitution, speed_m_per_s)
@@ -114,13 +112,13 @@ def impact(dissipation: str, joint: Joint, restitution: float = RESTITUTION,
         k3 = rates(*(y + step / 2 * k2))
         k4 = rates(*(y + step * k3))
         states.append(y + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4))
-    states[-1][0] = 0.0  # one step later the force is zero and the speed is final
+    states[-1][0] = 0.0  # after another step the force would be zero and the speed final
     depth, rate = np.array(states).T
     return Impact(depth, np.array([force(*state) for state in states]), float(-rate[-1] / speed_m_per_s))
 
 
 def figure(joint: Joint, folder: Path, name: str) -> list[Path]:
-    """Write ``<name>.png`` and ``<name>.svg``: every normal law, one impact per dissipation law."""
+    """Write ``<name>.png`` and ``<name>.svg``: every normal law, and one impact per dissipation law."""
     with project_style():
         drawing, (left, right) = panels(1, 2, (9.5, 4.6))
         _draw_normal(left, joint)
@@ -134,7 +132,7 @@ def _draw_normal(panel: Axes, joint: Joint) -> None:
     ends = {name: range_end_m(name, joint) for name in names("normal")}
     first = 1e-4 * min(clearance, *(end for end, _ in ends.values()))
     for style, (name, (end, refuses)) in zip(cycle(STYLES), ends.items()):
-        # Dense towards the end, where the curves of some laws bend upwards.
+        # Denser towards the end, where some curves bend upwards.
         depth = np.geomspace(first, end, 400)[:-1]
         depth = np.append(depth, end * (1 - np.geomspace(1e-2, 1e-9, 60)))
         depth.sort()

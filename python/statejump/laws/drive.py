@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One contact driven along a given path, with any law of the catalogue: the response of the law, for tests."""
+"""Response of any law of the catalogue at one contact that is driven along a given path, for tests."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -16,12 +16,12 @@ from statejump.core.table_files import read_known
 from statejump.core.tables import check_columns, write_columns
 from statejump.laws.traits import Law, catalogue
 
-# Kinds of laws that can be driven; the first kind that has the name is used.
+# Kinds of laws that can be driven. If several kinds have a law of the name, the first kind counts.
 DRIVEN = ("friction", "normal", "dissipation")
 NORMAL = ("penetration_depth_m", "normal_force_N")
 ALONG = ("slide_m", "slide_x_m", "tangential_force_N")
 COLUMNS = ("time_s", *NORMAL, *ALONG, "slide_y_m")
-# A refined path is kept in memory as a whole.
+# The whole refined path is kept in memory.
 MOST_STEPS = 10_000_000
 
 
@@ -43,9 +43,9 @@ def drive(
 ) -> dict[str, np.ndarray]:
     """Drive one contact along a path, and return the response of a law of the catalogue.
 
-    The contact begins at the first row, without slide. A row is a reversal of the path, or a point of a straight part.
-    A negative penetration depth is an open contact: it has no force, and friction loses its memory. When the depth is
-    positive again, a new contact begins.
+    The contact begins at the first row, without slide. A row is a reversal point of the path, or a point of a straight
+    section. A negative penetration depth is an open contact: it has no force, and friction loses its memory. When the
+    depth is positive again, a new contact begins.
 
     Columns of the history: ``penetration_depth_m`` or ``normal_force_N``; ``slide_m``, or ``slide_x_m`` with
     ``slide_y_m``, or ``tangential_force_N``; ``time_s`` for a law that depends on velocity. Slides are those of body 1
@@ -56,24 +56,24 @@ def drive(
     :param history: the columns, or a CSV file with them
     :param effective_young_modulus_Pa: E* [Pa], 1/E* = (1 - ν1²)/E1 + (1 - ν2²)/E2
     :param effective_shear_modulus_Pa: G* [Pa], 1/G* = (2 - ν1)/G1 + (2 - ν2)/G2
-    :param effective_radius_m: R [m]; of a journal in a bore R1 R2/(R2 - R1)
+    :param effective_radius_m: R [m]; for a journal in a bore R1 R2/(R2 - R1)
     :param friction_coefficient: μ [-]
     :param steps_per_row: number of equal steps between two rows
     :param radial_clearance_m: R2 - R1 [m]; default: that of a flat wall. A law of a line contact needs it
-    :param contact_length_m: of a line contact [m]; default: that of the catalogue
+    :param contact_length_m: length of a line contact [m]; default: that of the catalogue
     :param restitution: for a dissipation law [-]; default: that of the catalogue
     :param smallest_impact_speed_m_per_s: for a dissipation law; default: that of the catalogue
     :param v0_m_per_s: for the friction law that reads it; default: that of the catalogue
     :param v1_m_per_s: likewise
     :return: arrays by column, with one value per step: the columns of the history; ``row`` (counted from 1, with
-        fractions between); the missing ones of ``penetration_depth_m``, the slides, ``normal_force_N``,
-        ``tangential_force_N`` (or ``tangential_force_x_N``, ``tangential_force_y_N``); energies
-        ``normal_elastic_energy_J`` and ``tangential_elastic_energy_J``; ``friction_dissipation_J`` and
-        ``damping_dissipation_J`` since the first row; ``slipping``, 1 where friction is at its limit; ``memory_points``
-        and ``merged_force_N`` of a law with partial slip
-    :raises StatejumpError: an unknown law, a column that is missing or has no meaning here, a value that is no number
-        or out of range; :class:`~statejump.core.errors.FailedRun`, with the row: a depth outside the range of the
-        normal law, or a force that friction cannot reach
+        fractions between); those of ``penetration_depth_m``, slides, ``normal_force_N``, ``tangential_force_N`` that
+        the history lacks (or ``tangential_force_x_N``, ``tangential_force_y_N``); energies ``normal_elastic_energy_J``
+        and ``tangential_elastic_energy_J``; ``friction_dissipation_J`` and ``damping_dissipation_J`` since the first
+        row; ``slipping``, 1 where friction is at its limit; ``memory_points`` and ``merged_force_N`` of a law with
+        partial slip
+    :raises StatejumpError: an unknown law, a missing or unsuitable column, a value that is not a number or out of
+        range; :class:`~statejump.core.errors.FailedRun`, with the row: a depth outside the range of the normal law, or
+        a force that friction cannot reach
     """
     kind, known = _driven(law)
     file, columns = _columns(history)
@@ -116,7 +116,7 @@ def drive(
 
 
 def drive_file(law: str, history: Path, written: Path, **options: Any) -> Path:
-    """As :func:`drive`, from a CSV file to a CSV file. Return the file written."""
+    """As :func:`drive`, from one CSV file to another. Return the written file."""
     write_columns(drive(law, history, **options), written)
     return written
 
@@ -144,7 +144,7 @@ def _columns(history: Mapping[str, Any] | str | Path) -> tuple[Path | None, dict
 
 
 def _check(columns: Mapping[str, np.ndarray], kind: str, law: Law) -> None:
-    """Refuse columns that do not define a path for the law. :raises StatejumpError: the first fault"""
+    """Raise an error for columns that do not define a path for the law. :raises StatejumpError: the first fault"""
     for name in columns:
         if name not in COLUMNS:
             near = get_close_matches(name, COLUMNS, 1)
@@ -186,7 +186,7 @@ def _one_of(columns: Mapping[str, np.ndarray], names: tuple[str, ...], needs: st
 
 
 def _refined(columns: Mapping[str, np.ndarray], steps: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Return the number of the row and the columns, with equal steps between rows."""
+    """Return row numbers and columns, with equal steps between rows."""
     rows = len(next(iter(columns.values())))
     row = np.arange((rows - 1) * steps + 1) / steps
     return row + 1, {name: np.interp(row, np.arange(rows), values) for name, values in columns.items()}
@@ -201,7 +201,7 @@ def _or_default(parameter: str, value: float | None) -> float:
 
 def _named(path: dict[str, np.ndarray], answer: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Return the columns of the path, and those of the response that the path lacks. A path in one direction has no
-    second direction."""
+    columns for the second direction."""
     if "slide_y_m" not in path:
         for name in ("slide_y_m", "tangential_force_y_N"):
             del answer[name]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Descriptions of the laws of the catalogue: the traits of their types in C++, as data."""
+"""Descriptions of the laws in the catalogue: the traits of their C++ types, as data."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -39,11 +39,11 @@ class Law:
     range: str  # range of validity, and the errors outside
     holds_static_load: bool
     frictionless: bool
-    has_memory: bool  # keeps a history; else a smooth function of the velocity
-    needs_axis: bool  # neither in a socket nor on a flat face
+    has_memory: bool  # True: the law keeps a history; False: a smooth function of the velocity
+    needs_axis: bool  # invalid in a socket and on a flat face
     accepts_bulging_wall: bool
     point_contact: bool  # Hertz's
-    needs_point_contact: bool  # valid only under a normal law that is a point contact
+    needs_point_contact: bool  # valid only with a normal law for a point contact
     parameters: tuple[Parameter, ...]
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Page of a campaign: distributions of its outcomes, or their curves over a grid, and their correlation with the varied
-parameters. Uses the campaign's table of samples."""
+"""Page of a campaign, from its table of samples: distributions of outcomes, or their curves over a grid, and their
+correlation with the varied parameters."""
 from __future__ import annotations
 
 import json
@@ -17,13 +17,13 @@ from statejump.core.hdf5 import is_ours, objects, opened
 from statejump.core.units import scale_of, text
 from statejump.report import labels
 
-BARS = 60  # of a histogram, as in the figures of the commands
+BARS = 60  # number of bars of a histogram, as in figures of the commands
 QUANTILES = ("quantile_5", "median", "quantile_95")
-FEWEST_MANY_POINTS = 2000  # number of points of a sweep above which a page shows every n-th
+FEWEST_MANY_POINTS = 2000  # number of points of a sweep above which the page omits points
 
 
 def _one(place: str, value: Any) -> Any:
-    """Return the value of an attribute: one text or number. :raises ValueError: it has another type"""
+    """Return the value of an attribute: a single text or number. :raises ValueError: it has another type"""
     if not isinstance(value, (str, int, float, np.integer, np.floating)):
         raise ValueError(f"{place} is not one text or number")
     return value
@@ -52,7 +52,7 @@ class Variable:
 
 
 def is_campaign(path: Path) -> bool:
-    """Whether a file is the table of samples of a campaign."""
+    """Return whether a file is the table of samples of a campaign."""
     if not is_ours(path):
         return False
     with opened(path) as file:
@@ -120,12 +120,12 @@ class CampaignDocument:
 
     @property
     def command_line(self) -> str:
-        """The command that made the file, without its campaign."""
+        """Return the command that made the file, without the campaign."""
         return f"statejump {self.command}"
 
     @property
     def kind(self) -> str:
-        """Name of the campaign's type in the page's list of runs."""
+        """Type of the campaign in the list of runs of the page."""
         return "campaign"
 
     @property
@@ -149,7 +149,7 @@ class CampaignDocument:
         ]
 
     def cards(self) -> list[dict[str, Any]]:
-        """Numbers at the top: median and spread of the first outcomes."""
+        """Return numbers for the top of the page: median and spread of the first outcomes."""
         shown = {"median": "median", "quantile_5": "5 % are below", "quantile_95": "5 % are above",
                  "quantile_99": "1 % are above", "minimum": "smallest", "maximum": "largest"}
         if self.command == "sweep":  # a grid has no frequency distribution
@@ -160,7 +160,7 @@ class CampaignDocument:
         ]
 
     def _text(self, outcome: Variable, key: str) -> str:
-        """Return a number of the statistics as text; an extreme with its sample."""
+        """Return a number of the statistics as text; an extreme value with its sample."""
         found = self.statistics[outcome.name]
         said = text(found[key], outcome.unit, 4)
         sample = found.get(f"{key}_sample")
@@ -209,7 +209,7 @@ class CampaignDocument:
         }
 
     def _ranks(self, outcome: Variable) -> dict[str, Any]:
-        """Rank correlation of an outcome with each parameter, the strongest first."""
+        """Return the rank correlation of an outcome with each parameter, the strongest first."""
         from statejump.campaign.summary import spearman  # as outputs
 
         bars = [
@@ -220,7 +220,7 @@ class CampaignDocument:
         return {"title": outcome.title, "bars": sorted(known, key=lambda bar: -abs(bar["value"]))}
 
     def _curve(self, outcome: Variable) -> dict[str, Any]:
-        """An outcome over the first parameter, a line for each value of the second."""
+        """Return an outcome over the first parameter, with a line for each value of the second."""
         first, second = self.parameters[0], self.parameters[1] if len(self.parameters) > 1 else None
         if len(self.parameters) > 1 and len(np.unique(first.values)) < len(np.unique(self.parameters[1].values)):
             first, second = self.parameters[1], self.parameters[0]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Capabilities of kinds for presentation: text, figures, parts of the page; see :mod:`statejump.kinds.protocol`."""
+"""Capabilities of kinds for presentation: text, figures, part of the page; see :mod:`statejump.kinds.protocol`."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -48,20 +48,20 @@ class PageCharts(Protocol):
 
 @capability("event reason")
 class EventReasons(Protocol):
-    """Reasons why only one model has an event; "": unknown."""
+    """Reasons why only one of the models has an event; "": unknown."""
 
     def event_reason(self, case: Any, event: Event, model: str, runs: Mapping[str, Run]) -> str: ...
 
 
 @capability("page")
 class PagePart(Protocol):
-    """The part of the page of ``statejump report`` that only this kind has; None: not for this result."""
+    """The part of the page of ``statejump report`` that only this kind has; None: no part for this result."""
 
     def page(self, result: Result, case: Any) -> Any: ...
 
 
 @capability("truss draw")
 class CaseDrawing(Protocol):
-    """Drawing of a case before anything is solved."""
+    """Drawing of a case that has not been solved."""
 
     def draw(self, case: Any, axes: Axes | None = None, names: bool = False) -> Figure: ...

@@ -16,16 +16,16 @@ from statejump.kinds import has, require
 from statejump.report.capabilities import PageCharts
 from statejump.report.labels import Labels
 
-# Columns about the model itself, not about the structure.
+# Columns about the run of a model, not about the structure.
 NOT_SHOWN = {"time_s", "temperature_change_K", "slipping", "stop_contact", "stage"}
 MOST_OTHER_LOOPS = 4
-STATE_UNITS = {"m", "rad"}  # units of displacements: forces have no state jump
+STATE_UNITS = {"m", "rad"}  # units of displacements; quantities with other units, such as forces, have no state jump
 
 
 def charts_of(case: Case | None, run: Run, labels: Labels) -> list[Chart]:
     """Return the charts of a run: those of its kind, or loops of its first plain columns.
 
-    :param case: None: this version does not support the case of the file
+    :param case: the case; None: this version cannot read the case of the file
     """
     if case is not None and has(case, PageCharts):
         found: list[Chart] = require(case, PageCharts).charts(case)
@@ -50,8 +50,8 @@ LEFT = " less its straight part"  # suffix of the name of a column
 def with_thin_loops(
     given: Sequence[Chart], columns: Mapping[str, dict[str, np.ndarray]], units_of: dict[str, str], labels: Labels
 ) -> list[Chart]:
-    """Return the charts, each followed by one without the reversible part if its loop is thin. The new column is added
-    to ``columns`` and ``units_of``. The subtracted line is that of the first model."""
+    """Return the charts. A chart with a thin loop is followed by one without the reversible part, a straight line
+    fitted to the first model. Its new column is added to ``columns`` and ``units_of``."""
     found = []
     for chart in given:
         found.append(chart)
@@ -65,7 +65,7 @@ def with_thin_loops(
         units_of[y + LEFT] = unit = units_of.get(y, "-")
         scale, written = units.scale_of(unit, abs(line.slope))
         slope = f"{line.slope * scale:.5g} {written}/K".replace("-", "−", 1)
-        # The label is short, because its length is limited by the height of the chart.
+        # A short label, because the height of the chart limits its length.
         found.append(replace(chart, y=Axis(y + LEFT, chart.y.label or labels.plain(y)),
                              title=f"{chart.title},{LEFT} of {slope}"))
     return found
@@ -87,10 +87,10 @@ def shown(
 ) -> dict[str, Any] | None:
     """Return a chart for the page; None if no model has its columns.
 
-    :param columns: by model and name
+    :param columns: columns by model and name
     :param unit_of: unit of every column
-    :param marks: events to mark: ``time_s``, ``label``, ``value``, ``role``; the value of a ``jump`` is that of the
-        chart's own quantity
+    :param marks: events to mark: ``time_s``, ``label``, ``value``, ``role``; the value of a ``jump`` is replaced by
+        that of the quantity of the chart
     """
     models = [model for model, values in columns.items() if {chart.x.column, chart.y.column} <= set(values)]
     if not models:

@@ -16,7 +16,7 @@ def kept_samples(
     Greedy splitting (Ramer 1972, Douglas and Peucker 1973) with the error of linear interpolation in time: the sample
     with the largest error is selected next, until no error exceeds the tolerance.
 
-    :param time_s: rising (samples)
+    :param time_s: times in ascending order (samples)
     :param columns: (samples, columns); only finite values count
     :param most: largest number of samples
     :param tolerance: allowed error, as a fraction of the range of each column

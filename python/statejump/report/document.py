@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Page of one result: texts and tables, and data for charts and replay.
 
-Only this module knows both the result file (through its reader) and the page. The data for the page's script are plain
-JSON, :func:`Document.payload`; columns are numbers, or base64 of little-endian float32 (``f``) or uint8 (``u``).
+Only this module uses both the reader of result files and the page. The data for the page's script are plain JSON,
+:func:`Document.payload`; columns are numbers, or base64 of little-endian float32 (``f``) or uint8 (``u``).
 """
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ TOLERANCE = 2e-4  # allowed error of decimation, as a fraction of a column's ran
 MOST_SAMPLES = 4000  # samples of a model on a page
 FEWEST_SAMPLES = 200
 BYTES_PER_VALUE = 16 / 3  # float32 as base64
-MOST_GUIDES = 200  # columns that determine the kept samples; the error is that of all columns
+MOST_GUIDES = 200  # number of columns that determine the kept samples; the error is that of all columns
 MOST_EVENTS = 60  # rows of the table
-SAME_EVENT = 0.05  # fraction of a cycle within which two events of the models are one
+SAME_EVENT = 0.05  # fraction of a cycle within which events of two models count as one
 MARKED_EVENTS = ("first_contact", "first_slip", "stop_reached", "stop_left")
 
 
@@ -105,7 +105,7 @@ class Document:
 
     @property
     def command_line(self) -> str:
-        """The command that made the file, without its case."""
+        """Return the command that made the file, without the case."""
         return f"statejump {self.result.command}"
 
     @property
@@ -127,7 +127,7 @@ class Document:
         return "pass", f"Both models agree: all {len(rows)} compared quantities are within tolerance."
 
     def cards(self) -> list[dict[str, Any]]:
-        """Numbers at the top: state jumps of every model, then the first contact or slip."""
+        """Return numbers for the top of the page: state jumps of every model, then the first contact or slip."""
         models = self.result.models
         names = dict.fromkeys(name for run in models.values() for name, value in run.summary.items()
                               if ("jump" in name or "at_program_end" in name) and math.isfinite(value))
@@ -156,12 +156,12 @@ class Document:
         return cards
 
     def inputs(self) -> list[tuple[str, list[tuple[str, str]]]]:
-        """Sections of the case file with all defaults: key, value."""
+        """Return the sections of the case file with all defaults, as pairs of key and value."""
         return sections_of(self._values)
 
     @property
     def sides(self) -> list[str]:
-        """Sources of compared values, in the order of the columns of the table."""
+        """Return the sources of compared values, in the order of the columns of the table."""
         return sides(self.result.rows or ())
 
     def comparison(self) -> list[dict[str, Any]]:
@@ -174,15 +174,15 @@ class Document:
             "name": self._labels.plain(name) + (f", {rest}" if rest else ""),
             "values": [text(row.values[side], row.unit) if side in row.values else "" for side in self.sides],
             "difference": text(row.difference, row.unit, 3), "tolerance": text(row.tolerance, row.unit, 3),
-            # Used fraction of the tolerance: a bar in the table.
+            # Used fraction of the tolerance, drawn as a bar in the table.
             "used": min(1.0, abs(row.difference) / row.tolerance) if row.difference is not None and row.tolerance
             else None,
             "passed": row.passed,
         }
 
     def events(self) -> tuple[list[dict[str, Any]], int]:
-        """Rows of the table of events in order of time, and the number of omitted rows. Events of the models share a
-        row if they are of one kind, at one contact and nearly at one time."""
+        """Return the rows of the table of events in order of time, and the number of omitted rows. Events of several
+        models share a row if kind and contact are equal and their times nearly so."""
         near = SAME_EVENT * self._cycle_s
         rows: list[dict[str, Any]] = []
         for model, run in self.result.models.items():
@@ -228,7 +228,7 @@ class Document:
         return end / self._cycles
 
     def stages(self) -> list[dict[str, Any]]:
-        """Stages of the first model that has any: name, meaning, begin, end."""
+        """Return the stages of the first model that has any: name, meaning, begin, end."""
         for run in self.result.models.values():
             column = run.history.get("stage")
             if column is None or not column.labels:
@@ -302,13 +302,13 @@ class Document:
         affordable = int(budget_bytes / (BYTES_PER_VALUE * max(1, len(moving))))
         most = min(MOST_SAMPLES, max(FEWEST_SAMPLES, affordable))
         time_s = columns["time_s"]
-        # Linear interpolation cannot follow a state, so both samples of a change are kept, if there is room.
+        # A state cannot be interpolated, so both samples at a change are kept if there is room.
         states = [values for values in moving if values.dtype == np.uint8]
         turned = np.any([np.diff(values) != 0 for values in states], axis=0) if states else np.zeros(0, bool)
         turns = np.flatnonzero(turned)
         always = np.unique(np.concatenate((turns, turns + 1)))
         chosen, guides = always if len(always) <= most else always[:0], moving[:: math.ceil(len(moving) / MOST_GUIDES)]
-        for _ in range(2):  # the second pass uses the columns that the first ones do not represent
+        for _ in range(2):  # the second pass uses the columns with the largest errors of the first
             chosen = kept_samples(time_s, np.stack(guides, axis=1).astype(float), most, TOLERANCE, map(int, chosen))
             missed = errors(time_s, moving, chosen)
             if missed.max(initial=0.0) <= TOLERANCE or len(chosen) >= most:
@@ -337,7 +337,7 @@ class Document:
 
     @staticmethod
     def _readouts(shown: list[dict[str, Any]]) -> list[dict[str, Any]]:
-        """Numbers beside the replay: the quantities of the charts over temperature and time."""
+        """Return the quantities shown beside the replay: those of the charts over temperature and time."""
         axes = {chart["y"]["column"]: chart["y"] for chart in shown
                 if not chart["equal"] and not chart["y"]["column"].endswith(charts.LEFT)}
         return [
@@ -356,14 +356,14 @@ def _uncertainty(event: Event, run: Run) -> dict[str, str]:
 
 
 def of_file(path: Path, source: str, identifier: str, budget_bytes: float) -> Document:
-    """Return the page of a result file. :raises Unreadable: the file, or a part that the page needs"""
+    """Return the page of a result file. :raises Unreadable: the file or a part of it cannot be read"""
     result = read(path)
     with located(file=path):
         return Document(result, source, identifier, budget_bytes)
 
 
 def _case_of(result: Result) -> Case | None:
-    """Return the case of a file; None: this version does not support it, and the page omits its description."""
+    """Return the case of a file; None: this version cannot read it, and the page omits its description."""
     try:
         return result.definition
     except StatejumpError:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scene of a result file for the replay: moving points, parts on them, forces.
 
-The position of a part that rests on or in another part is stored *relative* to that part, as a difference of the
-full-precision columns. In single precision, a clearance of 0.1 mm on a link of 100 mm would be lost, and the replay
-magnifies this clearance.
+The position of a part that rests on or in another part is stored *relative* to that part, as a difference of columns in
+full precision. Absolute positions in single precision are too coarse, because the replay magnifies a clearance of 0.1
+mm beside a link of 100 mm.
 """
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ from statejump.results.contents import Result
 from statejump.results.outline import growth
 from statejump.results.scene import resolve, resolve_point
 
-# Size of the smallest clearance at the default magnification, as a fraction of the scene. It is limited to a fraction
-# of the shortest link, so that both remain distinguishable.
+# Size of the smallest clearance at the default magnification, as a fraction of the scene; also limited to a fraction of
+# the shortest link, so that both can be distinguished.
 SHOWN_GAP = 0.03
 SHOWN_GAP_OF_LINK = 0.15
-# Largest displacement of a point at the default magnification, as a fraction of the scene, because expansion is much
-# larger than a clearance.
+# Largest displacement of a point at the default magnification, as a fraction of the scene. Expansion is much larger
+# than a clearance.
 SHOWN_WAY = 0.1
 AXES = "xyz"
 
 
 def round_down(value: float) -> float:
-    """Return the largest of 1, 2, 5, 10, 20, ... that is not above the value; at least 1, and infinity of itself."""
+    """Return the largest of 1, 2, 5, 10, 20, ... that does not exceed the value, at least 1; infinity for infinity."""
     if not value > 1:
         return 1.0
     if math.isinf(value):
@@ -43,10 +43,10 @@ def round_down(value: float) -> float:
 
 
 class Drawing:
-    """Collects points, parts, forces and the columns that move them, for every model of a result.
+    """Collects points, parts and forces, and the columns that move them, for every model of a result.
 
-    ``scene`` is plain JSON data; a number that changes is replaced by the name of a column. ``columns`` has these
-    columns by model and name.
+    ``scene`` is plain JSON data with names of columns instead of numbers that change. ``columns`` has these columns by
+    model and name.
     """
 
     def __init__(self, result: Result, labels: Labels) -> None:
@@ -94,7 +94,7 @@ class Drawing:
         return self._points[json.dumps(part["centre"], sort_keys=True)]
 
     def _pairs(self) -> dict[int, int]:
-        """Return, for points of parts that rest on another part, the point of the other part."""
+        """Return, by the point of a part that rests on another part, the point of the other part."""
         pairs: dict[int, int] = {}
         for contact in self.result.scene["contacts"]:
             on, other = (self._parts[contact[key]] for key in ("on", "from"))
@@ -199,8 +199,8 @@ class Drawing:
         return {**drawn, "axis": part["axis"]} if "axis" in part else drawn
 
     def _arm(self, at: Any, centre: Any) -> list[str]:
-        """Return the columns from a part's centre to the position of a force; normal and tangential force share
-        them."""
+        """Return the columns of the vector from the centre of a part to the position of a force, common to normal and
+        tangential force."""
         key = json.dumps([at, centre], sort_keys=True)
         if key not in self._arms:
             self._arms[key] = self._vector(
@@ -226,8 +226,8 @@ class Drawing:
         return [force for force in drawn if self._largest(force) > 0]
 
     def _axial(self, place: int, link: dict[str, Any], axial: Any) -> dict[str, Any]:
-        """Return the force of a link on the item at its second end; compression pushes outward. Its direction is that
-        of the drawn link."""
+        """Return the force of a link on the item at its second end, along the drawn link; compression pushes
+        outward."""
         first, second = (self._points[json.dumps(end, sort_keys=True)] for end in link["ends"])
         return {
             "label": f"Axial force of {self._labels.named(link['name'])}", "kind": "axial", "point": second,
@@ -243,7 +243,7 @@ class Drawing:
             )
 
     def _measure(self) -> None:
-        """Size of the scene at the start, largest force, default magnification."""
+        """Compute the size of the scene at the start, the largest force, and the default magnification."""
         run = next(iter(self.result.models.values()))
         corners = []
         for part in self.result.scene["parts"]:
@@ -274,14 +274,14 @@ class Drawing:
             shortest_link_m=shortest,
             magnification=magnification,
             magnification_of_deformation=min(magnification, deformation) if way > 0 else magnification,
-            # Without motion except relative positions there is no deformation to magnify.
+            # If only relative positions change, there is no deformation to magnify.
             deforms=way > 0,
         )
         if not np.isfinite([size, way, self.scene["largest_force_N"], magnification]).all():
             raise Unreadable(code="drawing_not_finite", case=self.result.name)
 
     def _largest_way(self) -> float:
-        """Return the largest distance [m] of a point from its start, without relative points."""
+        """Return the largest distance [m] of a point from its start; relative points are omitted."""
         return max(
             (
                 float(np.max(np.sqrt(sum(

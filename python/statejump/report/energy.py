@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Energy account of a run: supplied, stored, dissipated energy, and the residue."""
+"""Energy account of a run: supplied, stored and dissipated energy, and the residue."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ import numpy as np
 from statejump.core.run import Run
 from statejump.report.labels import Labels
 
-# The ending of a column's name determines its side of the account.
+# Side of the account by the ending of the name of a column.
 ROLES = {"_work_J": "supplied", "_energy_J": "stored", "_dissipation_J": "dissipated"}
 
 
@@ -27,14 +27,14 @@ class Account:
     """The account of a run, as lines and over time."""
 
     entries: list[Entry]
-    residue_J: float  # supplied less stored less dissipated, at the end
+    residue_J: float  # supplied - stored - dissipated, at the end
     largest_residue_J: float  # at any sample
-    turnover_J: float  # largest of the three sums at any sample, the scale of the residue
+    turnover_J: float  # largest of the three sums at any sample, the reference of the residue
     columns: dict[str, np.ndarray]  # sums over time, [J]
 
 
 def account(run: Run, labels: Labels) -> Account:
-    """Return the account of a run from its energy columns; all changes since the first sample."""
+    """Return the account of a run from its energy columns, as changes since the first sample."""
     zero = np.zeros(len(run.time_s))
     sums = {role: zero.copy() for role in ROLES.values()}
     friction = zero.copy()

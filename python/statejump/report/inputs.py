@@ -7,7 +7,7 @@ from typing import Any
 
 
 def sections_of(values: dict[str, Any]) -> list[tuple[str, list[tuple[str, str]]]]:
-    """Return the sections of a case with all defaults: key, value; lists of items are summarised."""
+    """Return the sections of a case with all defaults, as pairs of key and value; lists of items are summarised."""
     sections = []
     for section, keys in values.items():
         if isinstance(keys, list) and keys and all(isinstance(item, dict) for item in keys):
@@ -44,7 +44,7 @@ def _summed_up(items: list[dict[str, Any]]) -> list[tuple[str, str]]:
 
 
 def _number(value: float) -> str:
-    """Format a number with six digits; an integer may exceed any float."""
+    """Format a number with six digits; an integer may exceed the range of floats."""
     try:
         return f"{value:g}"
     except OverflowError:

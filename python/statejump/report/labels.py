@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Labels for the keys of result files. This module has those of all kinds; each kind has names of its columns, contacts
-and links (``LABELS``)."""
+"""Labels for the keys of result files. This module has labels common to all kinds; each kind has those of its columns,
+contacts and links (``LABELS``)."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -29,12 +29,12 @@ SHAPES = {
     "half_sine": "changes by {peak} and back as half a sine",
     "sine": "swings by ± {peak} as a sine", "table": "follows a table, up to {peak} from its start",
 }
-# Prefix of the key of a stage's meaning among the texts of a kind.
+# Prefix of the key in ``LABELS`` with the meaning of a stage.
 STAGE = "stage "
 
 
 def inside(words: str) -> str:
-    """Return a name with the case that it has inside a sentence."""
+    """Return a name with the capitals that it has inside a sentence."""
     kept = words[:2].isupper() or words.startswith(tuple(NAMES.values()))
     return words if kept else words[:1].lower() + words[1:]
 
@@ -42,8 +42,8 @@ def inside(words: str) -> str:
 class Labels:
     """Labels for the keys of one kind.
 
-    :param own: the kind's own names, by key, with or without its unit
-    :param given: whether users name the parts of such cases
+    :param own: labels of the kind by key, with or without the unit
+    :param given: whether parts of such cases have names given by users
     """
 
     def __init__(self, own: Mapping[str, str] | None = None, given: bool = False) -> None:
@@ -51,7 +51,7 @@ class Labels:
         self._given = given
 
     def named(self, name: str, in_sentence: bool = False) -> str:
-        """Return the name of a part, link or contact; a name that a user gave is kept."""
+        """Return the name of a part, link or contact; a name given by a user is not changed."""
         known = self._own.get(name)
         if known is None and self._given:
             return name
@@ -68,7 +68,7 @@ class Labels:
         return words[:1].upper() + words[1:]
 
     def parameter(self, path: str) -> str:
-        """Return a key of a case file, or a name alone, as words: ``link.young_modulus_Pa``, ``revolute.*.axis``."""
+        """Return a key of a case file, or a name, as words: ``link.young_modulus_Pa``, ``revolute.*.axis``."""
         section, _, rest = path.partition(".")
         item, _, key = rest.rpartition(".")
         if not rest:
@@ -83,12 +83,12 @@ class Labels:
         return f"{named} of {of}"
 
     def stage(self, name: str) -> tuple[str, str]:
-        """Return name and meaning of a stage of a model."""
+        """Return the name and the meaning of a stage of a model."""
         return self._own.get(name, name), self._own.get(STAGE + name, "")
 
 
 def of_kind(name: str) -> Labels:
-    """Return the names of a kind; for an unknown kind those of all kinds."""
+    """Return the labels of a kind; for an unknown kind, the labels common to all kinds."""
     try:
         found = kind(name)
         return Labels(found.LABELS, any(tables_of(attribute) for attribute in fields_of(found.Case).values()))

@@ -69,7 +69,7 @@ def embedded_code(source: str, element: str) -> Markup:
 
 @cache
 def _environment(folders: tuple[Path, ...]) -> Environment:
-    """Return the templates of the page and of these folders. Pages share them: they take long to compile."""
+    """Return the templates of the page and of these folders. They are cached, because they take long to compile."""
     environment = Environment(
         loader=ChoiceLoader([FileSystemLoader(folder) for folder in (HERE, *folders)]),
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Page of a case before anything is solved: description, drawing, all inputs."""
+"""Page of a case that has not been solved: description, drawing, all inputs."""
 from __future__ import annotations
 
 import base64
@@ -21,8 +21,8 @@ from statejump.schema.fields import attached_to_json
 class UnsolvedDocument:
     """A case for a page; arguments as for :class:`~.document.Document`.
 
-    :param case: of a kind that can be drawn
-    :raises NotAllowed: it is of another kind
+    :param case: a case of a kind that can be drawn
+    :raises NotAllowed: the kind cannot be drawn
     """
 
     template = "unsolved.html"
@@ -50,7 +50,7 @@ class UnsolvedDocument:
         return "data:image/png;base64," + base64.b64encode(stream.getvalue()).decode("ascii")
 
     def inputs(self) -> list[tuple[str, list[tuple[str, str]]]]:
-        """Sections of the case with all defaults: key, value."""
+        """Return the sections of the case with all defaults, as pairs of key and value."""
         return sections_of(json.loads(json.dumps(self._case.with_defaults(), default=attached_to_json)))
 
 

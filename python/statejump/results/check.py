@@ -12,7 +12,7 @@ from statejump.core.errors import Unreadable
 from statejump.core.hdf5 import objects
 from statejump.results.layout import ENTRIES, FORMAT, MODELS, VERSION, Form, entry_of
 
-# An attribute of these columns names the list of names of their second axis.
+# Names of axes over items; an attribute of the column refers to the list of the items' names.
 OF_ITEMS = ("items", "links", "contacts")
 
 
@@ -111,7 +111,7 @@ def _check_column(place: str, item: h5py.Dataset, names: h5py.Group, path: Path)
 
 
 def _scope(place: str, axis: str) -> str:
-    """Return the scope in which an axis has one length."""
+    """Return the scope within which an axis has a single length."""
     if axis in ("samples", "events"):
         return "/".join(place.split("/")[:3])  # of a model
     return place if axis in ("sentences", "vertices", "triangles") else place.rpartition("/")[0]

@@ -20,7 +20,7 @@ from statejump.kinds.loading import parse_case
 
 @dataclass(frozen=True)
 class Scalar:
-    """One number of the answers. NaN: no value."""
+    """One number among the answers; NaN: no value."""
 
     value: float
     unit: str = "-"
@@ -28,8 +28,8 @@ class Scalar:
 
 @dataclass(frozen=True)
 class Answers:
-    """Answers to design questions on a truss. ``tables`` has the rows of the CSV files of the same names. A value is a
-    text, an integer, a number or None."""
+    """Answers to design questions on a truss. ``tables`` has the rows of the CSV files with the same names. A value is
+    a text, an integer, a number or None."""
 
     output: str  # the output whose jump is attributed to joints: node:NAME, rms, tilt
     text: str  # the same in a sentence
@@ -48,7 +48,7 @@ class Answers:
 
 @dataclass(frozen=True)
 class Mesh:
-    """A surface for parts of type ``mesh``, in the part's own frame."""
+    """A triangle mesh of a part of type ``mesh``, in the frame of the part."""
 
     vertices_m: np.ndarray  # (vertices, 3)
     triangles: np.ndarray  # (triangles, 3), indices into vertices_m
@@ -71,7 +71,7 @@ class Result:
     kind: str
     title: str
     source: str
-    case_text: str  # as given; "" if the case did not come from a file
+    case_text: str  # text of the case file; "" if the case was made in Python
     case_json: str  # with all defaults
     provenance: dict[str, Any]
     names: dict[str, list[str]]  # of the second axes of columns
@@ -82,7 +82,7 @@ class Result:
     warnings: list[str] = field(default_factory=list)
     meshes: dict[str, Mesh] = field(default_factory=dict)
     answers: Answers | None = None
-    members: Histories | None = None  # for a truss with temperatures for every member
+    members: Histories | None = None  # for a truss with temperature histories of members
 
     @cached_property
     def definition(self) -> Case:
@@ -108,5 +108,5 @@ class Result:
 
     @property
     def passed(self) -> bool | None:
-        """Whether all compared quantities are within tolerance; None: nothing was compared."""
+        """Whether all compared quantities are within tolerance; None: there is no comparison."""
         return None if self.rows is None else all(row.passed for row in self.rows)

@@ -17,17 +17,17 @@ from statejump.core.units import unit_of
 from statejump.kinds import protocol, require
 from statejump.results.contents import Result
 
-# Sections on solution, output and tolerances; the other sections define the structure.
+# Sections about solution, output and tolerances. All other sections define the structure.
 NUMERICAL_SECTIONS = ("case", "dem", "reduced", "motion", "output", "ensemble", "tolerance")
-# Compared groups of columns. Columns of an open contact may be NaN.
+# Compared groups of columns. Contacts are omitted, because columns of an open contact may be NaN.
 COMPARED = ("history", "energy", "links")
-SAME_TIME = 1e-9  # of the duration: rounding of the last sample's time
+SAME_TIME = 1e-9  # fraction of the duration: rounding of the time of the last sample
 
 
 @dataclass(frozen=True)
 class ColumnDifference:
-    """Largest difference of a column over time and its items. ``name`` is its path below the model, ``range`` the
-    largest less the smallest value of the first run, ``time_s`` the time of the largest difference."""
+    """Largest difference of a column over time and its items. ``name``: its path below the model. ``range``: largest
+    minus smallest value of the first run. ``time_s``: time of the largest difference."""
 
     name: str
     unit: str
@@ -38,7 +38,7 @@ class ColumnDifference:
 
 @dataclass(frozen=True)
 class EventDifference:
-    """Events of one kind: their number in each run, and ΔT [K] of the first ones (None: there is none)."""
+    """Events of one kind: their number in each run, and ΔT [K] of the first one (None: no event)."""
 
     kind: str
     counts: tuple[int, int]
@@ -47,7 +47,7 @@ class EventDifference:
 
 @dataclass(frozen=True)
 class RunDifference:
-    """Comparison of two runs. ``rows``: with the tolerances; None if a run is incomplete.
+    """Comparison of two runs. ``rows``: quantities with tolerances; None if a run is incomplete.
 
     :param lacking: columns that only one of the runs has
     :param not_finite: columns with a value that is finite in one run only
@@ -63,8 +63,8 @@ class RunDifference:
 
     @property
     def missed(self) -> list[str]:
-        """The faults: rows beyond their tolerance, and columns that cannot be compared. Two different models may have
-        different columns."""
+        """Faults: rows beyond their tolerance, columns of one file only (if both runs are of one model), and columns
+        that are finite in one run only."""
         beyond = [row.name for row in self.rows or () if not row.passed]
         alone = [f"{name} (in one file only)" for name in self.lacking] if self.names[0] == self.names[1] else []
         return beyond + alone + [f"{name} (not finite)" for name in self.not_finite]
@@ -79,15 +79,15 @@ def _entries(values: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def case_differences(first: Result, second: Result) -> tuple[list[str], list[str]]:
-    """Return the differences between the cases, in the structure and in its solution, as
-    ``section.key = first and second``."""
+    """Return the differences of two cases, in their structure and in their numerical settings, as ``section.key = first
+    and second``."""
     entries = [dict(_entries(json.loads(result.case_json))) for result in (first, second)]
     physical: list[str] = []
     numerical: list[str] = []
     for key in dict.fromkeys([*entries[0], *entries[1]]):
         values = [found.get(key) for found in entries]
         if values[0] != values[1]:
-            # A list of items is too long for a sentence.
+            # A whole list is too long for a sentence.
             shown = " and ".join(text if len(text) <= 60 else "(another list)" for text in map(repr, values))
             (numerical if key.partition(".")[0] in NUMERICAL_SECTIONS else physical).append(f"{key} = {shown}")
     return physical, numerical
@@ -106,7 +106,7 @@ def check_comparable(first: Result, second: Result) -> None:
 
 
 def pairs(first: Result, second: Result) -> list[tuple[str, str]]:
-    """Return the pairs of compared models: the common ones, or the only one of each file."""
+    """Return the compared pairs of models: the common models, or the only model of each file."""
     common = [(model, model) for model in first.models if model in second.models]
     if common:
         return common
@@ -123,7 +123,7 @@ def _lacking(first: Run, second: Run) -> list[str]:
 
 
 def _not_finite(first: Run, second: Run) -> list[str]:
-    """Return columns with values that are finite in one run only, or not finite in another way."""
+    """Return the columns with values that are finite in one run only, or whose NaN and infinity differ."""
     found = []
     for group in COMPARED:
         for name, column in getattr(first, group).items():
@@ -194,7 +194,7 @@ def difference(first: Result, second: Result) -> list[RunDifference]:
             raise StatejumpError(code="durations_differ", first_s=ends[0], second_s=ends[1])
         times = one.time_s[one.time_s <= min(ends) * (1 + SAME_TIME)]
         left, right = one.at(times), other.at(times)
-        with np.errstate(over="ignore", invalid="ignore"):  # rows and columns report values that are not finite
+        with np.errstate(over="ignore", invalid="ignore"):  # reported in rows and columns as values that are not finite
             found.append(RunDifference(
                 names, _summary(one, other), _columns(left, right), _events(one, other),
                 of_two(judge(first.definition, left, right)) if complete else None,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""VTK files of a result, from its scene alone; one series per model and sort, with the true times.
+"""VTK files of a result, made from its scene; one series per model and type of content, with the true times.
 
 - ``<model>_links``, .vtu: links and springs as lines with axial force, thermal strain, temperature change
 - ``<model>_parts``, .vtp: journals, bearings, blocks, slots, frames, meshes
@@ -107,7 +107,7 @@ class _Parts:
         all_points: list[np.ndarray] = []
         lines: list[np.ndarray] = []
         triangles: list[np.ndarray] = []
-        drawn: list[_Shape] = []  # one per cell: lines before triangles, as VTK counts them
+        drawn: list[_Shape] = []  # one part per cell: lines before triangles, the order of VTK
         faces: list[_Shape] = []
         count = 0
         for shape in self.shapes:
@@ -138,7 +138,7 @@ class _Parts:
 
 
 class _Vertices:
-    """Points with arrays. Their number is constant over time, whether a force acts or not."""
+    """Points with arrays. Their number is constant over time, also while no force acts."""
 
     suffix = ".vtp"
 
@@ -184,7 +184,7 @@ def _forces(result: Result, run: Run) -> _Vertices | None:
 
 
 def sorts(result: Result, model: str) -> dict[str, Any]:
-    """Return the drawings of a model: name of the series and the object that makes its frames."""
+    """Return the drawings of a model: the object that makes the frames, by the name of its series."""
     run = result.models[model]
     found = {
         "links": _Lines(result, run, model), "parts": _Parts(result, run, model),

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A workbook of a result for Excel and LibreOffice: the tables of the CSV export as sheets. Cells hold numbers of 16
-digits, independent of the decimal sign of the country."""
+"""A workbook of a result for Excel and LibreOffice: the tables of the CSV export as sheets. Cells are numbers with 16
+digits, independent of the local decimal mark."""
 from __future__ import annotations
 
 import math

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 FORMAT = "statejump result"
-VERSION = 1  # increased when a reader of the old layout would misread a file
+VERSION = 1  # increased when older readers would misread a new file
 SUFFIX = ".h5"
 MODELS = ("reduced", "dem")
 
@@ -19,7 +19,7 @@ class Form:
 
     :param types: ``group``, ``text``, ``bool``, ``int64``, ``uint8`` (with labels) or ``float64``
     :param shapes: names of the axes of each allowed shape; the name of an axis of fixed length is this length
-    :param words: how the documentation calls the types
+    :param words: name of the types in the documentation
     """
 
     types: tuple[str, ...]
@@ -38,7 +38,7 @@ def _array(types: str, *axes: str) -> Form:
 
 @dataclass(frozen=True)
 class Entry:
-    """An entry of the file. In ``path``, ``{model}`` is a model, ``{name}`` any name; an attribute has ``@``."""
+    """An entry of the file. In ``path``, ``{model}`` is a model and ``{name}`` any name; ``@`` marks an attribute."""
 
     path: str
     form: Form
@@ -51,7 +51,7 @@ class Entry:
                           .replace(r"\{name\}", "[^/@]+"))
 
     def matches(self, path: str) -> bool:
-        """Whether a path in a file belongs to this entry."""
+        """Return whether a path in a file belongs to this entry."""
         return self._pattern.fullmatch(path) is not None
 
 
@@ -202,7 +202,7 @@ ATTRIBUTES = {
 }
 
 
-# Columns of these tables that are texts; all others are numbers.
+# Text columns of these tables; all others are numbers.
 TEXTS = frozenset({"node", "joint", "kind", "state", "parameter", "verdict"})
 ALWAYS = ("cycles", "node_jumps", "joint_jumps")  # tables that all answers have
 WITHOUT_GAPS = (*ALWAYS, "contributions")  # tables without missing numbers

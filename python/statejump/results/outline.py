@@ -9,7 +9,7 @@ import numpy as np
 from statejump.results.contents import Result
 from statejump.results.scene import resolve
 
-SIDES = 96  # sides of a circle; the sagitta is 5e-4 of the radius
+SIDES = 96  # number of sides of a circle; the sagitta is 5e-4 of the radius
 
 
 def _circle(radius: float) -> np.ndarray:
@@ -30,8 +30,8 @@ def _frame(axis: list[float]) -> np.ndarray:
 
 
 def outlines(part: dict[str, Any]) -> list[np.ndarray]:
-    """Return polylines (points, 3) [m] of a part at ΔT = 0, about its centre and across its axis (default z). Return
-    none for links, springs, frames and meshes, whose points are in the scene or in the file."""
+    """Return polylines (points, 3) [m] of a part at ΔT = 0, about its centre and across its axis (default z). The list
+    is empty for links, springs, frames and meshes, whose points are in the scene or in the file."""
     flat = _flat_outlines(part)
     return [line @ _frame(part["axis"]).T for line in flat] if "axis" in part else flat
 
@@ -52,7 +52,7 @@ def _flat_outlines(part: dict[str, Any]) -> list[np.ndarray]:
 
 
 def placed(points: np.ndarray, centre: np.ndarray, angle_rad: float, growth: float) -> np.ndarray:
-    """Return points of a part's own frame in the world: expanded, rotated about z and moved."""
+    """Return points of a part's own frame in space: expanded by ``growth``, rotated about z, and moved."""
     cos, sin = np.cos(angle_rad), np.sin(angle_rad)
     turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
     return centre + growth * points @ turn.T

@@ -15,7 +15,7 @@ from statejump.results.export_vtk import sorts
 from statejump.results.scene import STATE_COLOURS, resolve_point
 
 NAME = "open_in_paraview.py"
-ARROW = 0.2  # length of the arrow of the largest force, as a fraction of the scene
+ARROW = 0.2  # length of the arrow of the largest force, as a fraction of the scene's size
 TEMPLATE = "open_in_paraview.template"  # a script with @NAMES@ for values
 
 
@@ -40,7 +40,7 @@ def _largest_force_N(result: Result) -> float:
 
 
 def _range_N(result: Result) -> tuple[float, float]:
-    """Return a range of axial forces around 0 that covers all links at all times."""
+    """Return a range of axial forces [N], symmetric about 0, that covers all links at all times."""
     largest = [
         np.nanmax(np.abs(run.links["axial_force_N"].values), initial=0.0)
         for run in result.models.values() if "axial_force_N" in run.links

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads a result file; the error for a fault in it is one sentence."""
+"""Reader of result files; the error for a faulty file is one sentence."""
 from __future__ import annotations
 
 import json
@@ -24,7 +24,7 @@ from statejump.results.scene_check import problems
 
 
 def is_result_file(path: Path) -> bool:
-    """Whether a path is a result file by its content or its name."""
+    """Return whether a path is a result file, by its content or its name."""
     return path.suffix in (SUFFIX, ".hdf5") or is_ours(path)
 
 
@@ -55,7 +55,7 @@ def _result(file: h5py.File, path: Path) -> Result:
     _parsed("/case/resolved", case_json)
     names = Parts({key: _texts(values) for key, values in file["names"].items()}, "/names", path)
     complete = bool(file.attrs["complete"])
-    made: list[Result] = []  # a run reads its case from the file at the first access
+    made: list[Result] = []  # lets a run read its case from the file at the first access
     runs = {
         model: replace(_model(model, file["models"][model], path), names=names, complete=complete,
                        kind=case.attrs["kind"], case_of=lambda: made[0].definition)
@@ -91,7 +91,7 @@ def _members(group: h5py.Group) -> Histories:
 
 
 def _parsed(place: str, text: str) -> dict[str, Any]:
-    """Return the object of a JSON text. :raises ValueError: it is none"""
+    """Return the object of a JSON text. :raises ValueError: it is not an object"""
     found = json.loads(text)
     if not isinstance(found, dict):
         raise ValueError(f"{place} is no object of JSON")
@@ -160,7 +160,7 @@ def _comparison(group: h5py.Group) -> tuple[Quantity, ...]:
 
 def _answers(group: h5py.Group, names: Mapping[str, list[str]]) -> Answers:
     summary = _scalars(group["summary"])
-    # A sum of contributions has an error estimate.
+    # If the file has a sum of contributions, it must have its error.
     needed = ["jump", *(SUM_OF_CONTRIBUTIONS if any(name in summary for name in SUM_OF_CONTRIBUTIONS) else ())]
     missing = [name for name in needed if name not in summary]
     if missing:

@@ -26,7 +26,7 @@ from statejump.results.layout import SUFFIX
 from statejump.results.write import write
 from statejump.schema.fields import attached_to_json
 
-# Name of the file that each command writes.
+# Name of the result file of each command.
 FILES = {"reduced": "reduced", "dem": "dem", "compare": "comparison", "truss answers": "answers"}
 
 
@@ -65,7 +65,7 @@ def save_as(
 ) -> Path:
     """Write the result file of runs under a name; return its path.
 
-    :raises NotAllowed: its name ends with another suffix
+    :raises NotAllowed: the name ends with another suffix
     """
     check_suffix("path", path, SUFFIX)
     path = path if path.suffix else path.with_suffix(SUFFIX)
@@ -79,7 +79,7 @@ def save(
 ) -> Path:
     """Write the result file of runs and the CSV files of their histories, or of the answers; return its path.
 
-    Incomplete runs get other names, so they replace no complete ones.
+    Incomplete runs get other names, so that they do not replace complete ones.
 
     :param folder: results folder, exists
     """
@@ -87,7 +87,7 @@ def save(
     mark = "" if result.complete else ".interrupted"
     path = folder / f"{FILES[command]}{mark}{SUFFIX}"
     write(result, path)
-    if result.answers is not None:  # the histories beside it are those of a comparison
+    if result.answers is not None:  # the CSV histories in the folder belong to a comparison
         export_csv.write_answers(result.answers, folder)
         return path
     export_csv.write_histories(result, folder, mark)

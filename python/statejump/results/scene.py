@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Generic description of what to draw: parts and forces, moved by the columns of a run.
+"""Generic description of a drawing: parts and forces, moved by the columns of a run.
 
 A description is plain JSON data, one for both models. A *value* is a number or a reference::
 
@@ -7,8 +7,8 @@ A description is plain JSON data, one for both models. A *value* is a number or 
     {"data": "links/axial_force_N", "item": "bar"}          of the column's item with that name
     {"data": "history/temperature_change_K", "scale": 2e-5, "offset": 0.0}    offset + scale * value
 
-A *point* or *vector* is a list [x, y, z] of values, or one reference to data with three components.
-All numbers are SI units, angles anticlockwise from x. docs/reference/result_file.md has the types of parts.
+A *point* or *vector* is a list [x, y, z] of values, or one reference to data with three components. All numbers are SI
+units, angles anticlockwise from x. docs/reference/result_file.md has the types of parts.
 """
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def link(name: str, ends: list[Point], section: Any) -> dict[str, Any]:
 
 
 def contact_forces(contact: str, on: str, other: str) -> list[dict[str, Any]]:
-    """Return the normal and tangential force of a contact, from its columns below ``contacts``."""
+    """Return the normal and the tangential force of a contact, from its columns below ``contacts``."""
     return [
         {
             "name": f"{kind} force at {contact} on {on}", "kind": kind, "on": on, "from": other, "contact": contact,
@@ -86,9 +86,9 @@ def description(
 ) -> dict[str, Any]:
     """Return a complete description.
 
-    :param contacts: name, part that the forces act on, the other part
-    :param smallest_clearance_m: smallest clearance, which a viewer may magnify; 0: none
-    :param forces: further ones
+    :param contacts: name, part on which the forces act, other part
+    :param smallest_clearance_m: smallest clearance [m], which a viewer may magnify; 0: none
+    :param forces: further forces
     """
     return {
         "plane": "xy",

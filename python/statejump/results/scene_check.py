@@ -135,7 +135,7 @@ class _Check:
             yield f"{repr(value)} is not a mesh of the file"
 
     def _reference(self, value: dict[str, Any], axes: int) -> Problems:
-        """A column of every model that has a given number of axes after the selection of its item."""
+        """Check that every model has the referenced column, with this number of axes after its item is selected."""
         for model, run in self.models.items():
             try:
                 column = run.column(value["data"])

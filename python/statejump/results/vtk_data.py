@@ -17,14 +17,14 @@ from statejump.core.tables import write_json
 
 
 def frames_of(samples: int, wanted: int) -> np.ndarray:
-    """Return the samples to write: all (0) or ``wanted`` evenly spread ones with first and last."""
+    """Return the samples to write: all if ``wanted`` is 0, else evenly spaced ones including first and last."""
     if wanted == 0 or wanted >= samples:
         return np.arange(samples)
     return np.unique(np.round(np.linspace(0, samples - 1, max(wanted, 2))).astype(int))
 
 
 def file_time(time_s: float) -> float:
-    """Return a time [s], rounded for files: two models round the same instant differently."""
+    """Return a time [s] rounded for files, because two models may round the same instant differently."""
     return float(f"{time_s:.9g}")
 
 
@@ -46,7 +46,7 @@ def cells(lengths: list[int], connectivity: np.ndarray) -> vtkCellArray:
 
 
 def add_array(field: vtkFieldData, name: str, values: Any) -> None:
-    """Add an array; a list of texts as texts."""
+    """Add an array to VTK data; a list of texts becomes a text array."""
     if isinstance(values, list):
         array = vtkStringArray()
         for text in values:

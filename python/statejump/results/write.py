@@ -17,11 +17,11 @@ from statejump.core.units import unit_of
 from statejump.results.contents import Answers, Result
 from statejump.results.layout import FORMAT, VERSION
 
-COMPRESSED_FROM = 4096  # bytes; the overhead of a smaller chunk exceeds its savings
+COMPRESSED_FROM = 4096  # bytes; for smaller data sets the overhead of chunks exceeds the savings
 
 
 def write(result: Result, path: Path) -> None:
-    """Write the file, everything in the order of the names. :raises NotWritten: it cannot be written"""
+    """Write the file, with all entries in the order of their names. :raises NotWritten: it cannot be written"""
     with made(path) as file:
         file.attrs["format"] = FORMAT
         file.attrs["layout_version"] = VERSION
@@ -77,7 +77,7 @@ def _comparison(group: h5py.Group, result: Result) -> None:
     known = sides(rows)
     for key in (*known, "difference", "tolerance"):
         values = [row.values.get(key) if key in SIDES else getattr(row, key) for row in rows]
-        # Units differ between rows: the column `unit` has them.
+        # The unit differs between rows; the column `unit` has it.
         group.create_dataset(key, data=np.array([math.nan if value is None else value for value in values], float),
                              track_times=False)
     if known != ["reduced", "dem"]:

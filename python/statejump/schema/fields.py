@@ -170,13 +170,13 @@ def tables(
 class Section:
     """A table of a file: unknown keys are refused, numbers are strict and in range."""
 
-    # For a choice of the section: keys that are required with some of its names and refused with the others.
+    # For each choice of the section: keys that some of its names require and its other names refuse.
     GOES_WITH: ClassVar[dict[str, dict[str, tuple[str, ...]]]] = {}
-    # For a choice of the section: groups of keys. A name needs one whole group, and the other names refuse all of them.
+    # For each choice of the section: groups of keys. A name requires one whole group; other names refuse all of them.
     ONE_OF: ClassVar[dict[str, dict[str, tuple[tuple[str, ...], ...]]]] = {}
     # New paths of moved keys by their old paths; both are accepted, see :func:`statejump.schema.paths.current`.
     MOVED: ClassVar[Mapping[str, str]] = {}
-    # Whether its name identifies the section: ``repr`` and ``hash`` then use the name and not all keys.
+    # Whether the name identifies the section: ``repr`` and ``hash`` then use only the name.
     NAMED: ClassVar[bool] = False
 
     if TYPE_CHECKING:

@@ -209,7 +209,7 @@ class Named(Mapping[str, Any]):
 
     @cached_property
     def _place(self) -> dict[str, int]:
-        """Created at the first look-up of a name, because comparisons of arrays do not need it."""
+        """Indices by name, built at the first look-up, because comparisons of arrays do not need them."""
         return {name: place for place, name in enumerate(self._items.values("name"))}
 
     def __getitem__(self, name: str) -> Any:
@@ -294,8 +294,7 @@ class ItemIndex:
 def where_wrong(
     items: Sequence[ItemType], wrong: Callable[[ItemColumns[ItemType]], np.ndarray]
 ) -> Iterable[ItemType]:
-    """Return the items that need a check one by one: all items of a list; of columns only those that may be invalid,
-    created on access.
+    """Return the items that must be checked one by one: all items of a list; of columns only those that may be invalid.
 
     :param wrong: returns the items of an :class:`ItemColumns` (n,) that may be invalid; must include all invalid ones
     """
@@ -305,7 +304,7 @@ def where_wrong(
 
 
 def repeated_names(items: Sequence[Any]) -> bool:
-    """Return whether items in columns have a name twice; for a list always True, because it needs a check."""
+    """Return whether items in columns have a repeated name; always True for a list, which is checked item by item."""
     if not isinstance(items, ItemColumns):
         return True
     names = items.texts("name")

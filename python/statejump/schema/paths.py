@@ -131,7 +131,7 @@ def set_value(model: type[Section], data: dict[str, Any], path: str, value: Any)
 
 
 def _no_item(section: str, item: str, key: str, names: Sequence[str]) -> dict[str, Any]:
-    """Return the fields of the UnknownKey for a missing item."""
+    """Return the fields of the UnknownKey error for an item that does not exist."""
     if not names:
         return {"code": "section_not_in_case", "table": section}
     if any(sign in item for sign in "*?["):

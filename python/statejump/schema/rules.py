@@ -156,7 +156,7 @@ _CHECKS = {NUMBER: _number, WHOLE: _number, SWITCH: _switch, TEXT: _text, NUMBER
 
 
 def check_name(key: str, value: Any, names: Sequence[str], **more: Any) -> str:
-    """Return the value if it is one of the names, else raise NotAllowed that suggests the most similar one."""
+    """Return the value if it is one of the names, else raise NotAllowed with the most similar name."""
     if value in names:
         return str(value)
     more |= {"allowed": tuple(names), "known": " or ".join(repr(name) for name in names)}

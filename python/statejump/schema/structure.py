@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sections from a parsed TOML document, or one failure that names section and key."""
+"""Conversion of a parsed TOML document to sections. A failure names section and key."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -70,6 +70,6 @@ def _section(keys: type[SectionType], name: str, given: Mapping[str, Any]) -> Se
         return keys(**given)
     except NotAllowed as refused:
         assert refused.key is not None
-        refused.value = given.get(refused.key, refused.value)  # 1, not 1.0, if the file has it so
+        refused.value = given.get(refused.key, refused.value)  # as written in the file: 1, not 1.0
         refused.key = f"{name}.{refused.key}"
         raise

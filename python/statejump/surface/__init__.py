@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a reflecting surface does when its nodes move: RMS errors, tilt, focal change, Zernike terms, pointing.
+"""Errors of a reflecting surface whose nodes move: RMS, tilt, focal change, Zernike terms, pointing.
 
 ::
 

@@ -2,8 +2,8 @@
 """A paraboloid through the nodes of a surface in the reference configuration, and the error of the surface after the
 nodes have moved.
 
-Results are of first order in the displacements, which are a millionth of the surface. If nodes and axis lie in one
-plane, the surface is a profile: its paraboloid is a parabola, and rigid motion is planar.
+Results are of first order in the displacements, which are about a millionth of the size of the surface. If nodes and
+axis lie in one plane, the surface is a profile: its paraboloid is a parabola, and rigid motion is planar.
 """
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ DEFINITIONS = {
     "rigid": "the best rigid motion",
     "rigid_focal": "the best rigid motion and change of focal length: best-fit paraboloid",
 }
-# Weight of the distance along the normal before squaring and averaging: a power of the normal's component along the
-# axis.
+# Exponent of the normal's component along the axis, by which the distance along the normal is multiplied before
+# squaring and averaging.
 MEASURES = {"normal": 0, "half_path": 1, "axial": -1}
-# Nodes do not determine a parameter whose singular value, with columns of length 1, is below this.
+# Nodes do not determine a parameter if its singular value, with columns scaled to length 1, is below this.
 LEAST_SINGULAR_VALUE = 1e-6
 
 
@@ -34,11 +34,11 @@ LEAST_SINGULAR_VALUE = 1e-6
 class Errors:
     """Errors of a surface whose nodes have moved.
 
-    :param rms_m: by definition, over the nodes [m]
-    :param residual_m: (nodes,) by definition [m]
-    :param tilt_rad: rotation of the axis of the best-fit paraboloid, towards the lateral axes of the frame
-    :param vertex_shift_m: motion of its vertex, towards the lateral axes, then along the axis [m]; 0 for a lateral
-        shift that the nodes do not distinguish from tilt
+    :param rms_m: RMS over the nodes by definition [m]
+    :param residual_m: residuals (nodes,) by definition [m]
+    :param tilt_rad: rotation of the axis of the best-fit paraboloid towards the lateral axes of the frame
+    :param vertex_shift_m: displacement of its vertex along the lateral axes, then along the axis [m]; a lateral shift
+        that the nodes do not distinguish from tilt is 0
     :param focal_change_m: change of its focal length [m]; None: the nodes do not determine it
     """
 
@@ -51,8 +51,8 @@ class Errors:
 
 @dataclass(frozen=True)
 class _Fit:
-    """The moves that the nodes determine: an orthonormal basis of their effect on the nodes, and the moves as
-    combinations of the basis."""
+    """Moves that the nodes determine: an orthonormal basis of their effect on the nodes, and the moves as combinations
+    of this basis."""
 
     moves: tuple[str, ...]
     basis: np.ndarray
@@ -64,11 +64,11 @@ class Design:
     """Nodes in the reference configuration, and the paraboloid through them.
 
     :param position_m: (nodes, 3) [m]
-    :param frame: (2 or 3, 3) lateral axes, the axis last; one lateral axis: a profile
-    :param local_m: (nodes, 2 or 3) from the vertex, in the frame [m]
-    :param vertex_m: in space [m]
+    :param frame: (2 or 3, 3) rows: one (profile) or two lateral axes, then the axis
+    :param local_m: (nodes, 2 or 3) positions relative to the vertex, in the frame [m]
+    :param vertex_m: vertex in space [m]
     :param curvature_per_m: 1/(4 F) [1/m]; 0: a plane
-    :param design_rms_m: of the reference nodes against the paraboloid along the axis [m]
+    :param design_rms_m: RMS distance of the reference nodes from the paraboloid, along the axis [m]
     """
 
     position_m: np.ndarray
@@ -86,8 +86,8 @@ class Design:
 
         :param position_m: (nodes, 3) [m]
         :param axis: direction of the paraboloid's axis, of any length
-        :param focal_length_m: [m]; None: the best
-        :raises StatejumpError: nodes or axis are invalid, or too few nodes determine the paraboloid
+        :param focal_length_m: focal length [m]; None: the best fit
+        :raises StatejumpError: nodes or axis are invalid, or there are too few nodes
         """
         position, way = _points("position_m", position_m), np.asarray(axis, dtype=float)
         if way.shape != (3,) or not np.isfinite(way).all() or not np.linalg.norm(way) > 0:
@@ -109,7 +109,7 @@ class Design:
             if abs(curvature) * float(np.ptp(lateral)) <= LEAST_SINGULAR_VALUE:
                 curvature = 0.0
         found = np.linalg.lstsq(plane, along - curvature * squared, rcond=None)[0]
-        # A plane has no vertex, so the origin is below the nodes' mean.
+        # A plane has no vertex; its origin is at the mean of the nodes across the axis.
         shift = -found[1:] / (2 * curvature) if curvature else 0 * found[1:]
         depth = found[0] - curvature * float(shift @ shift)
         vertex = np.append(shift, depth)
@@ -124,39 +124,39 @@ class Design:
 
     @property
     def profile(self) -> bool:
-        """Whether the nodes lie in one plane with the axis."""
+        """Whether the nodes and the axis lie in one plane."""
         return len(self.frame) == 2
 
     @property
     def aperture_m(self) -> tuple[np.ndarray, float]:
-        """Middle of the aperture, from the vertex across the axis, and its radius: that of the circle about the nodes'
-        mean that contains all nodes [m]."""
+        """Middle of the aperture, from the vertex across the axis, and its radius [m]. The circle about the mean of the
+        nodes contains all nodes."""
         lateral = self.local_m[:, :-1]
         middle = lateral.mean(axis=0)
         return middle, float(np.max(np.linalg.norm(lateral - middle, axis=1)))
 
     @property
     def normals(self) -> np.ndarray:
-        """Unit normals of the paraboloid at the nodes, in the frame, towards the axis' direction (nodes, 2 or 3)."""
+        """Unit normals (nodes, 2 or 3) of the paraboloid at the nodes, in the frame, with positive axial component."""
         slopes = 2 * self.curvature_per_m * self.local_m[:, :-1]
         found = np.column_stack((-slopes, np.ones(len(slopes))))
         unit: np.ndarray = found / np.linalg.norm(found, axis=1)[:, None]
         return unit
 
     def _moves(self) -> dict[str, np.ndarray]:
-        """Effects of moves of the paraboloid along the normals: of 1 m, 1 rad, and 1/m of curvature."""
+        """Effects of moves of the paraboloid along the normals, for 1 m, 1 rad, and 1/m of curvature."""
         normals, size = self.normals, len(self.frame)
         moves = {"depth": normals[:, -1]}
         for place in range(size - 1):
-            # When the axis tilts towards a lateral axis, points above move in this direction, and points outside move
-            # down.
+            # A tilt towards a lateral axis moves points above the vertex in this direction, and points outwards in this
+            # direction downwards.
             moves[f"tilt{place}"] = normals[:, place] * self.local_m[:, -1] - normals[:, -1] * self.local_m[:, place]
         moves["curvature"] = normals[:, -1] * np.sum(self.local_m[:, :-1]**2, axis=1)
         return moves | {f"shift{place}": normals[:, place] for place in range(size - 1)}
 
     @cached_property
     def _fits(self) -> dict[str, dict[str, _Fit]]:
-        """Best fits by measure and definition. They are the same for all states of the surface."""
+        """Best fits by measure and definition, common to all states of the surface."""
         moves = self._moves()
         return {measure: {definition: self._fit(self.normals[:, -1] ** power, {
             name: move for name, move in moves.items() if name != "curvature" or definition == "rigid_focal"
@@ -177,8 +177,8 @@ class Design:
         """Return the errors for the displacements of the nodes.
 
         :param displacement_m: (nodes, 3) [m]
-        :param measure: squared and averaged quantity: ``normal``, the distance along the normal; ``half_path``, half of
-            the change of the ray's path, for the formula of Ruze; ``axial``, the distance along the axis
+        :param measure: quantity that is squared and averaged: ``normal``, the distance along the normal; ``half_path``,
+            half the change of the ray path, for Ruze's formula; ``axial``, the distance along the axis
         :raises StatejumpError: the measure is unknown, or displacements do not match the nodes
         """
         check_measure(measure)
@@ -219,11 +219,11 @@ class Design:
 
     def zernike_m(self, displacement_m: Any, terms: int | None = None) -> np.ndarray:
         """Return the coefficients [m] of Noll's Zernike terms 1 to ``terms`` in the error along the axis, by least
-        squares over the nodes, in the aperture. The square root of the sum of their squares is the RMS over the full
-        circle, not over the nodes.
+        squares over the nodes, in the aperture. The root of the sum of their squares is the RMS over the full circle,
+        not over the nodes.
 
         :param terms: 1 to 36; None: the most of 1, 3, 6, ... 36 (whole orders) that the nodes determine
-        :raises StatejumpError: the nodes are a profile, or do not determine so many terms
+        :raises StatejumpError: the nodes are a profile, or determine fewer terms
         """
         if self.profile:
             raise StatejumpError(code="profile_without_zernike")
@@ -235,13 +235,13 @@ class Design:
 
 
 def check_measure(measure: str) -> None:
-    """Raise NotAllowed for a measure that there is not."""
+    """Raise NotAllowed for an unknown measure."""
     if measure not in MEASURES:
         raise NotAllowed("measure", measure, code="not_one_of", allowed=tuple(MEASURES), known=", ".join(MEASURES))
 
 
 def rms(residual_m: np.ndarray) -> Any:
-    """Return the root of the mean square over the last axis, the nodes."""
+    """Return the root mean square over the last axis, the nodes."""
     return np.sqrt(np.mean(residual_m**2, axis=-1))
 
 
@@ -256,8 +256,8 @@ def _points(key: str, given: Any, rows: int | None = None) -> np.ndarray:
 
 
 def _frame(position: np.ndarray, axis: np.ndarray) -> np.ndarray:
-    """Return the lateral axes and the axis. Lateral axes are those of space as far as possible; if nodes and axis lie
-    in one plane, there is one."""
+    """Return lateral axes and axis. Lateral axes follow the axes of space as far as possible; there is only one if
+    nodes and axis lie in one plane."""
     across = position - position.mean(axis=0)
     across = across - np.outer(across @ axis, axis)
     spread, directions = np.linalg.svd(across, full_matrices=False)[1:]

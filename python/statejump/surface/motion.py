@@ -9,13 +9,13 @@ import numpy as np
 
 from statejump.core.errors import NotAllowed, StatejumpError
 
-# Fraction of the nodes' extent below which they count as collinear and do not determine the rotation about their line.
+# Fraction of the extent of the nodes below which they are collinear: the rotation about their line is undetermined.
 ON_A_LINE = 1e-6
 
 
 def rotation_rad(position_m: Any, displacement_m: Any) -> np.ndarray:
-    """Return the rotation (..., 3) [rad] of the rigid motion nearest to the displacements of nodes, by least squares,
-    to first order.
+    """Return the rotation (..., 3) [rad] of the rigid motion that fits the displacements of nodes best (least squares,
+    first order).
 
     :param position_m: (nodes, 3) [m]
     :param displacement_m: (..., nodes, 3) [m]
@@ -39,7 +39,7 @@ def pointing_rad(position_m: Any, displacement_m: Any, direction: Sequence[float
 
     :param position_m: (nodes, 3) [m]
     :param displacement_m: (..., nodes, 3) [m]
-    :param direction: of any length
+    :param direction: direction, of any length
     :raises StatejumpError: the nodes lie on one line, or the direction is zero
     """
     way = np.asarray(direction, dtype=float)

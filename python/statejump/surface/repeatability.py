@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Repeatability of a structure, as hardware is specified: µm per metre at a quantile of all samples."""
+"""Repeatability of a structure, in the form of hardware specifications: µm per metre at a quantile of all samples."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -13,13 +13,13 @@ from statejump.core.errors import NotAllowed, StatejumpError
 
 @dataclass(frozen=True)
 class Repeatability:
-    """A quantile of sampled changes over a length.
+    """A quantile of sampled changes of a length, divided by a reference length.
 
     :param um_per_m: the quantile, µm per metre
-    :param low: lower end of its interval at 95 %, by order statistics, without assuming a distribution
-    :param high: upper end; infinite: there are too few samples
+    :param low: lower end of its confidence interval (order statistics, for any distribution)
+    :param high: upper end; infinite if there are too few samples
     :param share: fraction of the samples below the quantile
-    :param samples: their number
+    :param samples: number of samples
     """
 
     um_per_m: float

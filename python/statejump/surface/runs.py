@@ -16,7 +16,7 @@ from statejump.surface.motion import pointing_rad
 def reflector_of(case: Case) -> tuple[Design, np.ndarray]:
     """Return the reference surface of a case and the indices of its nodes.
 
-    :raises StatejumpError: cases of its kind have no surface, or it has no [reflector]
+    :raises StatejumpError: the kind has no surface, or the case has no [reflector]
     """
     found: tuple[Design, np.ndarray] = require(case, ReflectorSurface).surface(case)
     return found
@@ -27,8 +27,8 @@ def history(run: Run, measure: str = "normal") -> dict[str, np.ndarray]:
 
     :param measure: as for :meth:`~statejump.surface.Design.errors`
     :return: arrays by column: ``time_s``, ``temperature_change_K``, RMS by definition, tilt, focal change (NaN: not
-        determined), pointing error of the axis with the rigid motion of the nodes (NaN: they lie on one line)
-    :raises StatejumpError: the run is of no truss with a [reflector]
+        determined), pointing error of the axis under the rigid motion of the nodes (NaN: they lie on one line)
+    :raises StatejumpError: the run is not that of a truss with a [reflector]
     """
     design, nodes = reflector_of(run.definition)
     moved = np.asarray(run.history["position_m"].values)[:, nodes] - design.position_m

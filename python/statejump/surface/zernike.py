@@ -13,8 +13,8 @@ import numpy as np
 from statejump.core.errors import NotAllowed, StatejumpError
 
 MOST = 36
-ORDERS = tuple(n * (n + 1) // 2 for n in range(1, 9))  # 1, 3, 6, ... 36: all terms of degree below n
-# The nodes do not distinguish terms whose singular value, with columns of length 1, is below this.
+ORDERS = tuple(n * (n + 1) // 2 for n in range(1, 9))  # 1, 3, 6, ... 36: number of all terms of degree below n
+# Terms are undetermined if their singular value, with columns scaled to length 1, is below this.
 LEAST_SINGULAR_VALUE = 1e-6
 
 
@@ -53,8 +53,8 @@ def zernike(term: int, points: np.ndarray) -> np.ndarray:
 def fitted(points: np.ndarray, values: np.ndarray, terms: int | None = None) -> np.ndarray:
     """Return the coefficients of terms 1 to ``terms`` by least squares over points of the unit circle.
 
-    :param terms: None: the most whole orders that the points determine
-    :raises StatejumpError: the points do not determine so many
+    :param terms: None: as many whole orders as the points determine
+    :raises StatejumpError: the points determine fewer terms
     """
     if terms is not None and not (isinstance(terms, int) and 1 <= terms <= MOST):
         raise NotAllowed("terms", terms, code="terms_out_of_range", most=MOST)

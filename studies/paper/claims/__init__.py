@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tests of the paper's statements about its Figures 13 to 16 with runs of both models.
+"""Tests of the paper's statements about its Figures 13 to 16, by runs of both models.
 
-Every verdict follows from the numbers by a rule that is printed beside it, and every reason from the verdict and the
-numbers. ``statistics`` has the tests, ``findings`` their input, ``verdicts`` and ``measures`` the statements, ``page``
-their page.
+A rule, printed beside the verdict, derives each verdict from numbers; the reason follows from verdict and numbers.
+``statistics`` has the tests, ``findings`` their input, ``verdicts`` and ``measures`` the statements, ``page`` their
+page.
 """

@@ -11,7 +11,7 @@ from studies.paper.claims.statistics import Groups, TwoSampleTest
 
 @dataclass(frozen=True)
 class FirstContact:
-    """ΔT [K] of first contact at one clearance, links without ringing at the start; None: never."""
+    """ΔT [K] of first contact at one clearance, for links that do not vibrate at the start; None: no contact."""
 
     clearance_m: float
     closed_form_K: float | None
@@ -23,21 +23,21 @@ class FirstContact:
 
 @dataclass(frozen=True)
 class Envelope:
-    """θ2 of all runs of one kind, compared with the range that the play allows at the same temperature."""
+    """θ2 of all runs of one kind, compared with the range that the clearance allows at the same temperature."""
 
     runs: str
     count: int
-    largest_excess_rad: float  # beyond rigid links with |d| = c; negative: distance to it
-    margin_m: float  # of |d|, for the stretch of the links and the depth of the contact
+    largest_excess_rad: float  # excess over rigid links with |d| = c; negative: distance to it
+    margin_m: float  # increase of |d| [m] for elongation of the links and depth of the contact
     beyond_margin: int  # samples outside of that
 
 
-CHAOTIC = 1e6  # growth of a small difference beyond which no run can be repeated by another code
+CHAOTIC = 1e6  # growth of a small difference above which another code cannot repeat a run
 
 
 @dataclass(frozen=True)
 class Amplification:
-    """Two runs of the reduced model from starts that differ in the direction of AB."""
+    """Two runs of the reduced model whose starts differ in the direction of AB."""
 
     start_rad: float
     at_largest_temperature_rad: float
@@ -54,14 +54,14 @@ class Findings:
     """Everything that the verdicts are computed from."""
 
     start_spread_m: float
-    end_shift_reduced_m: np.ndarray  # of the journal in the play, start to end, every run
+    end_shift_reduced_m: np.ndarray  # displacement of the journal in its clearance from start to end, for every run
     end_shift_dem_m: np.ndarray
     first_contacts: tuple[FirstContact, ...]
     tolerance_reduced_K: float
     tolerance_dem_K: float
-    onset_K: Groups  # by clearance, from the paper's start; inf: θ2 never moves
+    onset_K: Groups  # ΔT of first deflection by clearance, from the paper's start; inf: θ2 never changes
     onset_dem_K: tuple[float, ...]
-    clearance_limit_m: float  # play that the expansion of the links just uses up; nan: no closed form
+    clearance_limit_m: float  # clearance that the expansion of the links just closes; nan: no closed form
     range_by_friction: Groups
     jump_by_friction: Groups
     friction_coefficient: float  # of the case
@@ -69,12 +69,12 @@ class Findings:
     jump_by_spring: Groups
     static_rigid_rad: float | None
     static_elastic_rad: tuple[float | None, ...]  # by stiffness of the spring
-    jump_by_stiffness: Groups  # section of the links, over that of the case
+    jump_by_stiffness: Groups  # jumps by the section of the links, relative to that of the case
     free_turn_rad: float  # c/|AC|
     spring_bias_rad: float
     tests: tuple[TwoSampleTest, ...]
     envelopes: tuple[Envelope, ...]
     amplification: Amplification
     spring_stiffness_N_m_per_rad: float  # of the case
-    damped: bool  # links and pins: what swings comes to rest
-    rings: bool  # the links start at rest, not with the speed of their expansion
+    damped: bool  # whether links and pins are damped, so that vibrations decay
+    rings: bool  # whether the links start at rest and not with the velocity of their expansion

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Conclusion c of the paper: the effect of each measure on the state jump."""
+"""Conclusion c of the paper: effect of each measure on the state jump."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -26,7 +26,7 @@ def measure(jump: Groups, without: float, larger: bool) -> str:
     """Return the verdict on "the measure reduces the jump"; the rule is ``MEASURE_RULE``.
 
     :param without: value of the parameter without the measure
-    :param larger: the measure makes the parameter larger, not smaller
+    :param larger: whether the measure increases the parameter
     """
     taken = _taken(jump, without, larger)
     before = jump.at(without)
@@ -48,11 +48,11 @@ MEASURE_RULE = (
 class Measure:
     """One measure and its effect on the jump.
 
-    :param without: value of the parameter without it
-    :param larger: it makes the parameter larger, not smaller
-    :param label: of the parameter
-    :param reduces: reason if it reduces the jump
-    :param fails: reason if it does not; a text for the means with it and without it [rad]
+    :param without: value of the parameter without the measure
+    :param larger: whether the measure increases the parameter
+    :param label: label of the parameter
+    :param reduces: reason if the measure reduces the jump
+    :param fails: reason if it does not; a function of the mean jumps with and without it [rad]
     """
 
     name: str
@@ -133,7 +133,7 @@ def control(f: Findings) -> list[Claim]:
 
 
 def all_claims(f: Findings) -> list[Claim]:
-    """Return every statement of the paper's section 4.3, and those of its conclusions that the runs can test."""
+    """Return all statements of section 4.3 of the paper, and those of its conclusions that the runs can test."""
     return [
         state_jump_occurs(f),
         smaller_clearance_earlier(f),

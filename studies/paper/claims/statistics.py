@@ -10,13 +10,13 @@ from scipy import stats
 SIGNIFICANCE = 0.01
 HOLDS, IN_THE_MEAN, IN_PART = "holds", "holds in the mean", "holds in part"
 FAILS, UNTESTED = "does not hold", "not tested"
-NEARLY_EVERY_RUN = 0.95  # chance that a run at the next value lies on the claimed side
+NEARLY_EVERY_RUN = 0.95  # probability that a run at the next value lies on the claimed side
 MRAD = 1e3
 
 
 @dataclass(frozen=True)
 class Groups:
-    """One quantity of every run, by the value of the parameter that was varied."""
+    """One quantity of all runs, grouped by the value of the varied parameter."""
 
     values: tuple[float, ...]  # rising
     runs: tuple[np.ndarray, ...]
@@ -26,7 +26,7 @@ class Groups:
         return np.array([np.mean(group) for group in self.runs])
 
     def standard_error(self) -> np.ndarray:
-        """Standard error of the mean at every value; 0 of a single run."""
+        """Standard error of the mean at every value; 0 for a single run."""
         return np.array(
             [np.std(group, ddof=1) / np.sqrt(len(group)) if len(group) > 1 else 0.0 for group in self.runs]
         )
@@ -57,12 +57,12 @@ class Trend:
     p: float  # one-sided, of the claimed direction
     slope: float  # least squares
     slope_error: float
-    against: tuple[tuple[float, float, float], ...]  # steps significantly the other way: from, to, p
-    least_chance: float  # over the steps, that a run of the next value lies on the claimed side
+    against: tuple[tuple[float, float, float], ...]  # significant steps against the claim: from, to, p
+    least_chance: float  # smallest probability over the steps that a run at the next value lies on the claimed side
 
 
 def one_sided_welch(first: np.ndarray, second: np.ndarray, rising: bool) -> float:
-    """Return p of "the second mean is above (rising) or below the first"; 1 if nothing varies."""
+    """Return the p-value of "the second mean is above (rising) or below the first"; 1 if there is no variance."""
     if np.ptp(first) == 0 and np.ptp(second) == 0:
         step = np.mean(second) - np.mean(first)
         return 0.0 if (step > 0 if rising else step < 0) else 1.0
@@ -72,7 +72,7 @@ def one_sided_welch(first: np.ndarray, second: np.ndarray, rising: bool) -> floa
 
 
 def chance(first: np.ndarray, second: np.ndarray, rising: bool) -> float:
-    """Return the probability that a run of the second group lies on the claimed side of one of the first."""
+    """Return the probability that a run of the second group lies on the claimed side of a run of the first group."""
     difference = second[:, None] - first[None, :]
     return float(np.mean(difference > 0 if rising else difference < 0))
 
@@ -129,7 +129,7 @@ class TwoSampleTest:
 
 
 def two_sample_test(quantity: str, reduced: np.ndarray, dem: np.ndarray) -> TwoSampleTest:
-    """Test whether two ensembles may have one distribution. NaN, the result for too few runs, counts as 1."""
+    """Test whether two ensembles may have the same distribution. NaN, the result for too few runs, becomes p = 1."""
 
     def p(result: object) -> float:
         value = float(result.pvalue)  # type: ignore[attr-defined]

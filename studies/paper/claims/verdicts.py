@@ -13,13 +13,13 @@ from studies.paper.claims.statistics import (
     FAILS, HOLDS, IN_THE_MEAN, MRAD, SIGNIFICANCE, TREND_RULE, UNTESTED, Trend, chance, one_sided_welch, trend,
 )
 
-NEGLIGIBLE = 0.1  # a jump below this part of another is no jump
+NEGLIGIBLE = 0.1  # ratio to another jump below which a jump counts as zero
 NEAR_STATIC = 0.05  # of the static value
 
 
 @dataclass(frozen=True)
 class Claim:
-    """A statement, the observation, the verdict, its reason as far as the numbers show it, and the rule."""
+    """A statement of the paper, the observation, the verdict, its reason as far as known, and the rule."""
 
     statement: str
     found: str
@@ -29,13 +29,13 @@ class Claim:
 
 
 def jump_verdict(f: Findings, least_m: float) -> str:
-    """Return the verdict on "a state jump occurs", for the given distance of the end from the start."""
+    """Return the verdict on "a state jump occurs", for the smallest distance of the end from the start [m]."""
     share = float(np.mean(np.concatenate([f.end_shift_reduced_m, f.end_shift_dem_m]) > least_m))
     return HOLDS if share == 1 else IN_THE_MEAN if share > 0.5 else FAILS
 
 
 def state_jump_occurs(f: Findings) -> Claim:
-    """Relative positions differ though the temperature has returned."""
+    """Judge "relative positions differ although the temperature has returned"."""
     least = f.start_spread_m
     shifts = np.concatenate([f.end_shift_reduced_m, f.end_shift_dem_m])
     verdict = jump_verdict(f, least)
@@ -76,7 +76,7 @@ def _meets(contact: FirstContact, f: Findings) -> bool:
 
 
 def kelvin(value: float | None, digits: int = 4) -> str:
-    """Return a temperature as text; ``none`` for None and for what is not finite."""
+    """Return a temperature as text; ``none`` for None and for values that are not finite."""
     return "none" if value is None or not np.isfinite(value) else f"{value:.{digits}f} K"
 
 
@@ -124,7 +124,7 @@ def smaller_clearance_earlier(f: Findings) -> Claim:
 
 
 def large_clearance_never_touches(f: Findings) -> Claim:
-    """Judge "above the limit there is no contact"; below it there must always be one."""
+    """Judge "above the limit there is no contact". It requires that all runs below the limit have contact."""
     above = [value > f.clearance_limit_m for value in f.onset_K.values]
     right = [
         bool(np.all(np.isinf(onset) if beyond else np.isfinite(onset)))

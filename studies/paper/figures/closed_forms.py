@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Geometry and statics of the rib without a run: limits of θ2, first contact, static path."""
+"""Geometry and statics of the rib without time integration: limits of θ2, first contact, static path."""
 from __future__ import annotations
 
 from typing import Any
@@ -17,16 +17,16 @@ CIRCLE = np.linspace(0, 2 * np.pi, 721)
 
 
 def _theta2(case: UmbrellaCase, lengths: tuple[Any, Any], eccentricity: tuple[Any, Any]) -> Any:
-    """Return θ2 of links of given lengths whose tips are d apart (numbers or arrays that broadcast)."""
+    """Return θ2 for link lengths and a distance of the link tips (numbers or arrays that broadcast)."""
     x, y = case.frame.length_m - eccentricity[0], -np.asarray(eccentricity[1])
     foot, height = apex_m(*lengths, np.hypot(x, y))
     return np.arctan2(y, x) + np.arctan2(height, foot)
 
 
 def envelope(case: UmbrellaCase, change_K: np.ndarray, margin_m: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-    """Extremes of θ2 [rad] over all positions in the play, rigid links, by temperature.
+    """Return the extremes of θ2 [rad] over all positions in the clearance, for rigid links, by temperature.
 
-    θ2 has no stationary point inside the play, so its extremes are on the rim.
+    θ2 has no stationary point inside the clearance circle, so its extremes are on the rim.
     """
     change = np.linspace(np.min(change_K), np.max(change_K), 201)[:, None]
     radius = np.array([case.clearance_m(value) for value in change[:, 0]])[:, None] + margin_m
@@ -36,12 +36,12 @@ def envelope(case: UmbrellaCase, change_K: np.ndarray, margin_m: float = 0.0) ->
 
 
 def closed_form_first_contact(case: UmbrellaCase) -> float | None:
-    """ΔT_c [K] of a start without vibration; None without a closed form, infinity without contact."""
+    """Return ΔT_c [K] for a start without vibration; None without a closed form, infinity without contact."""
     return compare.closed_form_first_contact(with_values(case, {"start.mode": "matched"}))
 
 
 def static_deflection(case: UmbrellaCase, change_K: float) -> float | None:
-    """θ2 − θ2(0) [rad] of rigid links in contact without friction; None before the first contact."""
+    """Return θ2 − θ2(0) [rad] of rigid links in frictionless contact; None before the first contact."""
     contact = closed_form_first_contact(case)
     if contact is None or change_K < contact:
         return None
@@ -49,8 +49,8 @@ def static_deflection(case: UmbrellaCase, change_K: float) -> float | None:
 
 
 def static_deflection_elastic(case: UmbrellaCase, change_K: float) -> float | None:
-    """The same of elastic links, contact and spring: root of the spring's moment in the joint force
-    F, which lies along AC."""
+    """Return θ2 − θ2(0) [rad] for elastic links, contact and spring. The joint force F lies along AC; moment
+    equilibrium with the spring determines it."""
     spring = case.torsion_spring.stiffness_N_m_per_rad
     if spring == 0 or static_deflection(case, change_K) is None:
         return None
@@ -68,12 +68,12 @@ def static_deflection_elastic(case: UmbrellaCase, change_K: float) -> float | No
         )["force_N"][0])
 
     def angles(force: float) -> tuple[float, float]:
-        """θ2 and θ4 under a force: compressed links are shorter, and the play is deeper."""
+        """Return θ2 and θ4 under a force, which shortens the links and deepens the contact."""
         play = case.clearance_m(change_K)
         end = 0.5 * min(play, _engine.largest_depth_m(joint.normal_law, joint.journal_radius_m, case.bearing_radius_m))
         depth = brentq(lambda value: normal_force(value) - force, 0, end, xtol=1e-18)
         theta2, theta4 = case.theta2_rad, case.theta4_rad
-        for _ in range(50):  # the strain is small: each round gains its size
+        for _ in range(50):  # small strain: each iteration reduces the error by this factor
             ab = first - force * np.cos(theta2) / stiffness[0]
             bc = second + force * np.cos(theta4) / stiffness[1]
             theta2 = float(_theta2(case, (ab, bc), (-(play + depth), 0.0)))
@@ -95,7 +95,7 @@ def static_deflection_elastic(case: UmbrellaCase, change_K: float) -> float | No
 
 
 def quasi_static(case: UmbrellaCase, change_K: np.ndarray) -> np.ndarray | None:
-    """Frictionless path in contact, NaN where the spring does not close the joint; None without spring."""
+    """Return the frictionless path in contact; NaN where the spring does not close the joint; None without a spring."""
     spring = case.torsion_spring
     if spring.stiffness_N_m_per_rad == 0 or spring.bias_rad != 0:
         return None

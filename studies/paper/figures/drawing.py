@@ -22,7 +22,7 @@ from studies.paper.figures.runs import Study, Variant, single_deflection
 CURVE_POINTS = 1000  # of a single run in a figure
 
 Line = dict[str, Any]
-# Okabe-Ito; each differs in lightness, width or dashes as well.
+# Okabe-Ito colours that also differ in lightness, width or dashes.
 BAND: Line = {"color": "#56B4E9", "alpha": 0.4, "linewidth": 0, "label": "reduced, ensemble: mean ± sd"}
 MEAN: Line = {"color": "#0072B2", "linewidth": 2.6, "label": "reduced, ensemble: mean"}
 SINGLE: Line = {"color": "#E69F00", "linewidth": 1.6, "label": "reduced, single run"}
@@ -143,7 +143,7 @@ def _mark_static(panel: Axes, places: np.ndarray, variants: Sequence[Variant]) -
         for v, change in zip(variants, warmest)
     ]
     if any(value is not None for value in static):
-        rigid = static_deflection(variants[0].case, warmest[0]) or 0.0  # there is one if there is an elastic one
+        rigid = static_deflection(variants[0].case, warmest[0]) or 0.0  # a rigid solution exists if an elastic one does
         panel.axhline(abs(rigid) * 1e3, color=STATIC["color"], linewidth=1.4,
                       label="static at ΔTmax, rigid links")
         panel.plot(places, [np.nan if value is None else abs(value) * 1e3 for value in static], "s",
@@ -152,7 +152,7 @@ def _mark_static(panel: Axes, places: np.ndarray, variants: Sequence[Variant]) -
 
 
 def _common_range(variants: Sequence[Variant]) -> tuple[float, float]:
-    """Range of every deflection [rad] with some room; the lines of the envelope may leave it."""
+    """Return the common range of all deflections [rad] with a margin; lines of the envelope may exceed it."""
     extremes = [
         (pick(v.ensemble.deflection_rad), *(pick(single_deflection(run)) for run in (v.reduced, v.dem)))
         for pick in (np.min, np.max) for v in variants
@@ -163,14 +163,14 @@ def _common_range(variants: Sequence[Variant]) -> tuple[float, float]:
 
 
 def _legend_below(drawing: Figure, entries: dict[str, Any]) -> None:
-    """One legend for all panels, in a strip that the layout leaves free."""
+    """Add one legend for all panels, in a strip reserved by the layout."""
     strip = 0.28 * -(-len(entries) // 4) / drawing.get_figheight()
     drawing.get_layout_engine().set(rect=(0, strip, 1, 1 - strip))
     drawing.legend(entries.values(), entries.keys(), loc="lower center", ncol=4, fontsize=8, frameon=False)
 
 
 def figure_13(base: Variant, dem_ensemble: ensembles.EnsembleOfRuns, title: str, folder: Path) -> list[Path]:
-    """Write the paths of both centres and of the bearing's relative to the journal's."""
+    """Write the paths of both centres, and that of the bearing relative to the journal."""
     with style():
         drawing, panels = new_panels(1, 3, (12.6, 4.9))
         for panel, part in zip(panels, ("journal", "bearing")):

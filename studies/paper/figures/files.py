@@ -18,11 +18,11 @@ from studies.paper.claims.page import page
 from studies.paper.figures.closed_forms import envelope, quasi_static
 from studies.paper.figures.runs import Study, Variant, single_deflection
 
-TABLE_POINTS = 201  # of a curve in curves.csv, of a band in a figure
+TABLE_POINTS = 201  # largest number of points of a curve in curves.csv, and of a band in a figure
 
 
 def thin(length: int, points: int) -> np.ndarray:
-    """Indices of at most so many samples, first and last among them."""
+    """Return the indices of at most ``points`` samples, including the first and the last."""
     return np.unique(np.linspace(0, length - 1, min(points, length)).round().astype(int))
 
 
@@ -88,7 +88,7 @@ def write_curves(done: Sequence[tuple[Study, Sequence[Variant]]], folder: Path) 
 def write_claims(case: UmbrellaCase, command: str, findings: Findings, folder: Path) -> None:
     """Write ``ensembles.json`` and ``README.md``.
 
-    :param command: that makes them
+    :param command: command that writes these files
     """
     content = {
         "case": case.name,
@@ -105,7 +105,7 @@ def _write_table(path: Path, header: Sequence[str], rows: Iterator[Sequence[Any]
 
 
 def _plain(value: Any) -> Any:
-    """Convert to JSON with as many digits as matter: lists for arrays, None for numbers that are not finite."""
+    """Convert to JSON with significant digits only: arrays become lists, numbers that are not finite become None."""
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):

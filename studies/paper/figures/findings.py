@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Results of the runs of Figures 13 to 16, as :mod:`studies.paper.claims` needs them."""
+"""Results of the runs of Figures 13 to 16 as input of :mod:`studies.paper.claims`."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
@@ -19,8 +19,8 @@ from studies.paper.figures.closed_forms import (
 )
 from studies.paper.figures.runs import Study, Variant, single_deflection
 
-TWIN_RAD = 1e-12  # turn of AB between two otherwise equal starts
-ONSET = 0.01  # of c/|AB| at the smallest clearance: AB has begun to deflect
+TWIN_RAD = 1e-12  # rotation of AB between two otherwise equal initial states [rad]
+ONSET = 0.01  # fraction of c/|AB| at the smallest clearance, above which AB counts as deflected
 
 
 def findings_of(
@@ -30,9 +30,9 @@ def findings_of(
     """Return the results of the runs.
 
     :param done: the studies of Figures 14 to 16 with their runs
-    :param base: the case itself
-    :param contacts: first contact of links without vibration, by clearance
-    :param stiffness: jumps by the section of the links
+    :param base: runs of the unchanged case
+    :param contacts: first contact by clearance, for links without vibration
+    :param stiffness: jumps by section of the links
     """
     clearances, frictions, springs = (variants for _, variants in done)
     threshold = ONSET * min(v.value for v in clearances) / case.link_ab.stress_free_length_m
@@ -102,7 +102,7 @@ def _amplification(case: UmbrellaCase, reduced: Run) -> Amplification:
 
 
 def _slack(case: UmbrellaCase, run: Run) -> float:
-    """Largest depth plus stretch of both links [m]: rigid links may seem to leave the play by this length."""
+    """Return the largest depth plus elongation of both links [m], by which rigid links seem to leave the clearance."""
     first, second = case.link_lengths_m(run["temperature_change_K"])
     return float(np.max(
         np.maximum(run["penetration_depth_m"], 0)
@@ -139,7 +139,7 @@ def _check_envelopes(
 
 
 def _onset(change_K: np.ndarray, deflection: np.ndarray, threshold: float) -> np.ndarray:
-    """ΔT at which the deflection of each run first exceeds the threshold; infinity if it never does."""
+    """Return ΔT at which the deflection of each run first exceeds the threshold; infinity if it never does."""
     moved = np.abs(deflection) > threshold
     return np.where(moved.any(axis=1), change_K[np.argmax(moved, axis=1)], np.inf)
 

@@ -23,9 +23,9 @@ from studies.paper import ensembles
 CLEARANCES = (0.5, 1.0, 1.5, 2.0, 3.0)  # over that of the case
 FRICTIONS = (0.0, 0.1, 0.3, 0.5)
 SPRINGS_N_m_per_rad = (0.0, 0.01, 0.1, 1.0, 10.0, 100.0)
-SECTIONS = (0.25, 1.0, 4.0)  # over that of the case: stiffness of the links
+SECTIONS = (0.25, 1.0, 4.0)  # sections of the links, relative to that of the case, to vary their stiffness
 
-# Context of a part of the work, by its name and number of runs; yields a function to call after each run.
+# Context of a part of the work, by its name and number of runs; it yields a function to call after each run.
 Part = Callable[[str, int], AbstractContextManager[Callable[[], None]]]
 
 
@@ -41,7 +41,7 @@ class Variant:
 
     @property
     def runs(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-        """Temperatures and θ2 (runs, samples) by kind of run."""
+        """Return temperatures and θ2 (runs, samples) by kind of run."""
         single = self.reduced, self.dem
         return {
             "reduced, ensemble": (self.ensemble.temperature_change_K, self.ensemble.theta2_rad),
@@ -61,7 +61,7 @@ class Study:
     values: tuple[float, ...]
     title: str
     label: str  # of the parameter, with unit
-    panel: str  # heading of a panel, to be formatted with the value
+    panel: str  # heading of a panel, a format string for the value
     scale: float = 1.0  # from SI to the label's unit
     summaries: tuple[str, ...] = ("largest",)  # of SUMMARIES, a panel each
 
@@ -118,7 +118,7 @@ def _key(case: UmbrellaCase) -> str:
 
 
 def first_contacts(case: UmbrellaCase, values: Sequence[float], part: Part) -> tuple[FirstContact, ...]:
-    """First contact of both models at every clearance, with links that do not vibrate."""
+    """Return the first contact of both models at every clearance, with links that do not vibrate."""
     start = {"start.mode": "matched", "start.eccentricity_m": 0.0}
     cases = [with_values(variant_case(case, "joint.radial_clearance_m", value), start) for value in values]
     with part("first contact, both models", 2 * len(cases)) as step:
@@ -136,7 +136,7 @@ def first_contacts(case: UmbrellaCase, values: Sequence[float], part: Part) -> t
 
 
 def stiffness_jumps(case: UmbrellaCase, base: Variant, part: Part) -> Groups:
-    """Jumps with links of other sections, as many runs as for the figures."""
+    """Return jumps for links of other sections, with as many runs as the figures."""
     others = [factor for factor in SECTIONS if factor != 1]
     jumps = {1.0: base.ensemble.jump_rad}
     with part("stiffness of the links, reduced", len(others) * case.ensemble.reduced_runs) as step:

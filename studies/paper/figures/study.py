@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figures 13 to 16: run everything and write each file as soon as its runs are there."""
+"""Figures 13 to 16: all runs, and files that are written as soon as their runs are finished."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ from studies.paper.figures.runs import Part, Study, Variant, first_contacts, run
 
 @dataclass(frozen=True)
 class Figures:
-    """What the runs say of the paper's claims, and the files that were written."""
+    """Verdicts on the claims of the paper, and the written files."""
 
     findings: Findings
     written: list[Path]
@@ -31,12 +31,12 @@ class Figures:
 
 
 def make(case: UmbrellaCase, results: Results, part: Part) -> Figures:
-    """Run everything; write each file as soon as its runs are there.
+    """Run all parts; write each file as soon as its runs are finished.
 
-    :param results: gets a folder of the case's name
-    :param part: gets the name and the number of runs of a part
+    :param results: root of the results; gets a folder named after the case
+    :param part: receives the name and the number of runs of a part
     :raises NotAllowed: the figures do not fit the case
-    :raises Interrupted: Ctrl-C; names the files that are finished
+    :raises Interrupted: Ctrl-C; the message names the finished files
     """
     if case.start.mode == "loaded":
         raise refused(case, "start.mode", "loaded", "the figures vary what would load the joint")

@@ -16,4 +16,4 @@ class BallJoints(RoundParts):
     shapes = {"socket": sj.Socket, "ball": sj.Ball}
 
     def read(self, offset: np.ndarray, contacts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return offset, -contacts["shearForce"]  # forces of a contact act on the socket
+        return offset, -contacts["shearForce"]  # YADE stores the forces on the socket

@@ -15,7 +15,7 @@ from yade import wrapper
 
 
 class LatchHinges(Joints):
-    """Latch hinges. They have no contacts: the engine of torsion springs applies their moments."""
+    """Latch hinges have no contacts: the engine of torsion springs applies their moments."""
 
     section = "latch_hinge"
     columns = (("hinge_rotation_rad", False), ("hinge_moment_N_m", False), ("latch_hinge_state", False))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shared by the joints of a truss in YADE: interface, rows of a section, material of bodies."""
+"""Code shared by the joints of a truss in YADE: interface, rows of a section, material of bodies."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
@@ -19,7 +19,7 @@ Row = dict[str, Any]
 
 
 def rows(section: dict[str, Any]) -> list[Row]:
-    """Return a section of columns as one dict per item."""
+    """Return a section in columns as one dict per item."""
     count = len(section["names"])
     whole = {key: values for key, values in section.items() if isinstance(values, list) and len(values) == count}
     return [{key: values[place] for key, values in whole.items()} for place in range(count)]
@@ -34,19 +34,19 @@ def material(part: Row, expansion: float = 0.0) -> sj.ThermalFrictMat:
 
 
 def give(body: wrapper.Body, shape, made, group: int) -> None:
-    """Set shape and material of a body; it interacts only with the bodies of its group."""
+    """Set shape and material of a body, which interacts only with the bodies of its group."""
     body.shape, body.material, body.bound = shape, made, wrapper.Aabb()
     body.mask = 1 << group
 
 
 class Joints:
-    """The joints of one type. ``ids`` are the bodies of the nodes, known from :meth:`append` on.
+    """The joints of one type. ``ids`` are the bodies of the nodes, set by :meth:`append`.
 
-    :param case: what ``statejump.kinds.truss.dem.resolved`` returns
+    :param case: result of ``statejump.kinds.truss.dem.resolved``
     """
 
     section: str  # of the case
-    columns: tuple[tuple[str, bool], ...]  # of every joint: key and whether it is a vector
+    columns: tuple[tuple[str, bool], ...]  # columns of every joint: key, and whether it is a vector
 
     def __init__(self, case: dict[str, Any]) -> None:
         self.rows = rows(case[self.section])
@@ -63,7 +63,7 @@ class Joints:
         raise NotImplementedError
 
     def append(self, ids: list[int]) -> Iterator[tuple[int, int]]:
-        """Append bodies of its own; yield the pairs of bodies that may touch."""
+        """Append the bodies of the joints themselves; yield the pairs of bodies that may touch."""
         raise NotImplementedError
 
     def radii(self) -> list[float]:
@@ -71,15 +71,15 @@ class Joints:
         raise NotImplementedError
 
     def torsion_springs(self) -> list[sj.TorsionSpring]:
-        """Return the torsion springs that represent joints, known from :meth:`append` on."""
+        """Return the torsion springs that represent joints; call it after :meth:`append`."""
         return []
 
     def prismatic_joints(self) -> list[sj.PrismaticJoint]:
-        """Return the prismatic joints that represent joints, known from :meth:`append` on."""
+        """Return the prismatic joints that represent joints; call it after :meth:`append`."""
         return []
 
     def start_slides(self) -> dict[int, tuple[float, float, float]]:
-        """Return by body the slides [m] that load its contact by the friction of the start, see
+        """Return by body the slide [m] that loads its contact by the initial friction, see
         :func:`scene.start_sticking`."""
         return {}
 
@@ -88,11 +88,11 @@ class Joints:
         raise NotImplementedError
 
     def faults(self, states: States) -> Iterator[SceneFailure]:
-        """Yield the first event that the model of a joint does not cover."""
+        """Yield a failure for the first event that the model of a joint does not cover."""
         yield from ()
 
     def faces(self) -> dict[int, tuple[str, str]]:
-        """Return joint and texts of bodies of its own."""
+        """Return joint and text by body, for the bodies of the joints themselves."""
         return {}
 
     def name(self, found: Names) -> None:

@@ -26,6 +26,6 @@ class Revolutes(RoundParts):
 
     def read(self, offset: np.ndarray, contacts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         axes = np.array([joint["axis"] for joint in self.rows])
-        # On the journal, opposite to the positive slide (anticlockwise): shearForce acts on the bearing.
+        # Friction on the journal, opposite to the positive slide (anticlockwise); shearForce acts on the bearing.
         friction = dot(contacts["shearForce"], np.cross(axes, contacts["normal"]))
         return offset - dot(offset, axes)[..., None] * axes, friction

@@ -13,9 +13,9 @@ from yade import wrapper
 
 
 class RoundParts(Joints):
-    """Keys of both parts begin with their names: ``journal_node``, ``journal_radius_m``, ..."""
+    """Joints of a part in a bore. Keys of each part begin with its name: ``journal_node``, ``journal_radius_m``, ..."""
 
-    shapes: ClassVar[dict[str, Any]]  # by part: what it plays in, the part that plays
+    shapes: ClassVar[dict[str, Any]]  # shapes by part: the outer one, then the inner one
 
     def furnish(self, bodies: list[wrapper.Body], turn: Callable[[int, int], None],
                 expand: Callable[[int, Row], None]) -> None:
@@ -33,7 +33,7 @@ class RoundParts(Joints):
         """Rotate a part to the joint's axis, if it has one."""
 
     def bodies_of(self, joint: Row) -> tuple[int, int]:
-        """Return the inner part and the outer part."""
+        """Return the bodies of inner and outer part."""
         outer, inner = self.shapes
         return self.ids[joint[f"{inner}_node"]], self.ids[joint[f"{outer}_node"]]
 

@@ -45,7 +45,7 @@ class Sliders(Joints):
             give(bodies[node], sj.Slider(radius=radius), made, slider["group"])
             axis, down = Vector3(slider["axis"]), Vector3(slider["floor_normal"])
             across = axis.cross(-down)
-            # Columns: the slot's x, y and z in space.
+            # Columns: axes x, y and z of the slot in space.
             turned = Matrix3(*(value for k in range(3) for value in (axis[k], -down[k], across[k])))
             stops = [
                 None if slider[f"clearance_{side}_m"] is None else radius + slider[f"clearance_{side}_m"]
@@ -94,7 +94,7 @@ class Sliders(Joints):
         }
 
     def _give_m(self, slider: Row) -> float:
-        """Return the displacement of a pad's contact by the friction of the start, along the axis [m]."""
+        """Return the displacement [m] of the contact of a pad along the axis under the initial friction."""
         friction, limit, sticks = (
             slider[key] for key in ("start_friction_N", "friction_limit_N", "friction_stiffness_N_per_m"))
         if not self._slips_in_part:
@@ -116,7 +116,7 @@ class Sliders(Joints):
         slide[:, between], force[:, between] = joints["slide"], joints["frictionForce"] + joints["stopForce"]
         limits = np.array([joint.frictionLimit for joint in self._between.values()])
         slips = np.abs(joints["frictionForce"]) >= limits
-        # With soft stops the friction force gives the status, as in the reduced model.
+        # With soft stops, the friction force determines the status, as in the reduced model.
         rigid = np.array([self.rows[place]["own_stop_stiffness_N_per_m"] is None for place in between], dtype=bool)
         state[:, between] = np.where((joints["stopForce"] != 0) & rigid, AT_STOP, np.where(slips, SLIP, STICK))
 
@@ -126,7 +126,7 @@ class Sliders(Joints):
         positions = states.bodies([self._pad(place) for place in ground])["position"]
         slide[:, ground] = dot(positions - origins[ground], axes[ground])
         floors = self._contacts(states, ground, 0)
-        # Forces of a contact act on the face; along the axis they are opposite to the slider's.
+        # YADE stores contact forces on the face; along the axis they are opposite to those on the slider.
         force[:, ground] = dot(floors["shearForce"], axes[ground])
         state[:, ground] = np.where(floors["slipping"] > 0, SLIP, STICK)
         for stop in (1, 2):
@@ -141,7 +141,7 @@ class Sliders(Joints):
         return self.ids[self.rows[place]["nodes"][0]]
 
     def _contacts(self, states: States, places: list[int], face: int) -> np.ndarray:
-        """Return those of some sliders with their floors, 0, or one of their stops."""
+        """Return the contacts of some sliders with their floors (face 0) or one of their stops."""
         return states.contacts((self._pad(place), self._numbers[place][face]) for place in places)
 
     def faults(self, states: States) -> Iterator[SceneFailure]:

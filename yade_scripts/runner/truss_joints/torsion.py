@@ -13,10 +13,10 @@ from yade.minieigenHP import Vector3
 
 def torsion_spring(row: Row, bias_rad: float, nodes: list[Row], links: list[Row], ids: list[int],
                    **more: Any) -> sj.TorsionSpring:
-    """Return a spring on its own pair of links. They point so that the angle is far from its jump
-    at half a rotation; ground is a link between two fixed points.
+    """Return a spring on its own pair of links. Their directions keep the angle far from its jump at half a rotation. A
+    link between two fixed points represents the ground.
 
-    :param row: links, stiffness and axis; the free angle is the drawn one and the bias
+    :param row: links, stiffness and axis; the free angle is that of the reference configuration plus the bias
     """
     first, second = row["links"]
     axis = Vector3(row["axis"])
@@ -35,7 +35,7 @@ def torsion_spring(row: Row, bias_rad: float, nodes: list[Row], links: list[Row]
     if abs(angle) > pi / 2:
         pair[1] = (pair[1][1], pair[1][0], -pair[1][2])
         angle = _angle(pair[0][2], pair[1][2], axis)
-    # These links carry no force: the engine of links does not contain them.
+    # These links carry no force and are not in the engine of links.
     carried = [sj.ThermalLink(id1=root, id2=tip, stressFreeLength=1) for root, tip, _ in pair]
     free = angle + bias_rad
     return sj.TorsionSpring(

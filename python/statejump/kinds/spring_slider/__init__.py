@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Kind ``spring_slider``: a heated bar that pushes a block with friction between stops, the paper's section 3."""
+"""Kind ``spring_slider``: a heated bar pushes a block with friction between stops (section 3 of the paper)."""
 from __future__ import annotations
 
 from typing import ClassVar
@@ -18,7 +18,7 @@ class SpringSlider(Kind[SpringSliderCase]):
     name: ClassVar[str] = "spring_slider"
     Case = SpringSliderCase
     LABELS = LABELS
-    # Same names for both models; a model has some of them.
+    # Names common to both models; each model has some of these columns.
     COLUMNS = (
         "time_s",
         "temperature_change_K",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cases of kind ``spring_slider``: a heated bar that pushes a block with friction between stops."""
+"""Cases of kind ``spring_slider``: a heated bar pushes a block with friction between stops."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -86,7 +86,7 @@ class Tolerance(Section):
 
 @definition
 class SpringSliderCase(Case):
-    """A bar with a clearance joint, the paper's section 3."""
+    """A heated bar with a clearance joint (section 3 of the paper)."""
 
     KIND: ClassVar[str] = "spring_slider"
 
@@ -106,19 +106,19 @@ class SpringSliderCase(Case):
 
     @property
     def thermal_expansion_per_K(self) -> float:
-        """The bar's coefficient of thermal expansion [1/K]; of an [expansion] its largest |α|."""
+        """Coefficient of thermal expansion of the bar [1/K]; with an [expansion], its largest |α|."""
         constant = self.link.thermal_expansion_per_K
         return self.expansion.largest_per_K if self.expansion is not None else 0.0 if constant is None else constant
 
     @cached_property
     def bar_program(self) -> Thermal | MemberProgram:
-        """Program that heats the bar; with an [expansion] strain over coefficient, see
+        """Temperature program of the bar. With an [expansion], the program of ε/α₀, see
         :mod:`statejump.core.expansion`."""
         return self.thermal if self.expansion is None else followed(self.expansion, self.thermal, self.period_s)
 
     @property
     def turning_changes_K(self) -> tuple[float, ...]:
-        """Temperature changes [K] of the program that include those of the longest and the shortest bar."""
+        """Temperature changes [K] with the longest and the shortest bar among them: ends of the range, zeros of α."""
         coldest, hottest = self.temperature_range_K
         zeros = () if self.expansion is None else self.expansion.zeros_K
         return (coldest, *(change for change in zeros if coldest < change < hottest), hottest)
@@ -142,8 +142,8 @@ class SpringSliderCase(Case):
         return self.joint.friction_coefficient * self.joint.normal_force_N
 
     def clearance_m(self, side: int, temperature_change_K: float) -> float:
-        """Return the clearance [m] on side +1 or −1 at ΔT: stop distance minus pad radius, each
-        with its own expansion from the total ΔT."""
+        """Return the clearance [m] on side +1 or -1 at ΔT: stop distance minus pad radius; both expand with the full
+        ΔT."""
         joint = self.joint
         start = joint.clearance_plus_m if side > 0 else joint.clearance_minus_m
         stop = joint.slot_thermal_expansion_per_K * (joint.pad_radius_m + start)
@@ -151,8 +151,8 @@ class SpringSliderCase(Case):
         return start + (stop - pad) * temperature_change_K
 
     def held_m(self, place_m: float, stiffness_N_per_m: float) -> float:
-        """Return the position of the block [m], held by a spring that without stops would keep it at a given
-        position."""
+        """Return the equilibrium position of the block [m] on a spring that would keep it at ``place_m`` without
+        stops."""
         joint = self.joint
         inside = min(max(place_m, -joint.clearance_minus_m), joint.clearance_plus_m)
         if joint.stop_stiffness_N_per_m is None:

@@ -35,7 +35,7 @@ def dem_event_temperatures(dem: Run, samples_per_cycle: int) -> dict[str, float 
 
     slips = starts("slipping")
     reached = starts("stop_contact")
-    reached = reached[reached > 0]  # a block that starts at a stop does not reach it
+    reached = reached[reached > 0]  # an event is a change, so sample 0 does not count
     left = None
     if len(reached):  # a cycle may reach both stops; the first one counts
         push = dem["stop_force_N"][first]
@@ -75,7 +75,7 @@ def first_cycle_events(case: SpringSliderCase, run: Run) -> dict[str, float | No
 def _jump_row(case: SpringSliderCase, first: Run, second: Run) -> Quantity:
     """Compare state jumps, or, if the program does not return, displacements at its end."""
     tolerance = case.tolerance
-    # A jump of zero is compared on the scale of jumps, f/(k + k_p).
+    # The allowed error of a jump that is zero uses the scale of jumps, f/(k + k_p).
     stiffness = stable_step.link_stiffness(case) + case.joint.preload_stiffness_N_per_m
     name = "state_jump_m" if case.has_jump else AT_END
     exact_m, other_m = (run.summary[name] for run in (first, second))
@@ -177,7 +177,7 @@ def why_missed(case: SpringSliderCase, exact: Run, dem: Run, rows: Sequence[Quan
 
 
 def _events(case: SpringSliderCase, dem: Run) -> list[str]:
-    """Return the reasons for a shift of events: samples, and the compliance of contacts."""
+    """Return reasons for a shift of events: the distance of samples and the compliance of contacts."""
     found, allowed = [], case.tolerance.event_temperature_K
     between = float(np.abs(np.diff(dem["temperature_change_K"])).max())
     if between > allowed:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Control of the state jump of a ``spring_slider`` case: exact results beside the closed form."""
+"""Control of the state jump of a ``spring_slider`` case: exact jumps, and the closed form where it applies."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -43,7 +43,7 @@ class Jump:
     """State jump of one design."""
 
     size_m: float
-    closed_form_m: float | None  # None: the cycle does not end sliding at ΔT = 0, or starts at a stop
+    closed_form_m: float | None  # None: the cycle does not end sliding at ΔT = 0, or starts or ends at a stop
     slips: bool
 
 
@@ -58,7 +58,6 @@ def jump_of(case: SpringSliderCase) -> Jump:
     free = all(-case.joint.clearance_minus_m < place < case.joint.clearance_plus_m
                for place in (start, last.end_displacement_m))
     closed = free and last.motion == "slide" and last.end_temperature_change_K == 0
-    # A block that has not moved is still at its start.
     return Jump(abs(path.state_jump_m), closed_form_m(path) if closed else None, slips)
 
 
@@ -68,7 +67,7 @@ def closed_form_m(path: _engine.SpringSliderPath) -> float:
 
 
 def closed_force_N(case: SpringSliderCase) -> float:
-    """Return the closed form times k + k_p [N]: f, or the difference of friction between start and end."""
+    """Return the closed form of the jump times k + k_p [N]: f, or the change of friction from start to end."""
     with engine():
         path = reduced.solve(case, np.array([0.0]))
     direction = path.segments[-1].direction or -1
@@ -85,11 +84,11 @@ class Spring:
 
 
 def smallest_preload(case: SpringSliderCase, wanted_m: float) -> Spring | None:
-    """Return the spring, or None if the stiffest allowed one is too soft.
+    """Return the softest spring with a jump of at most ``wanted_m``; None if the stiffest allowed one is too soft.
 
-    Without a preload force against a stop the jump never grows with k_p, because a stiffer spring lets the block slide
-    less far and back earlier. With such a force the jump grows until the stop carries nothing, and then falls. It
-    therefore passes any value that it exceeds without a spring exactly once.
+    Without a preload force against a stop, the jump never grows with k_p: the block slides less far and returns
+    earlier. With such a force, the jump grows until the stop is unloaded, then falls. If the jump without a spring
+    exceeds a value, the jump therefore crosses it exactly once.
     """
 
     def solved(stiffness: float) -> Jump:
@@ -103,7 +102,7 @@ def smallest_preload(case: SpringSliderCase, wanted_m: float) -> Spring | None:
     largest = highest(case, PRELOAD)
     closed = closed_force_N(case) / wanted_m - link_stiffness(case)
     if 0 < closed <= largest and solved(closed).closed_form_m is not None:
-        # A few steps of rounding upwards, so that the solved jump does not exceed the wanted one.
+        # Increase the stiffness by up to 8 rounding steps, until the solved jump does not exceed the wanted one.
         stiffness = closed
         for _ in range(8):
             if passes(stiffness):
@@ -167,11 +166,11 @@ def control(
     case: SpringSliderCase, jump_below: float | None = None, runs: int | None = None, with_dem: bool = False,
     on_progress: OnProgress = lambda share: None, choices: DesignChoices = DesignChoices(),
 ) -> Study:
-    """Sweep, search and, if wanted, check with the DEM.
+    """Sweep the parameters, search the smallest preload spring and, if requested, check it with the DEM.
 
     :param jump_below: largest allowed jump [m]; None: half of that of the case
-    :param runs: must be None: there is one exact path
-    :param choices: must be empty: a case has one jump
+    :param runs: must be None, because there is one exact path
+    :param choices: must be empty, because a case has one jump
     :raises StatejumpError: invalid input, or a run failed
     """
     check_wanted(jump_below, "m")

@@ -63,13 +63,13 @@ def sheet(case: SpringSliderCase, runs: Sequence[Run]) -> Sheet:
 
 
 def _dense(path: _engine.SpringSliderPath, run: Run) -> dict[str, np.ndarray]:
-    """Return the exact path as a curve that includes its corners."""
+    """Return columns of the exact path, dense and with its corners."""
     times = np.linspace(0, run.time_s[-1], DENSE)
     return path.sample(np.unique(np.concatenate((times, [event.time_s for event in path.events]))))
 
 
 def _mark_stages(panel: Axes, path: _engine.SpringSliderPath) -> None:
-    """Shade the stages over time; name them in the first cycle when they are wide enough."""
+    """Shade the stages over time. Name the stages of the first cycle that are wide enough."""
     end = path.segments[-1].end_time_s
     spans: list[list[Any]] = []
     for segment in path.segments:
@@ -94,7 +94,7 @@ def _mark_stages(panel: Axes, path: _engine.SpringSliderPath) -> None:
 
 
 def _mark_events(panel: Axes, path: _engine.SpringSliderPath) -> None:
-    """Points at the first cycle's events on the loop, with their temperatures."""
+    """Mark the events of the first cycle on the loop, with their temperatures."""
     labels = {"first_slip": ("first slip", (14, 0), "left"),
               "stop_reached": ("stop reached", (38, -34), "right"),
               "stop_left": ("stop left", (-12, 2), "right")}
@@ -130,7 +130,7 @@ def drawn(found: RestSets, axes: Axes | None = None) -> Figure:
         change = [part.temperature_change_K for part in dense]
         axes.fill_between(change, [part.from_m * 1e3 for part in dense], [part.to_m * 1e3 for part in dense],
                           color="#E69F00", alpha=0.6, linewidth=0, label="held by friction or a stop")
-        for ends in ("from_m", "to_m"):  # at a stop the band is a line
+        for ends in ("from_m", "to_m"):  # at a stop the band shrinks to a line
             axes.plot(change, [getattr(part, ends) * 1e3 for part in dense], color="#E69F00", linewidth=2)
         axes.plot(change, [part.zero_force_m * 1e3 for part in dense], color="#000000", linewidth=1,
                   linestyle=(0, (5, 2)), label="no force")

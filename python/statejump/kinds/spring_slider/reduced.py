@@ -35,7 +35,7 @@ def spring_slider(case: SpringSliderCase) -> _engine.SpringSlider:
 
 
 def warnings(case: SpringSliderCase) -> list[str]:
-    """Return warnings, as sentences: requests of the case that the reduced model ignores."""
+    """Return warnings about settings of the case that the reduced model ignores."""
     said = []
     start = spring_slider(case).start_displacement_m
     if start in (-case.joint.clearance_minus_m, case.joint.clearance_plus_m):
@@ -59,8 +59,8 @@ def warnings(case: SpringSliderCase) -> list[str]:
 def solve(case: SpringSliderCase, times_s: np.ndarray | None = None) -> _engine.SpringSliderPath:
     """Return the exact path of a case: segments, events, state jump.
 
-    :param times_s: times that the caller needs. Only their cycles, the first two and the last are kept. None: all are
-        kept
+    :param times_s: times that the caller needs. The path keeps their cycles, the first two and the last one; None: all
+        cycles
     """
     wanted = None if is_whole(case) else times_s
     if case.expansion is None:
@@ -75,8 +75,8 @@ def is_whole(case: SpringSliderCase) -> bool:
 
 
 def sample_times(case: SpringSliderCase) -> np.ndarray:
-    """Return evenly spaced times [s], as many as the DEM run has samples. For a very long history, return only those of
-    the first and the last cycles."""
+    """Return evenly spaced times [s], as many as the samples of the DEM run. For a very long history, return only those
+    of the first and the last cycles."""
     samples, cycles = case.dem_settings.samples_per_cycle, case.thermal.cycles
     if is_whole(case):
         return np.linspace(0, case.duration_s, samples * cycles + 1)
@@ -87,12 +87,12 @@ def sample_times(case: SpringSliderCase) -> np.ndarray:
 
 
 def cycles_shown(case: SpringSliderCase) -> int:
-    """Return the numbers of the first and of the last cycles in a history that omits others."""
+    """Return how many cycles at each end a history keeps if it omits those between."""
     return min(max(WHOLE_HISTORY // (10 * case.dem_settings.samples_per_cycle), 1), case.thermal.cycles // 2)
 
 
 def run(case: SpringSliderCase, on_progress: OnProgress) -> Run:
-    """Return the exact path as a run; at other times it is as exact."""
+    """Return the exact path as a run, exact also between samples."""
     times = sample_times(case)
     found = _run_at(case, times)
     if not is_whole(case):
@@ -102,7 +102,7 @@ def run(case: SpringSliderCase, on_progress: OnProgress) -> Run:
 
 
 def _without_what_is_between(case: SpringSliderCase, run: Run) -> Run:
-    """Return a run without the events of omitted cycles, and with a sentence about them."""
+    """Return a run without the events of omitted cycles, with a warning about the omission."""
     shown, cycles = cycles_shown(case), case.thermal.cycles
     first, last = shown * case.period_s, (cycles - shown) * case.period_s
     events = Events([event for event in run.events if event.time_s <= first or event.time_s > last])
@@ -112,7 +112,7 @@ def _without_what_is_between(case: SpringSliderCase, run: Run) -> Run:
 
 
 def quick(case: SpringSliderCase) -> Run:
-    """Return the exact path as a run of two samples, its ends."""
+    """Return the exact path as a run of two samples: start and end."""
     return _run_at(case, np.array([0.0, case.duration_s]))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs of a ``spring_slider`` case, from the columns of either model; and its scene for drawings."""
+"""Runs of a ``spring_slider`` case from the columns of either model, and its scene for drawings."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
@@ -21,11 +21,10 @@ from statejump.results.events import from_states
 from statejump.schema.fields import evolved
 
 CONTACTS = ("floor", "stop_minus", "stop_plus")
-# Displacement at the end of the program's rows, from the start, for a program that does not end at the reference
-# temperature.
+# Displacement from the start [m] at the last row of a program that does not end at the reference temperature.
 AT_END = "displacement_at_program_end_m"
 SLIDING_STAGES = ("S2", "S5")
-# A block at a rigid stop touches it to rounding. A sample at a larger distance does not touch it.
+# Largest distance [m] at which a block counts as touching a rigid stop (rounding).
 TOUCHING = 1e-9
 
 
@@ -35,7 +34,7 @@ def names(case: SpringSliderCase) -> dict[str, list[str]]:
 
 
 def scene(case: SpringSliderCase) -> dict[str, Any]:
-    """Bar, block and slot; the block's height is that of the unloaded pads."""
+    """Return bar, block and slot for drawings. The height of the block is that with unloaded pads."""
     link, joint = case.link, case.joint
     x = drawing.ref("history/displacement_m")
     root, radius = -link.stress_free_length_m, joint.pad_radius_m
@@ -139,10 +138,10 @@ def _run(
 
 
 def _summary(case: SpringSliderCase, jump_m: float, there_m: float) -> dict[str, float]:
-    """Return the state jump, NaN if the program does not return, and the displacement at the end of its rows.
+    """Return the state jump (NaN if the program does not return) and the displacement at the last row of the program.
 
-    :param jump_m: displacement at the end less that at the start
-    :param there_m: displacement at the end of the program's rows less that at the start
+    :param jump_m: displacement at the end minus that at the start
+    :param there_m: displacement at the last row of the program minus that at the start
     """
     found = {"state_jump_m": jump_m if case.has_jump else nan}
     return found if case.ending is None else {**found, AT_END: there_m}
@@ -152,7 +151,7 @@ def reduced_run(
     case: SpringSliderCase, path: _engine.SpringSliderPath, columns: Columns, warnings: tuple[str, ...],
     sampler: Callable[[np.ndarray], Run],
 ) -> Run:
-    """Return a run of the reduced model: exact events."""
+    """Return a run of the reduced model with exact events."""
     side = {1: "stop_plus", -1: "stop_minus"}
     events = []
     for event in path.events:

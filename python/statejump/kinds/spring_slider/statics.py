@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rest set of the block of a ``spring_slider`` case, at the temperatures of the program.
+"""Rest sets of the block of a ``spring_slider`` case at the temperatures of the program.
 
 The bar pushes with k_T (x_T - x), a preload spring pulls back with P + k_p x, and friction carries up to f. The block
 therefore rests wherever |k_T x_T - P - (k_T + k_p) x| <= f. This is a segment of half-length f/(k_T + k_p) about the
-position of zero force, within the stops. Beyond a stop the wall carries the remainder, and the block rests at the stop.
-At the reference temperature the length of the segment is the largest possible state jump.
+position of zero force, within the stops. Where it passes a stop, the stop carries the rest of the force. At the
+reference temperature the length of the segment is the largest possible state jump.
 """
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Segment:
 
 @dataclass(frozen=True)
 class RestSets:
-    """Rest sets of the block, coldest first. ``largest_jump_m`` is that at the reference temperature."""
+    """Rest sets of the block, coldest first. ``largest_jump_m`` belongs to the reference temperature."""
 
     case: SpringSliderCase
     friction_force_N: float
@@ -62,7 +62,7 @@ class RestSets:
         return libraries.frame(rows, columns=[*(field.name for field in fields(Segment)), "length_m"])
 
     def plot(self, axes: Axes | None = None) -> Figure:
-        """Draw the places of rest over the temperature; into given axes, or into a new figure."""
+        """Draw the rest positions over the temperature, into given axes or into a new figure."""
         return _DRAWN(self, axes)
 
     def summary_lines(self) -> list[Shown | str]:
@@ -94,7 +94,7 @@ class RestSets:
 
 
 def segment(case: SpringSliderCase, friction_force_N: float, temperature_change_K: float) -> Segment:
-    """Return the rest set at one temperature; clearances are those of the reference temperature."""
+    """Return the rest set at one temperature, with the clearances of the reference temperature."""
     link, joint = case.link, case.joint
     strain = case.thermal_strain(temperature_change_K)
     length = link.stress_free_length_m * (1 + strain)
@@ -108,7 +108,7 @@ def segment(case: SpringSliderCase, friction_force_N: float, temperature_change_
 
 
 def rest_sets(case: SpringSliderCase, friction_force_N: float, temperatures: int | None = None) -> RestSets:
-    """Return the rest sets at the ends of the program and at ΔT = 0, or at a number of evenly spaced temperatures."""
+    """Return the rest sets at the ends of the program's range and at ΔT = 0, or at evenly spaced temperatures."""
     coldest, hottest = case.temperature_range_K
     changes: Sequence[float] = sorted({coldest, 0.0, hottest})
     if temperatures is not None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Texts of a ``spring_slider`` case, and what a command prints of its runs."""
+"""Texts of a ``spring_slider`` case, and the output of commands about its runs."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -27,8 +27,8 @@ LABELS = {
 
 
 def describe(case: SpringSliderCase) -> list[str]:
-    """Return the description of the case in sentences, without the temperature program, which all kinds describe
-    alike."""
+    """Return the description of the case in sentences. The temperature program is described by code common to all
+    kinds."""
     link, joint = case.link, case.joint
     minus, plus = joint.clearance_minus_m, joint.clearance_plus_m
     both = f"{text(minus, 'm')} and {text(plus, 'm')} away"
@@ -65,8 +65,7 @@ def _start(case: SpringSliderCase) -> str:
 
 
 def summary_lines(case: SpringSliderCase, runs: Mapping[str, Run]) -> list[Shown | str]:
-    """Return the lines that a command prints of the runs: exact events of the first cycle, and the jump of a single
-    model."""
+    """Return the lines that a command prints: exact events of the first cycle and, for a single model, the jump."""
     if len(runs) > 1:
         return []
     found: list[Shown | str] = []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Kind ``statics``: rest positions of a loaded clearance joint, the paper's section 2."""
+"""Kind ``statics``: rest positions of a loaded clearance joint (section 2 of the paper)."""
 from __future__ import annotations
 
 from typing import ClassVar

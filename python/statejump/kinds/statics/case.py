@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cases of kind ``statics``: rest positions of a loaded clearance joint, the paper's section 2.
+"""Cases of kind ``statics``: rest positions of a loaded clearance joint (section 2 of the paper).
 
 Forces that depend on temperature, F0 + rate dT, are evaluated at the listed temperatures. Friction cones are convex, so
-a condition that holds at the first and the last temperature also holds between them: the intersection is exact with the
-two ends of the range. The union is that of the listed temperatures only.
+a position that is at rest at the first and the last temperature is at rest between them. Both ends of the range
+therefore suffice for the intersection. The union covers the listed temperatures only.
 """
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ TYPES = {
 LARGEST_FORCE_N = 1e12
 LARGEST_TEMPERATURE_CHANGE_K = 1e4
 MOST_FORCES = 256
-# key of [joint]: the types that need it
+# Types of joint that need a key of [joint].
 KEYS_OF_TYPES = {
     "clearance_m": ("slot", "journal", "ball", "cylinder", "lobed"),
     "axial_play_m": ("cylinder",),
@@ -72,7 +72,7 @@ class Force(Section):
                 raise NotAllowed(key, value, **NEEDS[key])
 
     def at_temperatures(self, name: str) -> list[LoadCase]:
-        """Return the force, or the force at every temperature."""
+        """Return the force, once or once per temperature."""
         x, y, z = self.force_N
         if self.force_rate_N_per_K is None or self.temperature_change_K is None:
             return [LoadCase(name, (x, y, z))]
@@ -152,14 +152,14 @@ class StaticsCase(Case):
     joint: StaticsJoint = section(StaticsJoint, required=True)
     force: list[Force] = tables(Force, "sections [[force]]", required=True, read=read_forces)
     picture: Picture = section(Picture)
-    # The section that all kinds have; here forces have their own temperatures.
+    # All kinds have this section. Here the forces have temperatures of their own.
     thermal: CaseThermal = section(
         CaseThermal, made=lambda: CaseThermal(shape="triangle", temperature_change_max_K=0.0)
     )
 
     @property
     def load_cases(self) -> list[LoadCase]:
-        """Every force; one per temperature if it depends on temperature."""
+        """Return every force, once per temperature if it depends on temperature."""
         return [
             load for number, force in enumerate(self.force, start=1)
             for load in force.at_temperatures(force.name or f"F{number}")

@@ -19,7 +19,7 @@ from statejump.kinds.statics.solve import Statics
 
 COLOURS = ("#E69F00", "#0072B2", "#009E73", "#CC79A7", "#D55E00", "#56B4E9")
 EVERY = "#000000"
-MOST_DRAWN = len(COLOURS)  # with more forces only union and intersection are drawn
+MOST_DRAWN = len(COLOURS)  # with more forces, only union and intersection are drawn
 SURFACE, HELD, HELD_BY_ALL = "#C9CED3", "#E69F00", "#0072B2"
 MICRO = 1e6
 
@@ -120,7 +120,7 @@ def _name(panel: Axes, text: str, place: np.ndarray) -> None:
 
 
 def _cone(panel: Axes, apex: np.ndarray, axis: np.ndarray, mu: float, size: float, colour: str = "0.5") -> None:
-    """Draw a friction cone: of the possible reactions of the surface, or of directions to the contact."""
+    """Draw a friction cone: possible reactions of the surface, or possible directions to the contact."""
     if mu == 0:
         return
     middle, half = degrees(atan2(axis[1], axis[0])), degrees(atan(mu))
@@ -130,7 +130,7 @@ def _cone(panel: Axes, apex: np.ndarray, axis: np.ndarray, mu: float, size: floa
 
 
 def _ring(panel: Axes, case: StaticsCase, statics: Statics) -> None:
-    """Journal: the closed curve of its centre, rest arcs, forces, a friction cone at an arc's end."""
+    """Draw a journal: the closed curve of its centre, rest arcs, forces, and a friction cone at the end of an arc."""
     assert case.joint.clearance_m is not None
     c = case.joint.clearance_m * MICRO
     if statics.curve is None:
@@ -183,7 +183,7 @@ def _ring(panel: Axes, case: StaticsCase, statics: Statics) -> None:
 
 
 def _slot(panel: Axes, case: StaticsCase, statics: Statics) -> None:
-    """Block in a slot: its centre between the stops, drawn in the plane of axis and force."""
+    """Draw a block in a slot: its centre between the stops, in the plane of axis and force."""
     assert case.joint.clearance_m is not None
     c = case.joint.clearance_m * MICRO
     panel.plot([-c, c], [0, 0], color="0.55", linewidth=1.2, linestyle=(0, (4, 3)), zorder=1.5)
@@ -219,7 +219,7 @@ def _slot(panel: Axes, case: StaticsCase, statics: Statics) -> None:
 
 
 def spatial(statics: Statics) -> Figure:
-    """Draw the surface of positions, shaded, the rest sets on it."""
+    """Draw the shaded surface of positions in space with the rest sets on it."""
     with style():
         drawing = Drawing(figsize=(7.0, 6.4), dpi=160)  # resolution of the picture inside the SVG
         panel = drawing.add_axes((0.0, 0.08, 1.0, 0.84), projection="3d", computed_zorder=False)
@@ -261,7 +261,7 @@ def _viewpoint(statics: Statics, middle: np.ndarray) -> tuple[float, float]:
 
 
 def _shaded_surface(panel: Any, statics: Statics, polygons: list[np.ndarray], view: np.ndarray) -> list[Any]:
-    """Draw the positions, coloured by the forces that hold them; return the entries of the legend."""
+    """Draw the positions in space, coloured by the forces that hold them; return the entries of the legend."""
     counts = np.array(statics.pieces["polygon_forces"])
     every = len(statics.loads)
     colours = np.where((counts == 0)[:, None], _rgb(SURFACE), np.where(

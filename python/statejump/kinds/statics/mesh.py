@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces of positions as triangles, of a cylinder in its bore or from a file, and their normals."""
+"""Triangle meshes of positions, of a cylinder in its bore or from a file, and their normals."""
 from __future__ import annotations
 
 from math import cos, pi, sin
@@ -15,7 +15,7 @@ SIDES = 96  # sides of the cylinder of positions
 
 
 def can_mesh(clearance_m: float, axial_play_m: float) -> _engine.RestMesh:
-    """Positions of a cylinder's centre: wall and two discs, each with its own normals."""
+    """Return the positions of the centre of a cylinder in its bore: wall and two discs, each with its own normals."""
     vertices: list[tuple[float, float, float]] = []
     normals: list[tuple[float, float, float]] = []
     triangles: list[tuple[int, int, int]] = []
@@ -84,13 +84,13 @@ def read_mesh(case: StaticsCase) -> _engine.RestMesh:
     if joint.mesh_free_side == "left_hand":
         triangles = triangles[:, ::-1]
     extent = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
-    # Two units in the last place of the largest coordinate: one for each rounding of a vertex that is written twice.
+    # A vertex that a file repeats may be rounded twice: two units in the last place of the largest coordinate.
     rounding = 2 * float(np.finfo(stored.dtype).eps) * float(np.abs(points).max())
     return _engine.welded(_engine.RestMesh(points, triangles.tolist()), max(1e-9 * extent, rounding))
 
 
 def vertex_normals(mesh: _engine.RestMesh) -> np.ndarray:
-    """Unit normals at the vertices; for a mesh without normals, the mean that the engine computes."""
+    """Return unit normals at the vertices. For a mesh without normals the engine computes mean normals."""
     if len(mesh.normals):
         return mesh.normals / np.linalg.norm(mesh.normals, axis=1)[:, None]
     points, triangles = mesh.vertices_m, np.array(mesh.triangles)

@@ -64,7 +64,7 @@ class Statics:
 
     def frame(self) -> pandas.DataFrame:
         """Return one row per part of every set, with units in the column names; an empty set has a row without numbers.
-        ``set_diameter_m`` is that of the whole set: the largest jump."""
+        ``set_diameter_m`` is the diameter of the whole set, the largest possible jump."""
         rows = []
         for name, found in self.named():
             whole = {"parts": len(found["parts"]), "set_diameter_m": found["diameter_m"]}
@@ -106,7 +106,7 @@ class Statics:
         return found
 
     def _notes(self) -> list[str]:
-        """Return the facts that the table does not contain."""
+        """Return notes on the rest sets that the table does not contain."""
         found = []
         if not self.all["parts"] and len(self.loads) > 1:
             found.append(NOWHERE)
@@ -137,7 +137,7 @@ def _number(value: float) -> str:
 
 
 def _measure(value: dict[str, Any]) -> tuple[str, str]:
-    """Length and area for a table; a point has neither."""
+    """Return length and area as texts; a point has neither."""
     length, area = (_number(value[key]) if value[key] else "-" for key in ("length_m", "area_m2"))
     return length, area
 
@@ -189,7 +189,7 @@ def solve(case: StaticsCase, friction_coefficient: float | None = None) -> Stati
 
 
 def cone_angles(statics: Statics) -> np.ndarray:
-    """Smallest angle(-F, N) over the forces at every corner of every polygon, one after another."""
+    """Return the smallest angle(-F, N) [rad] over the forces, for every corner of every polygon in turn."""
     assert statics.mesh is not None
     polygons = statics.pieces["polygons_m"]
     points = np.concatenate(polygons)

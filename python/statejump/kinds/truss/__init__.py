@@ -14,7 +14,7 @@ class Truss(Kind[TrussCase]):
 
     name: ClassVar[str] = "truss"
     Case = TrussCase
-    # Columns by item follow in the order given.
+    # Columns by item follow in this order.
     COLUMNS = (
         "time_s",
         "temperature_change_K",

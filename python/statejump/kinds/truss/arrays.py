@@ -21,7 +21,7 @@ from statejump.schema.texts import BLOCK, Names
 ArraysType = TypeVar("ArraysType")
 
 GROUND = -1
-# Directions with a smaller difference are equal: far above rounding, far below any intended difference.
+# Directions count as equal below this difference: far above rounding, far below any intended difference.
 SAME_DIRECTION = 1e-6
 
 
@@ -67,7 +67,7 @@ def given_or(given: np.ndarray, other: np.ndarray | float) -> np.ndarray:
 
 
 def said(items: Sequence[Any], key: str) -> np.ndarray:
-    """Return the items (n,) that have a number or a vector for a key."""
+    """Return which items (n,) have a number or a vector for a key."""
     if not isinstance(items, ItemColumns):
         return np.array([getattr(item, key) is not None for item in items], dtype=bool)
     given = ~np.isnan(items.numbers(key))
@@ -75,7 +75,7 @@ def said(items: Sequence[Any], key: str) -> np.ndarray:
 
 
 def having(items: Sequence[Any], key: str, text: str) -> np.ndarray:
-    """Return the items (n,) that have this text, or a list with it."""
+    """Return which items (n,) have this text for a key, or a list that contains it."""
     if isinstance(items, ItemColumns):
         return items.texts(key).has(text)
     return np.array([text == value if isinstance(value, str) else text in (value or ())
@@ -132,8 +132,8 @@ class References:
     position_m: np.ndarray  # (n, 3) of the nodes
     node: ItemIndex
     link: ItemIndex
-    program: ItemIndex  # of [[program]], one less than their index: 0 is the common one
-    member: dict[str, int]  # programs of members that have histories of their own
+    program: ItemIndex  # indices in [[program]], which are one less than program indices: program 0 is the common one
+    member: dict[str, int]  # program index of each member with a temperature history
 
     def programs_of(self, items: Sequence[Any]) -> np.ndarray:
         """Return the temperature program (items,) of items that may name one."""
@@ -144,7 +144,7 @@ class References:
         return found
 
     def axes(self, items: Sequence[Any]) -> np.ndarray:
-        """Return unit axes of rotation (items, 3): z in the plane."""
+        """Return unit axes of rotation (items, 3); z in planar trusses."""
         if self.dimension == 2:
             return np.tile([0.0, 0.0, 1.0], (len(items), 1))
         return unit(vectors(items, "axis", self.dimension))

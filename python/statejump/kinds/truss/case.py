@@ -25,8 +25,8 @@ class TrussCase(TrussSections):
         return resolve(self)
 
     def resolve(self) -> ResolvedTruss:
-        """Return the truss as arrays: names as indices, with defaults, axes of length 1. It is computed once; do not
-        write to it."""
+        """Return the truss as arrays: indices instead of names, defaults filled in, axes of length 1. Computed once; do
+        not write to it."""
         return self._resolved
 
     @property

@@ -43,7 +43,7 @@ def _expansions(truss: ResolvedTruss, ranges_K: np.ndarray) -> None:
 class NoSupport(StatejumpError):
     """Some nodes of a truss have no connection to a support.
 
-    :param loose: one node of each such group
+    :param loose: one node of each unsupported group
     """
 
     def __init__(self, *, loose: tuple[str, ...], **fields: Any) -> None:
@@ -70,7 +70,7 @@ def _supports(truss: ResolvedTruss) -> None:
     for node in np.flatnonzero(~used)[:1]:
         raise StatejumpError(code="node_unused", nodes=(names[node],), node=names[node])
     parts, part_of = len(names), np.arange(len(names), dtype=np.int32)
-    for ends in pairs:  # one by one, because building a graph takes many times as long
+    for ends in pairs:  # pair by pair, because building a graph takes many times as long
         first, second = part_of[ends].T
         graph = coo_matrix((np.ones(len(ends)), (first, second)), shape=(parts, parts))
         parts, joined = connected_components(graph, directed=False)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks of bodies, weights and drives of a truss, and of trusses without a quasi-static path."""
+"""Checks of bodies, weights and drives of a truss, and rejection of trusses without a quasi-static path."""
 from __future__ import annotations
 
 from collections.abc import Mapping

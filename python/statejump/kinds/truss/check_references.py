@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks of references between the items of a truss: names exist, ends match, no two keys exclude each other."""
+"""Checks of references between the items of a truss: names exist, ends match, no keys contradict each other."""
 from __future__ import annotations
 
 import difflib
@@ -54,7 +54,7 @@ def _held(case: TrussSections) -> np.ndarray:
 
 
 def _followers(case: TrussSections) -> Iterator[tuple[Any, dict[str, Any], bool]]:
-    """Return the items that follow a temperature: item, name in messages, whether it expands."""
+    """Return the items with a temperature: item, its name in messages, whether it expands."""
     yield from ((link, {"item": f"link {link.name!r}"}, True)
                 for link in each(case.link, "name", "program", "temperature_fraction"))
     yield from ((item, joint.where(item.name), joint.expands(item)) for joint in _WITH_TEMPERATURE
@@ -74,7 +74,7 @@ def _programs(case: TrussSections) -> None:
 
 
 def _expansions(case: TrussSections) -> None:
-    """Check that every link has a coefficient, or names one that depends on temperature."""
+    """Check that every link has a coefficient of expansion, or refers to an [[expansion]]."""
     expansions, places = by_name(case.expansion), ItemIndex(case.expansion)
 
     def wrong(links: ItemColumns[Link]) -> np.ndarray:

@@ -20,20 +20,20 @@ def energy_residual(energy: Mapping[str, Column]) -> float:
     """Return supplied minus stored minus dissipated energy over the whole run [J]."""
     undamped = energy_residue_J(energy, ("thermal_work_J", "external_work_J"), ("elastic_energy_J", "kinetic_energy_J"),
                                 ("friction_dissipation_J",))
-    # Subtracted last, because the residue is a small difference, and another order would round differently.
+    # The residue is a small difference, so the order of subtractions determines its rounding; it must not change.
     return undamped - change(energy, "damping_dissipation_J") - change(energy, "impact_dissipation_J")
 
 
 def jumps_m(run: Run) -> np.ndarray:
-    """State jump of every node [m] (nodes, 3): displacement at the end less that at the start."""
+    """Return the state jump of every node [m] (nodes, 3): displacement at the end minus that at the start."""
     displacement = run["displacement_m"]
     return displacement[-1] - displacement[0]
 
 
 def loop_width_m(case: TrussCase, run: Run, hung: np.ndarray | None = None) -> float:
-    """Width of the first cycle's loop [m]: largest difference of a node between heating and cooling at one temperature.
-    It is 0 if the cycle does not consist of one heating and one cooling branch, as for a sine. Nodes that hang slack at
-    a sample are omitted."""
+    """Return the width of the loop of the first cycle [m]: largest difference of a node between heating and cooling at
+    one temperature. It is 0 if the cycle does not consist of one heating and one cooling branch, as for a sine. Nodes
+    that hang slack at a sample are omitted."""
     end = case.samples_per_cycle + 1
     change = run["temperature_change_K"][:end]
     displacement = run["displacement_m"][:end]
@@ -58,8 +58,8 @@ def scales_of(case: TrussCase, run: Run) -> Scales:
 
 
 def jump_scale_m(case: TrussCase, run: Run, hung: np.ndarray) -> float:
-    """Scale of differences of jumps [m]: the larger of the largest jump and the width of the loop. If both are at most
-    NO_JUMP of the allowed difference of displacements, it is COMPARED of the motion.
+    """Return the scale of differences of jumps [m]: the larger of the largest jump and the width of the loop. If both
+    are at most NO_JUMP of the allowed difference of displacements, it is COMPARED of the motion.
 
     :param hung: samples at which nodes hang slack (samples, nodes), see :func:`hanging`
     """
@@ -71,17 +71,17 @@ def jump_scale_m(case: TrussCase, run: Run, hung: np.ndarray) -> float:
 
 
 def _relative(name: str, difference: float, scale: float, tolerance: float) -> Quantity:
-    """Return one row; two models without any motion or force agree."""
+    """Return one row. Two models without any motion or force count as equal."""
     return models(name, "-", 0.0, share(difference, scale), tolerance)
 
 
 def _displacement_m(run: Run, hung: np.ndarray) -> np.ndarray:
-    """Displacements [m] (samples, nodes, 3), zero for nodes that hang slack."""
+    """Return displacements [m] (samples, nodes, 3), zero for nodes that hang slack."""
     return np.where(hung[:, :, None], 0.0, run["displacement_m"])
 
 
 def _jumps_m(run: Run, hung: np.ndarray) -> np.ndarray:
-    """State jump of every node [m] (nodes, 3), zero for nodes that hang slack at the start or at the end."""
+    """Return the state jump of every node [m] (nodes, 3), zero for nodes that hang slack at the start or at the end."""
     return np.where(hung[[0, -1]].any(axis=0)[:, None], 0.0, jumps_m(run))
 
 
@@ -127,8 +127,8 @@ def reduced_name(run: Run) -> str:
 
 
 def loop_drift_m(case: TrussCase, run: Run, hung: np.ndarray | None = None) -> float:
-    """Largest distance of a node in any later cycle from its position in the second cycle at the same phase [m]. Nodes
-    that hang slack at a sample are omitted."""
+    """Return the largest distance of a node in any later cycle from its position in the second cycle at the same phase
+    [m]. Nodes that hang slack at a sample are omitted."""
     samples, displacement = case.samples_per_cycle, run["displacement_m"]
     if hung is not None:
         displacement = displacement[:, ~hung.any(axis=0)]
@@ -137,8 +137,8 @@ def loop_drift_m(case: TrussCase, run: Run, hung: np.ndarray | None = None) -> f
 
 
 def _energy_row(case: TrussCase, dem: Run) -> Quantity:
-    """Compare the energy residue with the work of friction; without friction, with stored and supplied energy. An
-    energy is of second order in the motion, so its smallest scale is the square of that of forces."""
+    """Relate the energy residue to the work of friction or, without friction, to stored and supplied energy. An energy
+    is of second order in the motion, so its smallest scale is the square of that of forces."""
     residual = energy_residual(dem.energy)
     scale = change(dem.energy, "friction_dissipation_J")
     name, least = "energy_residual_over_friction_work", COMPARED**2 * scales_of(case, dem).energy_J
@@ -165,7 +165,7 @@ def compare(case: TrussCase, reduced: Run, dem: Run) -> Comparison:
 
 
 def jump_table(case: TrussCase, run: Run, most: int = 8) -> list[tuple[Any, ...]]:
-    """Return name, jump along x, y, z and its length [m] of the nodes with the largest jumps. Rounding is no jump."""
+    """Return name, jump along x, y, z and its length [m] of the nodes with the largest jumps above rounding."""
     jumps, rounding_m = jumps_m(run), scales_of(case, run).rounding_m
     length = np.linalg.norm(jumps, axis=1)
     order = np.argsort(-length, kind="stable")[:most]

@@ -15,7 +15,7 @@ from statejump.kinds.truss.solve import settings, whole_path
 from statejump.schema.rules import WHOLE, Rule
 
 NUMBER = Rule(WHOLE, allowed=Range(1, 10_000))
-# W is dense, with 2 rows per joint. For 2000 joints each problem has 128 MB.
+# The Delassus matrix W is dense, with 2 rows per joint: 128 MB per problem for 2000 joints.
 MOST_JOINTS = 2000
 
 
@@ -26,7 +26,7 @@ class ContactProblem:
     :param problem: u = W r + q of the joints that can be contacts, with the reactions of the path as stored solution
     :param velocities: motions of the path in the step [m]: gap at its end, slide of the step
     :param joints: the joint of every contact
-    :param merit: of the reactions of the path
+    :param merit: residual of the reactions of the path
     """
 
     time_s: float

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-SEGMENTS = 16  # segments for Welch's average: the relative error of the density is about 1/sqrt(2 · 16)
-LEAST_PERIODS = 16  # periods of a band's lowest frequency in the record
+SEGMENTS = 16  # segments of Welch's average; the relative error of the density is about 1/sqrt(2 · 16)
+LEAST_PERIODS = 16  # smallest number of periods of the lowest frequency of a band within the record
 ORDER = 4  # order of the Butterworth filters of the bands
 
 
@@ -33,9 +33,9 @@ ORDER = 4  # order of the Butterworth filters of the bands
 class Creak:
     """Slips of the joints of a truss in motion, and the acceleration of one node.
 
-    ``slips``: joint, start_s, duration_s, temperature_change_K, heat_J of every slip. A slip that continues at the end
-    of the record ends there. ``bands``: low_Hz, high_Hz, rms_m_per_s2, peak_m_per_s2 of octaves below half the rate of
-    steps.
+    ``slips``: joint, start_s, duration_s, temperature_change_K, heat_J of every slip. A slip that has not ended at the
+    end of the record is cut there. ``bands``: low_Hz, high_Hz, rms_m_per_s2, peak_m_per_s2 of octaves below half the
+    sampling rate.
     """
 
     case: TrussCase
@@ -55,7 +55,7 @@ class Creak:
 
     @property
     def rms_m_per_s2(self) -> float:
-        """Root of the mean square of its acceleration."""
+        """Root mean square of the acceleration."""
         return float(np.sqrt((self.acceleration_m_per_s2**2).sum(axis=1).mean()))
 
     def frame(self, table: str) -> pandas.DataFrame:
@@ -149,14 +149,15 @@ def creak(case: TrussCase, node: str, on_progress: OnProgress = lambda share: No
 
 
 def _density(acceleration: np.ndarray, rate: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return frequencies and the one-sided power density of all components together."""
+    """Return frequencies [Hz] and the one-sided power density, summed over all components."""
     length = max(2 * len(acceleration) // (SEGMENTS + 1), 8)  # halves overlap
     frequency, density = signal.welch(acceleration, rate, nperseg=min(length, len(acceleration)), axis=0)
     return frequency, density.sum(axis=1)
 
 
 def _bands(acceleration: np.ndarray, rate: float) -> list[dict[str, float]]:
-    """Return octaves below half the rate, the highest first, and the remaining low frequencies last."""
+    """Return RMS and peak in octaves below half the sampling rate, highest first; the last band has all lower
+    frequencies."""
     found: list[dict[str, float]] = []
     high, least = rate / 2, LEAST_PERIODS * rate / len(acceleration)
     while high > least:

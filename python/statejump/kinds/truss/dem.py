@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Input of the YADE script for a truss: bodies, masses, contact groups, time step, loaded start.
 
-Nodes are bodies with lumped masses, see :mod:`~statejump.kinds.truss.masses`. The supports of the node hold the pad of
-a slider at the depth at which its floor carries the normal force. The friction limit then equals that of the
-quasi-static model, independent of other loads on the supports.
+Nodes are bodies with lumped masses, see :mod:`~statejump.kinds.truss.masses`. The pad of a slider is held by the
+supports of its node at the depth where its floor carries the normal force. The friction limit therefore equals that of
+the quasi-static model, whatever other loads the supports carry.
 """
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from statejump.schema.paths import with_values
 
 CONTACT_GROUPS = 30  # bits of a body's mask in YADE that are free to use
 
-PATH_SHARE = 0.1  # fraction of the reported progress of a DEM run that belongs to its path
+PATH_SHARE = 0.1  # fraction of the progress of a DEM run that is reported for its path
 
 
 REMEDY = "'statejump reduced' can run the case"
@@ -48,10 +48,10 @@ def refuse(case: TrussCase, code: str, why: str, **fields: Any) -> StatejumpErro
 def stable_time_step(case: TrussCase, path: Course) -> float:
     """Return a stable time step [s] for the largest forces of the quasi-static path.
 
-    The square of a spring's stretch is at most the number of its moving ends times the sum of the squares of their
-    displacements. For each body, let k be the sum of stiffness times that number over its mass, and c the same sum for
-    the dashpots. The largest eigenvalue is at most the largest k. Every body is therefore as stable as an oscillator
-    with its k and c.
+    The squared elongation of a spring is at most m (u₁² + u₂²), with m its number of moving ends. For each body, let k
+    be the sum of m times stiffness over all its springs, divided by its mass, and c the same sum for dashpots. The
+    largest eigenvalue is at most the largest k. An oscillator of unit mass with k and c of a body thus bounds the
+    stable step.
     """
     truss, mass = path.truss, lumped_mass_kg(path.truss)
     mass = np.append(mass, 0)  # of GROUND
@@ -74,7 +74,7 @@ def stable_time_step(case: TrussCase, path: Course) -> float:
     for ends, along in zip(truss.ends()[1:], truss.element_stiffnesses_N_per_m()):
         touch(ends, along, ratio)
     for ends, moment in zip(torsion.links, torsion.stiffness_N_m_per_rad):
-        # The angle depends on all ends of both links.
+        # The angle depends on all ends of both links, so m is their number of moving ends.
         turned = ends[ends != GROUND]
         moving = (inverse[links.nodes[turned]] > 0).sum()
         for link in turned:
@@ -87,14 +87,14 @@ def stable_time_step(case: TrussCase, path: Course) -> float:
 
 
 def number_of_steps(case: TrussCase, path: Course) -> int:
-    """Steps of the whole run: a multiple of the samples, so that the last sample is the end."""
+    """Return the number of steps, a multiple of the number of samples, so that the last sample is the end."""
     wanted = case.dem_settings.time_step_fraction * stable_time_step(case, path)
     return ceil(case.period_s / wanted / case.samples_per_cycle) * case.samples_per_cycle * case.thermal.cycles
 
 
 def _contact_groups(truss: ResolvedTruss, case: TrussCase, reach_m: np.ndarray) -> np.ndarray:
-    """Return a number per contact (of all types in turn), different for joints whose bodies could meet; -1 if no bodies
-    touch.
+    """Return a group number per contact, type by type; -1 if its bodies do not touch. Joints near each other differ in
+    it.
 
     YADE searches contacts between all near bodies, but only bodies of one joint may touch.
     """
@@ -104,7 +104,7 @@ def _contact_groups(truss: ResolvedTruss, case: TrussCase, reach_m: np.ndarray) 
     reach_m = reach_m[own]
     where = truss.nodes.position_m[[nodes[0] for nodes in touching]]
     owner = np.arange(len(where))
-    # Journals in one bearing, and bearings around one journal, are one group.
+    # Journals in one bearing form one group, as do bearings around one journal.
     seen: dict[int, int] = {}
     for place, nodes in enumerate(touching):
         known = {owner[seen[node]] for node in nodes if node in seen}
@@ -197,8 +197,8 @@ def _torsion(truss: ResolvedTruss) -> Torsion:
 
 
 def _refuse_tilted_torsion(case: TrussCase, truss: ResolvedTruss) -> None:
-    """Refuse torsion springs that leave their plane: that of the DEM acts across its axis, that of the solver on
-    projections of links."""
+    """Refuse torsion springs with links that leave the plane across the axis: there the angles of DEM and solver
+    differ."""
     torsion, links, position = _torsion(truss), truss.links, truss.nodes.position_m
     for name, ends, axis in zip(torsion.names, torsion.links, torsion.axis):
         for link in ends[ends != GROUND]:
@@ -209,7 +209,7 @@ def _refuse_tilted_torsion(case: TrussCase, truss: ResolvedTruss) -> None:
 
 
 def _refuse_far_turns(case: TrussCase, path: Course) -> None:
-    """Refuse rotations beyond a quarter of a turn, where the DEM cannot distinguish an angle from its opposite."""
+    """Refuse rotations beyond π/2, because the DEM cannot distinguish such an angle from its opposite."""
     for joint in JOINTS:
         joints = path.truss.joints[joint.section]
         turned = joint.largest_turn_rad(path, joints) if joints.names else np.zeros(0)
@@ -220,7 +220,7 @@ def _refuse_far_turns(case: TrussCase, path: Course) -> None:
 
 
 def blocked_directions(truss: ResolvedTruss) -> np.ndarray:
-    """Return the axes (n, 3) along which a node does not move, because of supports, and guides along an axis."""
+    """Return the axes (n, 3) along which supports, or a guide normal to the axis, prevent motion of a node."""
     return truss.nodes.fixed | (np.abs(truss.nodes.guide_normal) >= 1 - SAME_DIRECTION)
 
 
@@ -238,7 +238,7 @@ def resolved(case: TrussCase, path: Course) -> dict[str, Any]:
     """Return the input of the YADE script as plain values.
 
     :param path: the quasi-static path of the case, or its motion. Its first state is the start, its forces determine
-        the time step, its slides the size of the floors
+        the time step, and its slip displacements the size of the floors
     :raises StatejumpError: the DEM cannot represent an item; the message names it
     """
     check(case)
@@ -274,8 +274,8 @@ def dem_input(case: TrussCase, on_progress: OnProgress = lambda share: None) -> 
 
 
 def course(case: TrussCase, on_progress: OnProgress) -> Course:
-    """Return the quasi-static path. For a case that snaps through, return its motion, because the path ends at its
-    limit point."""
+    """Return the quasi-static path. If it ends at a limit point (snap-through), return the motion of the case
+    instead."""
     try:
         return solve(case, on_progress)
     except EngineFailed as failure:

@@ -19,12 +19,12 @@ from statejump.kinds.truss.resolved import ResolvedTruss
 
 MOST_ZIGZAGS = 60
 LEAST_LEGIBLE = 4.5  # size of symbols [pt] below which a detail is drawn as well
-DETAIL_GAPS = 8  # positions along the detail's shorter side, or along half of the longer one
+DETAIL_GAPS = 8  # number of node spacings along the detail's shorter side, or along half of the longer one
 WIDTH_IN, HEIGHT_IN = 8.0, 7.0  # largest size of the panel
 
 
 def _bowed(truss: ResolvedTruss) -> list[np.ndarray]:
-    """Return the lines (k, 2) of the links; links that would cover each other are arcs."""
+    """Return the lines (k, 2) of the links. Links that would cover each other become arcs."""
     positions, links = truss.nodes.position_m[:, :2], truss.links
     start, end = positions[links.nodes[:, 0]], positions[links.nodes[:, 1]]
     groups: dict[tuple[Any, ...], list[int]] = {}
@@ -161,7 +161,7 @@ def _draw(panel: Axes, truss: ResolvedTruss, lines: list[np.ndarray], colours: A
 
 
 def _draw_symbol(panel: Axes, symbol: Symbol, size: float) -> None:
-    """Draw symbols that all point in one direction at once."""
+    """Draw symbols; those with one direction are drawn in one call."""
     style = dict(linestyle="none", color=symbol.colour, markerfacecolor=symbol.face, markersize=symbol.size * size,
                  markeredgewidth=0 if symbol.face == symbol.colour else max(0.4, size / 10), zorder=symbol.order)
     if symbol.up is None:

@@ -42,7 +42,7 @@ def _fit(drawing: Figure, axes: Axes3D, below: float) -> None:
     """Scale the drawing to the room above the legend and centre it. In three dimensions, labels and edges may exceed
     the limits of their axes."""
     room = axes.get_position()
-    for _ in range(2):  # sizes of labels do not scale with the axes, so a second pass uses the remaining room
+    for _ in range(2):  # two passes: labels do not scale with the axes, so the second pass uses the remaining room
         drawing.canvas.draw()  # only now the positions in the axes are known
         drawn = axes.get_tightbbox(drawing.canvas.get_renderer()).transformed(drawing.transFigure.inverted())
         share = min(room.width / drawn.width, room.height / drawn.height)
@@ -75,7 +75,7 @@ def draw_spatial(truss: ResolvedTruss, axes: Axes3D, most_named: int = MOST_NAME
 
 
 def _lines(axes: Axes3D, truss: ResolvedTruss, size: float, span: float) -> None:
-    """Links, elements, and the normals of guided nodes."""
+    """Draw links, elements, and the normals of guided nodes."""
     nodes, positions = truss.nodes, truss.nodes.position_m
     colours, _ = link_colours(truss)
     ends = positions[truss.links.nodes]
@@ -94,7 +94,7 @@ def _lines(axes: Axes3D, truss: ResolvedTruss, size: float, span: float) -> None
 
 
 def _points(axes: Axes3D, truss: ResolvedTruss, size: float, span: float) -> None:
-    """Supports, joints, nodes, torsion springs, loads and the nodes of the surface."""
+    """Draw supports, joints, nodes, torsion springs, loads and the nodes of the surface."""
     nodes, positions = truss.nodes, truss.nodes.position_m
     dots = dict(linestyle="none", markeredgewidth=max(0.4, size / 12))
     held = np.asarray(nodes.fixed.any(axis=1))
@@ -133,7 +133,7 @@ def _name(axes: Axes3D, truss: ResolvedTruss, middle: np.ndarray, span: float, m
     named = names(truss)
     if len(named) <= most_named:
         for place, text, _ in named:
-            # If many ribs end at one position, one name stands for all.
+            # If many ribs end at one position, only the first name is written.
             short = text if text.count(",") < 2 else text.split(",")[0] + ", ..."
             away = place - middle
             away = away / max(float(np.linalg.norm(away)), 1e-12) * 0.06 * span

@@ -28,7 +28,7 @@ COLOURS = ListedColormap(colormaps["YlOrRd"](np.linspace(0.2, 1.0, 256)))
 LINK, LOAD, SURFACE = "#0072B2", "#D55E00", "#E69F00"
 DASHES = (0, (5, 2))
 FRACTION = "Temperature fraction of a link [-]"
-MOST_NAMED = 24  # nodes that get names by default; more names would cover the drawing
+MOST_NAMED = 24  # largest number of nodes that are named by default; more names would cover the drawing
 
 
 def _outline(*strokes: Sequence[tuple[float, float]]) -> Outline:
@@ -46,13 +46,14 @@ ROLLER: Strokes = (((0, 0), (-0.5, -0.7), (0.5, -0.7), (0, 0)), ((-0.9, -0.95), 
 
 
 def gap_m(truss: ResolvedTruss) -> float:
-    """Distance of neighbouring positions [m]. A few nearer ones may overlap, so that not all symbols are tiny."""
+    """Return a typical distance of neighbouring positions [m]. A few nearer ones may overlap, so that symbols are not
+    tiny."""
     places = np.unique(np.round(truss.nodes.position_m, 9), axis=0)
     return float(np.quantile(cKDTree(places).query(places, k=2)[0][:, 1], 0.1))
 
 
 def symbol_size(gap_pt: float) -> float:
-    """Size of symbols [pt] for positions at the given distance on the drawing [pt]."""
+    """Return the size of symbols [pt] for a distance of positions on the drawing [pt]."""
     return float(np.clip(0.6 * gap_pt, 2.0, 13.0))
 
 
@@ -112,7 +113,7 @@ def legend(truss: ResolvedTruss) -> list[Line2D]:
 
 
 def styled_lines(truss: ResolvedTruss) -> list[tuple[np.ndarray, Lines]]:
-    """Return the ends (k, 2) of elements that are drawn as lines, by style."""
+    """Return the ends (k, 2) of elements that are drawn as lines, with their style."""
     return [(element.ends(elements)[style.which], style)
             for element, elements in ((one, truss.elements[one.section]) for one in ELEMENTS)
             for style in element.lines(elements)]
@@ -154,7 +155,7 @@ def covered(truss: ResolvedTruss) -> np.ndarray:
 
 
 def names(truss: ResolvedTruss) -> list[tuple[np.ndarray, str, np.ndarray]]:
-    """Return a position, the names of its nodes, and the direction in which to write them, for every position.
+    """Return for every position: the position, the names of its nodes, and the direction in which to write them.
 
     In a planar truss the direction (2,) is the one farthest from links, elements and the ground of supports.
     """

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figure of a comparison of a ``truss`` case: loops of the nodes that move and jump most, joint forces. A thin loop
-with a large reversible part is drawn again without this part."""
+"""Figure of a comparison of a ``truss`` case: loops of the nodes with the largest motion and jump, and joint forces. A
+thin loop with a large reversible part is drawn again without this part."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ DEM_RUN = {**DEM, "linewidth": 1.1}
 
 
 def _shown(case: TrussCase, run: Run) -> list[tuple[int, int]]:
-    """Return node and axis of two components: the largest jump, then the largest motion of another node."""
+    """Return node and axis of two displacements: the largest jump, and a clear motion of another node."""
     motion = np.ptp(run["displacement_m"], axis=0)
     jump = np.abs(jumps_m(run))
     first = np.unravel_index(np.argmax(jump if jump.max() > 1e-9 * motion.max() else motion), motion.shape)
@@ -35,7 +35,7 @@ def _shown(case: TrussCase, run: Run) -> list[tuple[int, int]]:
     others[first[0]] = -1
     if others.max() < 0:
         return [(int(first[0]), int(first[1]))]
-    # In a row of nodes the neighbour would show the same curve. A node that moves about half as much shows more.
+    # The neighbour in a row would show nearly the same curve. A node that moves about half as much shows more.
     half = np.abs(others - 0.5 * motion.max())
     half[others <= 0.01 * motion.max()] = np.inf
     second = np.unravel_index(np.argmin(half), motion.shape)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Masses of nodes. A link's mass is lumped: a third at the tip of a link whose other end is fixed (exact for a uniform
-rod on a pin), else half at each end."""
+"""Masses of nodes. The mass of a link is lumped at its ends, half at each. If one end is fixed, the other gets a third,
+which is exact for a uniform rod on a pin."""
 from __future__ import annotations
 
 import numpy as np

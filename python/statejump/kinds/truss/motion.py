@@ -28,7 +28,7 @@ class TrussMotion:
     truss: ResolvedTruss
     states: dict[str, np.ndarray]
     events: TrussEvents
-    event_heat_J: np.ndarray  # heat of all joints in the step of each event
+    event_heat_J: np.ndarray  # frictional heat of all joints in the step of each event
     watched_velocity_m_per_s: np.ndarray  # (steps + 1, 3)
     complete: bool
     time_step_s: float  # the shortest one
@@ -40,15 +40,15 @@ class TrussMotion:
     unknowns: int
     largest_contact_merit: float
     negative_dissipation_J: float
-    undetermined: tuple[float, list[str]] | None  # first time [s] with reactions that are not unique, and the joints
-    # First time [s] at which a slide ends because it cannot continue, and the joint.
+    undetermined: tuple[float, list[str]] | None  # first time [s] at which reactions are not unique, and the joints
+    # First time [s] at which a slide ends without a continuation (Painlevé), and the joint.
     jammed: tuple[float, list[str]] | None
     regularised: bool = False
     equal: bool = False  # equal steps, instead of steps by tolerance
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences about reactions that the motion does not determine."""
+        """Sentences about times at which reactions are not unique."""
         found = []
         if self.inexact_steps and self.regularised:
             found.append(f"in {self.inexact_steps} of {self.steps} steps a contact was stiffer than explicit steps of "
@@ -76,9 +76,9 @@ class TrussMotion:
 
 def dashpots_N_s_per_m(nodes: np.ndarray, stiffness_N_per_m: np.ndarray, ratio: float, mass_kg: np.ndarray
                        ) -> np.ndarray:
-    """Return c = 2 ζ sqrt(k m) of elements between two nodes, with the mass m of both in series, as in the DEM.
+    """Return c = 2 ζ sqrt(k m) of elements between two nodes, with m the reduced mass of both, as in the DEM.
 
-    :param mass_kg: of every node; 0 for one that does not move
+    :param mass_kg: mass of every node; 0 for a fixed node
     """
     inverse = np.divide(1, mass_kg, out=np.zeros_like(mass_kg), where=mass_kg > 0)
     pair = inverse[nodes].sum(axis=1)
@@ -87,10 +87,10 @@ def dashpots_N_s_per_m(nodes: np.ndarray, stiffness_N_per_m: np.ndarray, ratio: 
 
 
 def joint_dashpots_sqrt_kg(truss: ResolvedTruss, ratio: float, mass_kg: np.ndarray) -> np.ndarray:
-    """Return 2 ζ sqrt(m) of the contacts of all joints, type by type, with the mass m of both bodies in series, as in
-    the DEM; 0 if neither moves.
+    """Return 2 ζ sqrt(m) of the contacts of all joints, type by type, with m the reduced mass of both bodies, as in the
+    DEM; 0 if neither moves.
 
-    :param mass_kg: of every node; 0 for one that does not move
+    :param mass_kg: mass of every node; 0 for a fixed node
     """
     mass_kg = np.append(mass_kg, 0.0)  # of GROUND
     inverse = np.divide(1, mass_kg, out=np.zeros_like(mass_kg), where=mass_kg > 0)
@@ -128,7 +128,7 @@ def simulate(case: TrussCase, on_progress: OnProgress = lambda share: None, watc
 
     :param on_progress: called with the finished fraction, 0 to 1
     :param watched_node: index of a node whose velocity is recorded at every step
-    :raises FailedRun: no start, or a step without solution: with joint and temperature
+    :raises FailedRun: the start or a step has no solution; the message names joint and temperature
     :raises Interrupted: Ctrl-C; its ``run`` is the motion so far, None if there is only the start
     """
     def going_on(share: float) -> bool:
@@ -147,7 +147,7 @@ def simulate(case: TrussCase, on_progress: OnProgress = lambda share: None, watc
         raise NotAllowed("start.friction", case.start.friction, code="start_not_stuck", case=case.name)
     regularised = case.motion.scheme == "regularised"
     if regularised:
-        # Explicit steps use the stable step of the DEM, which starts from a motion.
+        # stable_steps uses the stable step of dem, which imports this module.
         from statejump.kinds.truss import stable_steps
 
         stable_steps.check(case)
@@ -186,7 +186,7 @@ def _drives(truss: ResolvedTruss) -> list[dict[str, Any]]:
 def _remedy(case: TrussCase, failure: _engine.EngineFailure) -> str | None:
     if str(failure.kind).endswith("mechanism"):
         return "a mechanism moves from where it is drawn with motion.start = 'drawn'"
-    equal = case.motion.displacement_tolerance_m is None  # with a tolerance, steps are already as short as possible
+    equal = case.motion.displacement_tolerance_m is None  # with a tolerance, steps are already limited by it
     unfound = failure.kind in ("not_converged", "singular", "too_many_steps")
     stepped = equal and unfound and "no step" in str(failure.message)
     return "set motion.steps_per_cycle to more" if stepped else None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Notes of a quasi-static path as sentences: warnings of a run that did not fail."""
+"""Notes of a quasi-static path as sentences: warnings of a successful run."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -10,7 +10,7 @@ import numpy as np
 from statejump.core.units import plain
 from statejump.kinds.truss.resolved import Links, ResolvedTruss
 
-MOST_NAMED = 8  # names in a sentence; it also gives the number of further ones
+MOST_NAMED = 8  # largest number of names in a sentence, followed by the number of further names
 
 
 def sentences(truss: ResolvedTruss, notes: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:
@@ -41,7 +41,7 @@ def _named(joints: Sequence[tuple[str, str]]) -> str:
 
 
 def listed(names: Sequence[str]) -> str:
-    """Return the first names, and the number of the others."""
+    """Return the first names and the number of the others."""
     first = ", ".join(names[:MOST_NAMED])
     return first if len(names) <= MOST_NAMED else f"{first} and {len(names) - MOST_NAMED} more"
 
@@ -57,8 +57,8 @@ def warnings(links: Links, time_s: np.ndarray, temperature_change_K: np.ndarray,
     places = np.arange(len(links.names))
 
     def sentence(at: np.ndarray, load: np.ndarray, parts: Sequence[str]) -> list[str]:
-        """Return the sentence about links whose load is above 1 at these samples. ``parts`` has the load of the worst
-        link, the exceeded limit, and the behaviour of the models."""
+        """Return the sentence about links whose load ratio exceeds 1 at these samples. ``parts``: load of the worst
+        link, exceeded limit, behaviour of the models."""
         beyond = np.flatnonzero(load > 1)
         if not len(beyond):
             return []

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Outcomes of one truss in a campaign. Reflector columns are NaN if no surface determines a fit. Jumps and reflector
-columns are NaN if the program does not return to the reference temperature."""
+"""Outcomes of one truss in a campaign. Reflector columns are NaN if the nodes determine no best fit. Jumps and
+reflector columns are NaN if the program does not return to the reference temperature."""
 from __future__ import annotations
 
 import numpy as np
@@ -13,7 +13,7 @@ from statejump.kinds.truss.case import TrussCase
 from statejump.kinds.truss.result import reduced_run
 from statejump.kinds.truss.solve import TrussPath, heat_of_joints_J
 
-# Fraction of the heat of all joints. A joint with less does not slip: its heat is rounding.
+# Fraction of the heat of all joints below which the heat of a joint is rounding, and the joint counts as not slipping.
 LEAST_HEAT = 1e-9
 
 

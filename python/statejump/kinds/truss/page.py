@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Report page of a truss: jumps of nodes, contributions of joints, sensitivities.
 
-The data are in a file of ``statejump truss answers``. Without this file the page takes jumps from the histories. It
-then ranks joints by their motion and their heat, not by their contributions.
+The data are in a file of ``statejump truss answers``. Without this file, the page takes jumps from the histories and
+ranks joints by their motion and heat.
 """
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ from statejump.report.drawing import round_down
 from statejump.results.contents import Result
 
 SHOWN_JUMP = 0.12  # initial drawn size of the largest jump, as a fraction of the truss' size
-MOST_CYCLES = 12  # cycles in the drawing; of more cycles, the first and the last ones
+MOST_CYCLES = 12  # largest number of cycles in the drawing: the first and the last ones
 MOST_BARS = 15
 MOST_SENSITIVITIES = 20
 LEAST_PERCENT = 5e-3
-ROUNDED = 1e-9  # fraction of the largest joint's value below which a value is rounding
-ROUNDED_SURFACE = 1e-12  # rounding, over the truss' size, in metres and in radians
+ROUNDED = 1e-9  # fraction of the largest value of a joint below which a value is rounding
+ROUNDED_SURFACE = 1e-12  # rounding of metres or radians, relative to the size of the truss
 ROUNDING = "≈ 0"
-# Quantities that rank joints whose first column is a rotation, and other joints.
+# Ranking quantities: for joints whose first column is a rotation, and for all others.
 TURN, JUMP = "turn", "jump"
 Row = dict[str, Any]
 _TYPES: dict[str, Any] = {joint.section: joint for joint in JOINTS}
@@ -54,13 +54,13 @@ class Measure:
 
 
 def _vectors(rows: list[Row], cycles: int) -> np.ndarray:
-    """Return the jumps (cycles, items, 3), from rows in the order of cycles."""
+    """Return the jumps (cycles, items, 3) of rows in the order of cycles."""
     found = np.array([[row[f"jump_{axis}_m"] for axis in "xyz"] for row in rows], dtype=float)
     return found.reshape(cycles, -1, 3)
 
 
 class TrussPart:
-    """The part of a page for trusses only.
+    """The part of a page that only trusses have.
 
     :param result: a truss with the history of its nodes, see :func:`page`
     """
@@ -93,7 +93,7 @@ class TrussPart:
         self.columns = {model: self._curves(run) for model, run in result.models.items()}
 
     def _cycle_ends(self, run: Run) -> np.ndarray:
-        """Return the samples at the start and nearest to the ends of the cycles of the run."""
+        """Return the samples at the start and nearest to the end of each cycle of the run."""
         time, period = run.time_s, self.case.period_s
         whole = int(math.floor(float(time[-1]) / period + 1e-6))
         wanted = period * np.arange(min(self.cycles, whole) + 1) if whole else time[[0, -1]]
@@ -105,15 +105,15 @@ class TrussPart:
 
     @property
     def _first(self) -> int:
-        """Return the node whose jump the page reports: the output of the answers, if it is a node, else the node that
-        moves most."""
+        """Return the node whose jump the page reports: the output node of the answers, else the node that moves
+        most."""
         named = self.answers.output.partition("node:")[2] if self.answers is not None else ""
         return self._number[named] if named in self._number else int(np.argmax(self._size_m))
 
     # ---------------------------------------------------------------- joints
 
     def _joints(self) -> list[Row]:
-        """Every joint in the order of the file: name, kind, node, and the quantities that rank it."""
+        """Return every joint in the order of the file: name, kind, node, and the ranking quantities."""
         truss = self.case.resolve()
         found: list[Row] = []
         for joint in JOINTS:
@@ -137,7 +137,7 @@ class TrussPart:
         return found
 
     def _read_off(self, joints: list[Row]) -> None:
-        """Return, from the histories, the distances of joints from their start, and the heat of their friction."""
+        """Add to the joints, from the histories, their distance from the start and their frictional heat."""
         run = self._run
         contacts = self._since_start(run, "contacts", "dissipation_J") if "dissipation_J" in run.contacts else None
         first = 0
@@ -176,7 +176,7 @@ class TrussPart:
                 if measure.key in keys and any(joint.get(measure.key) for joint in self.joints)]
 
     def ranking(self) -> list[Row]:
-        """Rows of the table of joints, ranked by the first quantity, as texts."""
+        """Return the rows of the table of joints as texts, ranked by the first quantity."""
         if not self.measures:
             return []
         first = self.measures[0].key
@@ -207,12 +207,12 @@ class TrussPart:
 
     @property
     def verdict(self) -> str:
-        """Sentence of the answers about the cycles; "" without answers."""
+        """Return the sentence of the answers about the cycles; "" without answers."""
         verdict = "" if self.answers is None else self.answers.verdict_text
         return f"{verdict[:1].upper()}{verdict[1:]}." if verdict else ""
 
     def cards(self) -> list[Row]:
-        """Return the jump of the answers' output for the top of the page."""
+        """Return the jump of the output of the answers, for the top of the page."""
         if self.answers is None:
             return []
         jump = text(self.answers.summary["jump"].value, self.answers.unit)
@@ -254,17 +254,17 @@ class TrussPart:
 
     @property
     def notes(self) -> list[str]:
-        """Remarks of the answers, without the warnings of the run, which the head of the page shows."""
+        """Return the remarks of the answers without the warnings of the run, which the head of the page shows."""
         return [] if self.answers is None else [
             note[:1].upper() + note[1:] + "." for note in self.answers.notes if note not in self.result.warnings]
 
     def cycle_rows(self) -> list[Row]:
-        """Rows of the table of cycles; of many cycles the first and the last ones."""
+        """Return the rows of the table of cycles: the first and the last ones if there are many."""
         rows = self.answers.tables.get("cycles", []) if self.answers is not None else []
         return [rows[place] for place in _some(len(rows), MOST_CYCLES)] if len(rows) > 1 else []
 
     def surface(self) -> list[Row]:
-        """Rows of the table of the reflecting surface."""
+        """Return the rows of the table of the reflecting surface."""
         rows = self.answers.tables.get("surface", []) if self.answers is not None else []
         size = float(np.ptp(self._run.history["position_m"].values[0], axis=0).max())
 
@@ -285,7 +285,7 @@ class TrussPart:
         return any(row["focal_length_m"] is not None for row in rows)
 
     def sensitivities(self) -> tuple[list[Row], int]:
-        """Rows of the table of sensitivities, the strongest first, and the number of omitted rows."""
+        """Return the rows of the table of sensitivities, the strongest first, and the number of omitted rows."""
         rows = self.answers.tables.get("sensitivities", []) if self.answers is not None else []
         ranked = sorted(rows, key=lambda row: -abs(row["elasticity"] or 0.0))
         most = max((abs(row["elasticity"] or 0.0) for row in ranked), default=0.0)
@@ -301,7 +301,7 @@ class TrussPart:
     # ---------------------------------------------------------------- curves
 
     def charts(self) -> list[Chart]:
-        """Loops of the node, of the first joint in the ranking, and of the link with the largest force."""
+        """Return loops of the node, of the first joint in the ranking, and of the link with the largest force."""
         found = [Chart(TEMPERATURE, Axis("truss_node_m", f"Node {self.nodes[self._first]} along its jump"),
                        f"Loop of node {self.nodes[self._first]}", marks=True)]
         joint = self._leading()
@@ -363,7 +363,7 @@ class TrussPart:
     # ---------------------------------------------------------------- drawing
 
     def payload(self, encoded: Callable[[np.ndarray], Any]) -> Row:
-        """Data for the page's script.
+        """Return data for the page's script.
 
         :param encoded: converts an array to a column of the page
         """
@@ -374,7 +374,7 @@ class TrussPart:
         between = [("link", truss.links.names), *(("spring", truss.elements[one.section].names) for one in ELEMENTS)]
         lines = [{"nodes": [int(node) for node in nodes], "kind": kind, "name": name}
                  for (kind, names), ends in zip(between, truss.ends()) for name, nodes in zip(names, ends)]
-        # In the drawing, magnified jumps move journals out of their bearings, so a line connects each pair.
+        # Magnified jumps draw journals outside of their bearings, so a line connects each pair.
         for joint in (one for one in JOINTS if one.columns[0].vector):
             joints = truss.joints[joint.section]
             lines += [{"nodes": [int(node) for node in nodes], "kind": "journal", "name": name}
@@ -402,7 +402,7 @@ class TrussPart:
 
 
 def _some(count: int, most: int) -> list[int]:
-    """Return the indices of the first and the last of many; all indices of a few."""
+    """Return the first and last indices of many items; all indices of a few."""
     return list(range(count)) if count <= most else [*range(most // 2), *range(count - most + most // 2, count)]
 
 

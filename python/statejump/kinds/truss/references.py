@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks that several sections of a truss share: names, ends, axes, links that rotate."""
+"""Checks that several sections of a truss share: names, ends, axes, rotating links."""
 from __future__ import annotations
 
 import difflib
@@ -37,7 +37,7 @@ def known_name(key: str, value: Any, name: str, known: Mapping[str, Any], what: 
 
 
 def known_nodes(names: list[str], least: int, nodes: Mapping[str, Any], where: Mapping[str, Any]) -> None:
-    """Raise NotAllowed unless ``nodes`` of an item are two different nodes, or one if one is enough."""
+    """Raise NotAllowed unless ``nodes`` of an item names two different nodes, or a single one if ``least`` is 1."""
     if not least <= len(names) <= 2:
         many = "2 nodes" if least == 2 else "1 node, on ground, or 2 nodes"
         raise NotAllowed("nodes", names, code="wrong_number_of_nodes", wanted=many, **where)
@@ -49,7 +49,7 @@ def known_nodes(names: list[str], least: int, nodes: Mapping[str, Any], where: M
 
 
 def known_links(names: list[str], links: Mapping[str, Any], where: Mapping[str, Any]) -> None:
-    """Raise NotAllowed unless ``links`` of an item are two different links or one."""
+    """Raise NotAllowed unless ``links`` of an item names one link or two different links."""
     if not 1 <= len(names) <= 2:
         raise NotAllowed("links", names, code="wrong_number_of_links", **where)
     for name in names:
@@ -60,7 +60,7 @@ def known_links(names: list[str], links: Mapping[str, Any], where: Mapping[str, 
 
 @dataclass(frozen=True)
 class Around:
-    """Arrays that the checks of joints in columns need."""
+    """Arrays for the checks of joints in columns."""
 
     nodes: ItemIndex
     links: ItemIndex
@@ -69,7 +69,7 @@ class Around:
 
 
 def wrong_ends(places: np.ndarray, least: int) -> np.ndarray:
-    """Return the items (n,) that do not name two different ones, or one if one is enough.
+    """Return the items (n,) that do not name two different items, or a single one if ``least`` is 1.
 
     :param places: indices of the named items (n, k), as :class:`~statejump.schema.item_tables.ItemIndex` returns them
     """
@@ -95,7 +95,7 @@ def wrong_axes(items: ItemColumns[Any], dimension: int) -> np.ndarray:
 
 
 def vector(key: str, value: list[float] | None, unit: str, dimension: int, direction: bool, **where: Any) -> None:
-    """Raise NotAllowed for a vector whose length differs from the truss' dimension, or for a zero direction."""
+    """Raise NotAllowed for a vector whose length differs from the dimension of the truss, or for a zero direction."""
     if value is None:
         return
     if len(value) != dimension:
@@ -114,7 +114,7 @@ def axis_of_rotation(axis: list[float] | None, dimension: int, where: Mapping[st
 
 
 def turned_links(truss: ResolvedTruss, section: str, items: Any) -> None:
-    """Raise NotAllowed unless links that an item rotates against each other meet at a position and form an angle.
+    """Raise NotAllowed unless the links that an item rotates against each other meet at a position and form an angle.
 
     :param items: arrays with names, links (k, 2) and axis (k, 3)
     """
@@ -124,7 +124,7 @@ def turned_links(truss: ResolvedTruss, section: str, items: Any) -> None:
 
 
 def _turned_links(truss: ResolvedTruss, section: str, items: Any, rows: slice, joined: np.ndarray) -> None:
-    """The same check for some rows; ``joined`` has the codes of all pairs of nodes that joints constrain."""
+    """Apply :func:`turned_links` to some rows; ``joined`` has the codes of all pairs of nodes that joints couple."""
     links, pairs, axes = truss.links, items.links[rows], items.axis[rows]
     turned = pairs != GROUND
     ends = links.nodes[pairs]  # (k, 2 links, 2 ends)
@@ -151,5 +151,5 @@ def _turned_links(truss: ResolvedTruss, section: str, items: Any, rows: slice, j
 
 
 def _pair_codes(truss: ResolvedTruss, ones: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Return one number for every pair of nodes, independent of their order."""
+    """Return a code for every pair of nodes, independent of their order."""
     return np.minimum(ones, others, dtype=np.int64) * len(truss.nodes.names) + np.maximum(ones, others)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The reference surface of the nodes that [reflector] names."""
+"""The reference surface through the nodes of [reflector]."""
 from __future__ import annotations
 
 import numpy as np
@@ -12,7 +12,7 @@ from statejump.surface.design import Design
 def surface(case: TrussCase) -> tuple[Design, np.ndarray]:
     """Return the surface and the indices of its nodes among those of the truss.
 
-    :raises StatejumpError: the case has no [reflector], or its nodes make no surface
+    :raises StatejumpError: the case has no [reflector], or its nodes do not define a surface
     """
     truss = case.resolve()
     if truss.reflector is None:

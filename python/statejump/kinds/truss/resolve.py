@@ -102,7 +102,7 @@ def _links(case: TrussSections, nodes: np.ndarray, positions: np.ndarray, warmed
 
 @dataclass(frozen=True)
 class LinkTemperatures:
-    """Programs of a truss, and the program of each link (m); see :mod:`statejump.core.expansion`."""
+    """Programs of a truss, and the index of the program of each link (m); see :mod:`statejump.core.expansion`."""
 
     programs: tuple[TrussThermal | MemberProgram, ...]
     program_names: tuple[str, ...]

@@ -18,12 +18,12 @@ from statejump.kinds.truss.arrays import GROUND
 from statejump.kinds.truss.constraints import Constraints
 from statejump.kinds.truss.mechanism import Bodies, Drives
 
-# Euler's load over that of pinned ends, by the supports of the link's ends: 4.493... is the first root of tan x = x.
+# Ratio of Euler's load to that with pinned ends, by the supports of the link's ends; 4.493... solves tan x = x.
 FIXITY = {
     "pinned_pinned": 1.0, "clamped_pinned": (4.493409457909064 / np.pi) ** 2, "clamped_clamped": 4.0, "guided": inf,
 }
 
-# Models of sticking contacts: rigid, as springs, or with partial slip that begins at the rim.
+# Models of sticking contacts: rigid, elastic (springs), or partial slip that begins at the rim of the contact.
 STICKING = ("rigid", "elastic", "partial_slip")
 
 
@@ -32,11 +32,11 @@ class Nodes:
     """Nodes, n of them."""
 
     names: Sequence[str]
-    position_m: np.ndarray  # (n, 3), assembled shape at ΔT = 0
+    position_m: np.ndarray  # (n, 3) reference configuration at ΔT = 0
     fixed: np.ndarray  # (n, 3) bool: no motion along x, y, z; planar trusses: z everywhere
-    guide_normal: np.ndarray  # (n, 3) unit, no motion along it; zero: none
+    guide_normal: np.ndarray  # (n, 3) unit vector without motion along it; zero: none
     force_N: np.ndarray  # (n, 3) dead load, including weights
-    mass_kg: np.ndarray  # (n,) masses at nodes, in addition to those of links
+    mass_kg: np.ndarray  # (n,) lumped masses, in addition to those of links
 
 
 @dataclass(frozen=True)
@@ -47,13 +47,13 @@ class Links:
     nodes: np.ndarray  # (m, 2) int
     young_modulus_Pa: np.ndarray
     cross_section_area_m2: np.ndarray
-    thermal_expansion_per_K: np.ndarray  # with an [[expansion]] its largest |α|; the program is then that of ε/α
+    thermal_expansion_per_K: np.ndarray  # with an [[expansion]], its largest |α|; `program` is then that of ε/α
     stress_free_length_m: np.ndarray  # at ΔT = 0
-    mass_kg: np.ndarray  # from the density: density · area · stress-free length; NaN: missing
+    mass_kg: np.ndarray  # density · area · stress-free length; NaN: no density
     poisson_ratio: np.ndarray
     temperature_fraction: np.ndarray  # fraction of the program's ΔT
     program: np.ndarray  # int, index into ResolvedTruss.programs
-    shown_program: np.ndarray  # program of the temperature itself; for an [[expansion]] `program` has the strain
+    shown_program: np.ndarray  # program of the temperature; for an [[expansion]], `program` is that of ε/α
     shown_fraction: np.ndarray
     second_moment_of_area_m4: np.ndarray  # smallest one of the section
     ends: Sequence[str]  # keys of FIXITY
@@ -67,7 +67,7 @@ class Links:
 
     @property
     def euler_load_N(self) -> np.ndarray:
-        """Compression [N] at which each link buckles alone, fixity · π² E I/l0²; infinite for a guided one."""
+        """Compression [N] at which each link buckles by itself, fixity · π² E I/l0²; infinite for a guided link."""
         fixity = np.array([FIXITY[ends] for ends in self.ends])
         return fixity * np.pi**2 * self.young_modulus_Pa * self.second_moment_of_area_m4 / self.stress_free_length_m**2
 
@@ -82,7 +82,7 @@ class ReflectorSurface:
 
 
 class PullsNodes(Protocol):
-    """A type of element: the functions that a truss needs."""
+    """Functions of an element type that a truss uses."""
 
     section: ClassVar[str]
 
@@ -90,41 +90,41 @@ class PullsNodes(Protocol):
         """Return the pairs of nodes (k, 2) that the elements connect."""
 
     def stiffness_N_per_m(self, elements: Any) -> np.ndarray:
-        """Return the largest stiffness (k,) [N/m] between the ends."""
+        """Return the largest stiffness (k,) [N/m] between the two nodes of each element."""
 
     def tension_N(self, states: Mapping[str, np.ndarray]) -> np.ndarray:
         """Return the tension (states, k) [N] between the ends."""
 
 
 class JoinsNodes(Protocol):
-    """A type of joint: the functions that a truss needs."""
+    """Functions of a joint type that a truss uses."""
 
     section: ClassVar[str]
 
     def joined(self, joints: Any) -> np.ndarray:
-        """Return the pairs of nodes (k, 2) that the joints constrain."""
+        """Return the pairs of nodes (k, 2) that the joints couple."""
 
 
 @dataclass(frozen=True)
 class ResolvedTruss:
-    """A whole truss. ``programs[0]`` is the common [thermal]. Named programs, the histories of members, and those of
-    links with an [[expansion]] follow. All programs have the same duration."""
+    """A whole truss. ``programs[0]`` is the common [thermal], followed by named programs, histories of members, and
+    programs of links with an [[expansion]]. All programs have the same duration."""
 
     name: str
     dimension: int
     nodes: Nodes
     links: Links
     bodies: Bodies  # shapes of the links
-    joints: Mapping[str, Any]  # by section: the arrays of every type of joint
-    elements: Mapping[str, Any]  # by section: the arrays of every type of element except links
+    joints: Mapping[str, Any]  # arrays of every joint type, by section
+    elements: Mapping[str, Any]  # arrays of every element type except links, by section
     constraints: Constraints
     drives: Drives
     programs: tuple[Thermal | MemberProgram, ...]
-    program_names: tuple[str, ...]  # "thermal", those of the file, those of members, "EXPANSION of PROGRAM"
+    program_names: tuple[str, ...]  # "thermal", names of the file, names of members, "EXPANSION of PROGRAM"
     reflector: ReflectorSurface | None
     sticking: str  # one of STICKING: model of sticking contacts
     start_friction: str  # stuck or frictionless
-    types: Sequence[JoinsNodes]  # types of joints, in the order of results
+    types: Sequence[JoinsNodes]  # joint types in the order of results
     element_types: Sequence[PullsNodes]  # likewise
 
     @property
@@ -152,7 +152,7 @@ class ResolvedTruss:
         return replace(self, elements={**self.elements, **changed})
 
     def ends(self) -> list[np.ndarray]:
-        """Return the pairs of nodes (k, 2) that links, and the elements of each type, connect."""
+        """Return the pairs of nodes (k, 2) of links and of the elements of each type."""
         return [self.links.nodes, *(element.ends(self.elements[element.section]) for element in self.element_types)]
 
     def element_stiffnesses_N_per_m(self) -> list[np.ndarray]:
@@ -168,7 +168,7 @@ class ResolvedTruss:
         return replace(self, joints={**self.joints, **changed})
 
     def joined(self) -> np.ndarray:
-        """Return the pairs of nodes (k, 2) that joints constrain."""
+        """Return the pairs of nodes (k, 2) that joints couple."""
         return np.concatenate([joint.joined(self.joints[joint.section]) for joint in self.types])
 
     def number_of_joints(self) -> int:
@@ -176,12 +176,12 @@ class ResolvedTruss:
         return sum(len(joints.names) for joints in self.joints.values())
 
     def turning_places(self, links: np.ndarray) -> np.ndarray:
-        """Return the positions (k, 3) of items that rotate links (k, 2) against each other."""
+        """Return the positions (k, 3) of items that rotate pairs of links (k, 2) against each other."""
         return self.nodes.position_m[self.turning_nodes(links)]
 
     def turning_nodes(self, links: np.ndarray) -> np.ndarray:
-        """Return the nodes (k,) of items that rotate links (k, 2) against each other: the nearest end of both links, or
-        the first node of a single link."""
+        """Return the nodes (k,) of items that rotate pairs of links (k, 2) against each other: the common end of both
+        links, or the first node of a single link."""
         positions, nodes = self.nodes.position_m, []
         for one, two in links:
             first = self.links.nodes[one]

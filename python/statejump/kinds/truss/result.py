@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Results of a ``truss`` case: both models have the same columns, by item."""
+"""Results of a ``truss`` case. Both models have the same columns, with one value per item."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
@@ -27,22 +27,21 @@ from statejump.kinds.truss.solve import TrussPath, engine_programs, heat_of_join
 from statejump.results import scene as drawing
 from statejump.results.events import from_states, kind_of
 
-# For the engine's statuses stick, slip_plus, slip_minus, stop_plus, stop_minus, open.
+# Contact state for each engine status: stick, slip_plus, slip_minus, stop_plus, stop_minus, open.
 STATES = np.array([STICK, SLIP, SLIP, AT_STOP, AT_STOP, SEPARATED], dtype=np.uint8)
 STATE_OF = {"stick": STICK, "slip_plus": SLIP, "slip_minus": SLIP, "stop_plus": AT_STOP, "stop_minus": AT_STOP,
             "open": SEPARATED}
 TYPES: tuple[ElementType[Any, Any] | JointType[Any, Any], ...] = (*ELEMENTS, *JOINTS)
-# Columns by item: the list of the items, and whether the values are vectors. Names and order are those of the DEM's
-# samples.
+# Columns by item: list of the items, and whether values are vectors. Names and order are those of the DEM's samples.
 ITEMS = {"displacement_m": ("nodes", True), "axial_force_N": ("links", False)} | {
     column.name: (kind.items, column.vector) for kind in TYPES for column in kind.columns}
 TOUCHING = [joint for joint in JOINTS if joint.has_contacts]
-# Types whose states the DEM samples; those of contacts are among the contacts of a result.
+# Types whose states the DEM samples. Types with contacts have states in the contacts of a result.
 STICKING = [joint for joint in JOINTS if joint.has_contacts or not joint.not_in_dem]
-# Displacement at the end of a program that does not end at the reference temperature.
+# Displacement at the end of a program that does not return to the reference temperature.
 AT_END = "largest_displacement_at_program_end_m"
 HEAT = "heat of friction since the start"
-LOCATED = 1e-6  # fraction of a cycle: a smaller uncertainty of an event is not reported
+LOCATED = 1e-6  # fraction of a cycle below which the uncertainty of an event is not reported
 NOTES = {"displacement_m": "from the drawn shape", "axial_force_N": "compression positive"} | {
     column.name: column.note for kind in TYPES for column in kind.columns}
 
@@ -53,14 +52,16 @@ def _joints(truss: ResolvedTruss) -> list[str]:
 
 
 def joint_names(truss: ResolvedTruss) -> dict[tuple[str, str], str]:
-    """Name of every contact by kind and name of its joint; with the kind if joints of two types share the name."""
+    """Return the name of every contact by kind and name of its joint; with the kind if joints of two types share a
+    name."""
     listed = [(joint.section, name) for joint in TOUCHING for name in truss.joints[joint.section].names]
     shared = len({name for _, name in listed}) < len(listed)
     return {(kind, name): f"{kind} {name}" if shared else name for kind, name in listed}
 
 
 def every_joint_name(truss: ResolvedTruss) -> dict[tuple[str, str], str]:
-    """Name of every joint; contacts keep their name. It includes the kind if an earlier joint has the same name."""
+    """Return the name of every joint; contacts keep theirs. It includes the kind if an earlier joint has the same
+    name."""
     found = joint_names(truss)
     taken = set(found.values())
     for joint in JOINTS:
@@ -83,7 +84,7 @@ def names(case: TrussCase) -> dict[str, list[str]]:
 
 
 def scene(case: TrussCase) -> dict[str, Any]:
-    """Links and elements between the nodes; blocks of sliders; journals and bearings."""
+    """Return links and elements between nodes, blocks of sliders, journals and bearings, for drawings."""
     truss = case.resolve()
     nodes = [drawing.ref("history/position_m", name) for name in truss.nodes.names]
     parts: list[dict[str, Any]] = [
@@ -117,7 +118,7 @@ class _Section:
 
 
 def _changes(truss: ResolvedTruss, time_s: np.ndarray, part: Any) -> np.ndarray:
-    """Temperature change [K] of every item (samples, items)."""
+    """Return the temperature change [K] of every item (samples, items)."""
     programs = engine_programs(truss)
     used = [int(number) for number in np.unique(part.program)]
     found = {number: programs[number].temperature_change(time_s) for number in used}
@@ -131,7 +132,7 @@ def _run(
     events: Callable[[], list[Event]], summary: Mapping[str, float], warnings: tuple[str, ...] = (),
     dense: tuple[np.ndarray, np.ndarray] | None = None, **more: Any,
 ) -> Run:
-    """Return a run. ``dense``: times and displacements, if they are denser than the samples."""
+    """Return a run. ``dense``: times and displacements that are denser than the samples, if any."""
     truss, time = case.resolve(), plain["time_s"].values
     history = dict(plain)
     for key, (of, _) in ITEMS.items():
@@ -175,7 +176,7 @@ def _jumps(case: TrussCase, time_s: np.ndarray, displacement_m: np.ndarray) -> d
 
 
 def _start_friction(truss: ResolvedTruss, items: Mapping[str, np.ndarray]) -> dict[str, float]:
-    """Return the friction in the first of these states for the summary: forces, moments of hinges."""
+    """Return the friction in the first state for the summary: forces, and moments of hinges."""
     forces: list[tuple[np.ndarray, np.ndarray]] = [(np.zeros(0), np.zeros(0))]
     moments: list[tuple[np.ndarray, np.ndarray]] = []
     for joint in JOINTS:
@@ -234,17 +235,17 @@ def _contacts(
 
 
 def _states(states: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return the states of contacts by the names of their columns, converted from the engine's statuses."""
+    """Return the states of contacts by column name, converted from the engine's statuses."""
     return {joint.state_column: STATES[states[f"{joint.section}_status"].astype(int)] for joint in TOUCHING}
 
 
 def _heat(states: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Return friction's heat since the start [J] (states, contacts)."""
+    """Return the frictional heat since the start [J] (states, contacts)."""
     return np.concatenate([states[f"{joint.section}_dissipation_J"] for joint in TOUCHING], axis=1)
 
 
 def _heat_without_contact(states: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return friction's heat since the start [J] (states, joints), for types of joints that are no contacts."""
+    """Return the frictional heat since the start [J] (states, joints) of joint types without contacts."""
     heats = {f"{joint.section}_dissipation_J": joint for joint in JOINTS if not joint.has_contacts}
     return {key: states[key] for key in heats if states[key].shape[1]}
 
@@ -261,8 +262,8 @@ def sample_times(case: TrussCase) -> np.ndarray:
 
 
 def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
-    """Return the quasi-static path at these times [s], linear between its states; :meth:`Run.at` gives it at
-    others."""
+    """Return the quasi-static path at these times [s], linear between its states; :meth:`Run.at` returns other
+    times."""
     states = path.states
     at = states["time_s"]
     times_s = np.asarray(times_s, dtype=float)
@@ -274,7 +275,7 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
         share = share.reshape(-1, *(1,) * (values.ndim - 1))
         return (1 - share) * values[place] + share * values[place + 1]
 
-    # The status of a state belongs to the increment that ends there.
+    # The status of a state is that of the increment ending there.
     ending = np.clip(np.searchsorted(at, times_s, side="left"), 0, len(at) - 1)
     items = {key: sampled(states[key]) for key in ITEMS}
     items |= {key: values[ending] for key, values in _states(states).items()}
@@ -302,9 +303,9 @@ def reduced_run(case: TrussCase, path: TrussPath, times_s: np.ndarray) -> Run:
 
 
 def _taken_together(case: TrussCase, path: TrussPath) -> tuple[str, ...]:
-    """Warnings of a path without location of events. If two joints change within one increment, their order is unknown.
-    A third joint may have slipped back and forth between them."""
-    # Some changes are located even then, within 1.5 tolerances of a branch.
+    """Return warnings of a path without located events. If two joints change within one increment, their order is
+    unknown, and a third joint may have slipped back and forth unnoticed."""
+    # Changes that affect the state are located even then, within 1.5 tolerances of a branch.
     located = 2 * case.reduced_settings.event_tolerance * float(path.states["time_s"][-1])
     found = path.events
     within = found.interval_s > located
@@ -353,7 +354,7 @@ def _events(case: TrussCase, path: TrussPath | TrussMotion) -> list[Event]:
     for event in path.events:
         name = joints[event.joint_kind, event.name]
         before, after = STATE_OF[event.before], STATE_OF[event.after]
-        # A path that does not locate all events knows the time of some of them only to an increment.
+        # A path without located events knows the time of some events only to an increment.
         half = event.interval_s / 2 if event.interval_s > LOCATED * case.period_s else 0.0
         if before != after:
             change = float(np.interp(event.time_s - half, at, path.states["temperature_change_K"])) if half else (
@@ -365,7 +366,7 @@ def _events(case: TrussCase, path: TrussPath | TrussMotion) -> list[Event]:
 
 
 def dem_run(case: TrussCase, columns: Columns, about: Mapping[str, Any]) -> Run:
-    """Return a DEM run; its events lie between samples."""
+    """Return a DEM run; its events are between samples."""
     samples = len(columns["time_s"])
     items, listed = {}, names(case)
     states = {joint.state_column: (joint.items, False) for joint in STICKING}
@@ -390,6 +391,6 @@ def dem_run(case: TrussCase, columns: Columns, about: Mapping[str, Any]) -> Run:
 
 
 def _beyond(case: TrussCase, plain: Mapping[str, Column], items: Mapping[str, np.ndarray]) -> tuple[str, ...]:
-    """Warnings of links that cannot carry the forces at the samples."""
+    """Return warnings about links that cannot carry the forces at the samples."""
     return notes.warnings(case.resolve().links, plain["time_s"].values, plain["temperature_change_K"].values,
                           items["axial_force_N"])

@@ -30,7 +30,7 @@ def dynamic(case: TrussCase, on_progress: OnProgress) -> Run:
 
 
 def check_dem(case: TrussCase) -> None:
-    """Raise StatejumpError if the DEM cannot run a case, before anything is solved."""
+    """Raise StatejumpError if the DEM cannot run a case, without solving it."""
     scene.check(case)
     find_yade()
 

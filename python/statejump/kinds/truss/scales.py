@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Scales of the motion of a truss, and the fractions of them below which a number is rounding.
 
-The scales depend on the truss and its whole program, so none vanishes when a truss returns to its first position.
+A scale depends on the truss and its whole program, so it does not vanish when a truss returns to its initial position.
 """
 from __future__ import annotations
 
@@ -12,31 +12,31 @@ import numpy as np
 from statejump.kinds.truss.elements import ELEMENTS
 from statejump.kinds.truss.resolved import ResolvedTruss
 
-# Changes of status are located within 1e-9 of a branch. A slender truss amplifies the rounding of coordinates by the
-# square of its slenderness: 40 bays to 1e-9 of the motion.
+# Fraction of the motion that is rounding. Changes of status are located within 1e-9 of a branch. A slender truss
+# amplifies the rounding of coordinates by its squared slenderness: 40 bays reach 1e-9 of the motion.
 ROUNDING = 1e-9
-# Relative to the coordinates: a length is a difference of coordinates, and a state results from some hundred solutions
-# with such lengths.
+# Rounding relative to coordinates: a length is a difference of coordinates, and a state results from some hundred
+# solutions with such lengths.
 COORDINATES = 1e3 * float(np.finfo(float).eps)
-# Smallest reference of a comparison, relative to the scales. With a tenth of the critical damping, and a natural period
-# of 1e-3 of that of the temperature, the DEM lags and swings by some 1e-5 of the motion. The usual tolerance, 1 % of
-# this reference, is ten times as large.
+# Smallest reference of a comparison, relative to the scales. With damping ratio 0.1, and a natural period of 1e-3 of
+# the thermal cycle, the DEM lags and oscillates by about 1e-5 of the motion. The usual tolerance, 1 % of this
+# reference, is ten times as large.
 COMPARED = 1e-2
 # A jump below this fraction of the allowed difference of displacements counts as zero in a comparison with the DEM.
 NO_JUMP = 1e-4
-# Multiple of the rounding of coordinates: a hundredth of COMPARED of it still exceeds that rounding.
+# Smallest motion as a multiple of the rounding of coordinates: COMPARED/100 of this motion still exceeds that rounding.
 LEAST_MOTION = 1e4
 
 
 @dataclass(frozen=True)
 class Scales:
-    """References for differences.
+    """Reference values for differences.
 
-    :param motion_m: largest displacement or free expansion over the program, or deflection of the stiffest element
-        under the largest load; at least that of LEAST_MOTION
-    :param rounding_m: a displacement at or below it is rounding of the motion
-    :param force_N: largest force of a link with prevented expansion, or load
-    :param energy_J: elastic energy of all links with prevented expansion, or of that deflection
+    :param motion_m: largest displacement, free expansion, or deflection of the stiffest element under the largest load;
+        at least LEAST_MOTION times the rounding of coordinates
+    :param rounding_m: displacements up to this value are rounding
+    :param force_N: largest force of a link with prevented expansion, or largest load
+    :param energy_J: elastic energy of all links with prevented expansion, or of the deflection in ``motion_m``
     """
 
     motion_m: float
@@ -48,10 +48,10 @@ class Scales:
 def scales(truss: ResolvedTruss, displacement_m: np.ndarray) -> Scales:
     """Return the scales of a truss.
 
-    :param displacement_m: of the nodes over the program (states, nodes, 3)
+    :param displacement_m: displacements of the nodes over the program (states, nodes, 3)
     """
     kept = vars(truss)
-    if "_scales" not in kept:  # cached, because a truss is immutable and may have a program for every link
+    if "_scales" not in kept:  # cached, because a truss may have a program for every link
         kept["_scales"] = _at_rest(truss)
     still: Scales = kept["_scales"]
     motion = max(still.motion_m, float(np.linalg.norm(displacement_m, axis=-1).max(initial=0.0)))
@@ -59,7 +59,7 @@ def scales(truss: ResolvedTruss, displacement_m: np.ndarray) -> Scales:
 
 
 def _at_rest(truss: ResolvedTruss) -> Scales:
-    """Return the scales of a truss that does not move."""
+    """Return the scales that do not depend on displacements."""
     links, position = truss.links, truss.nodes.position_m
     coordinates = COORDINATES * float(np.abs(position).max(initial=0.0))
     size = float(np.ptp(position, axis=0).max()) if len(position) else 0.0

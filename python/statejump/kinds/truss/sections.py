@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sections and keys of cases of kind ``truss``: bars, frictional joints and springs, planar or spatial.
 
-One file describes the truss for the quasi-static solver and for the DEM. Items have names and refer to each other by
-name; :class:`.case.TrussCase` turns names into indices and keys into arrays.
+One file describes the truss for all models. Items have names and refer to each other by name; :class:`.case.TrussCase`
+turns names into indices and keys into arrays.
 """
 from __future__ import annotations
 
@@ -84,12 +84,12 @@ class Link(Item):
 
 @definition
 class TrussExpansion(Item, Expansion):
-    """A coefficient of thermal expansion that depends on temperature, for the links that name it."""
+    """A temperature-dependent coefficient of thermal expansion, for links that refer to its name."""
 
 
 @definition
 class TrussThermal(CaseThermal):
-    """A temperature program, or the temperatures of all members."""
+    """A temperature program, or a reference to the temperature histories of all members."""
 
     ONE_OF = {"shape": {"table": (*Thermal.ONE_OF["shape"]["table"], ("members_file",))}}
 
@@ -99,7 +99,7 @@ class TrussThermal(CaseThermal):
 
 @definition
 class Program(Item, Thermal):
-    """A further temperature program, for the links and joints that name it; it has the duration of the common one."""
+    """A further temperature program for links and joints that name it, with the duration of the common program."""
 
     cycles: int | None = whole(None, 1, 100_000, "as [thermal]")  # type: ignore[assignment]
     period_s: float | None = parameter(  # type: ignore[assignment]
@@ -107,9 +107,9 @@ class Program(Item, Thermal):
     )
 
     def completed(self, common: TrussThermal) -> TrussThermal:
-        """Return the program with cycles and period; missing ones are those of the common program.
+        """Return the program with missing cycles and period taken from the common program.
 
-        :raises NotAllowed: it is a table with another duration than ``period_s``
+        :raises NotAllowed: it is a table whose duration differs from ``period_s``
         """
         given = self.to_dict()
         del given["name"]
@@ -136,7 +136,7 @@ Tables = section_class(
 
 
 def sections_in_files() -> tuple[str, ...]:
-    """Return the lists that may be in files beside a case."""
+    """Return the lists that may be in files beside the case file."""
     return tuple(fields_of(Tables))
 
 
@@ -239,12 +239,12 @@ class TrussSections(ElementLists, JointLists, TrussParts):
 
     @property
     def member_histories(self) -> Histories | None:
-        """Temperature histories of members, if the case has a file of them."""
+        """Temperature histories of members, if the case refers to a file of them."""
         return self.thermal.members
 
     @property
     def programs(self) -> list[TrussThermal | MemberProgram]:
-        """The temperature programs with cycles and period: the common one, named ones, then those of members."""
+        """The temperature programs with cycles and period: the common one, named ones, those of members."""
         members = self.thermal.members
         of_members = [] if members is None else members.programs(self.thermal.cycles, self.period_s)
         return [self.thermal, *(program.completed(self.thermal) for program in self.program), *of_members]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes of elements that hang slack in the play of their joints: no model determines their positions."""
+"""Nodes whose elements hang slack in the play of their joints: no model determines their positions."""
 from __future__ import annotations
 
 import numpy as np
@@ -13,8 +13,8 @@ from statejump.kinds.truss.joints.round_parts import RoundParts
 from statejump.kinds.truss.notes import listed
 from statejump.kinds.truss.resolved import ResolvedTruss
 
-# Fraction of the largest force. The solver leaves 1e-9 of it in an element without contact, which is the rounding of
-# coordinates times the stiffness. Comparisons distinguish 1e-4 of it.
+# Fraction of the largest force that counts as zero. An element without contact has up to 1e-9 of it in the solver:
+# rounding of coordinates times stiffness. Comparisons resolve 1e-4 of it.
 NO_FORCE = 1e-6
 
 
@@ -30,9 +30,9 @@ def sentence(case: TrussCase, hung: np.ndarray) -> tuple[str, ...]:
 def hanging(case: TrussCase, run: Run, least_force_N: float) -> np.ndarray:
     """Return the samples at which nodes hang slack (samples, nodes).
 
-    A node hangs slack if its links carry nothing and fewer items hold it than it has directions. A link whose other end
-    hangs slack holds nothing; neither does a joint with clearance whose contact carries nothing. A group of links that
-    hangs slack together is not recognised if each of its nodes has as many links as directions.
+    A node hangs slack if its links carry no force and fewer items hold it than it has directions. A link does not hold
+    a node if its other end hangs slack. A joint with clearance does not hold a node if its contact carries no force. A
+    group of slack links is not recognised if each of its nodes has as many links as directions.
 
     :param least_force_N: lower bound of the largest force
     """
@@ -58,7 +58,7 @@ def hanging(case: TrussCase, run: Run, least_force_N: float) -> np.ndarray:
 
 def _pins_hold(truss: ResolvedTruss, run: Run, none_N: float, holding: np.ndarray) -> bool:
     """Add the directions that joints with clearance constrain at nodes (samples, nodes). Return whether some joint
-    carries nothing at a sample."""
+    carries no force at a sample."""
     place, idle = 0, False
     for joint in JOINTS:
         if not joint.has_contacts:
@@ -75,8 +75,8 @@ def _pins_hold(truss: ResolvedTruss, run: Run, none_N: float, holding: np.ndarra
 
 
 def _others_hold(truss: ResolvedTruss) -> np.ndarray:
-    """Return the number of directions of nodes that supports, elements, rotational items and joints without clearance
-    constrain. Each of the last three counts as all directions."""
+    """Return the number of directions in which supports, elements, torsional items and joints without clearance hold
+    each node. Each of the last three counts as all directions."""
     d = truss.dimension
     found = truss.nodes.fixed[:, :d].sum(axis=1) + truss.nodes.guide_normal.any(axis=1)
     turned = [*(element.torsion(truss.elements[element.section]).links for element in ELEMENTS),

@@ -29,7 +29,7 @@ LARGEST_PATH = 1 << 30
 
 @dataclass(frozen=True)
 class TrussEvent:
-    """Change of a joint's status, located within interval_s before time_s."""
+    """Change of the status of a joint, located between time_s - interval_s and time_s."""
 
     time_s: float
     interval_s: float
@@ -42,8 +42,7 @@ class TrussEvent:
 
 @dataclass(frozen=True, eq=False)
 class TrussEvents(Sequence[TrussEvent]):
-    """The events of a path in the order of their times. They are stored as columns; an event object is created on
-    access."""
+    """The events of a path in order of time. They are stored as columns; event objects are created on access."""
 
     truss: ResolvedTruss
     time_s: np.ndarray
@@ -96,25 +95,25 @@ class TrussPath:
 
     @property
     def energy_residue_J(self) -> float:
-        """Thermal work less elastic energy, load potential and friction's heat since the start [J]."""
+        """Thermal work minus elastic energy, load potential and frictional heat since the start [J]."""
         states = self.states
         stored = states["elastic_energy_J"] + states["load_potential_J"]
         return float((states["thermal_work_J"] - (stored - stored[0]) - heat_of_joints_J(states).sum(axis=1))[-1])
 
 
 def heat_of_joints_J(states: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Return friction's heat since the start [J] (states, joints) of all joints, type by type."""
+    """Return the frictional heat since the start [J] (states, joints) of all joints, type by type."""
     kinds = _engine.truss_joints()
     return np.concatenate([states[f"{kind}_dissipation_J"] for kind in kinds], axis=1)
 
 
 def engine_program(program: Thermal | MemberProgram) -> _engine.ThermalProgram:
-    """Return a temperature program of a truss as the engine's."""
+    """Return the engine's temperature program for a program of a truss."""
     return thermal.program(program, program.period_s)
 
 
 def engine_programs(truss: ResolvedTruss) -> list[_engine.ThermalProgram]:
-    """Return all programs of a truss. They are created once, because a truss is immutable."""
+    """Return all programs of a truss as engine objects. They are cached, because a truss is immutable."""
     kept = vars(truss)
     if "_engine_programs" not in kept:
         kept["_engine_programs"] = [engine_program(program) for program in truss.programs]
@@ -127,7 +126,7 @@ def _table(part: Any, *keys: str, **more: Any) -> dict[str, Any]:
 
 
 def _joints(truss: ResolvedTruss, joint: JointType[Any, Any]) -> dict[str, Any]:
-    """Return the joints of a type with the arrays that the engine lists for it."""
+    """Return the joints of a type as the arrays that the engine requires."""
     joints = truss.joints[joint.section]
     made = joint.engine_arrays(truss, joints)
     keys = [parameter["key"] for parameter in _engine.truss_joints()[joint.section]["parameters"]]
@@ -135,14 +134,14 @@ def _joints(truss: ResolvedTruss, joint: JointType[Any, Any]) -> dict[str, Any]:
 
 
 def _elements(truss: ResolvedTruss, table: str) -> dict[str, Any]:
-    """Return the elements of a type with the arrays that the engine lists for it."""
+    """Return the elements of a type as the arrays that the engine requires."""
     keys = dict.fromkeys(parameter["key"] for parameter in _engine.truss_elements()[table]["parameters"])
     parts = {"links": truss.links} | {element.items: truss.elements[element.section] for element in ELEMENTS}
     return _table(parts[table], *keys)
 
 
 def engine_items(truss: ResolvedTruss) -> dict[str, Any]:
-    """Return the truss as the engine's tables and temperature programs."""
+    """Return the truss as tables and temperature programs of the engine."""
     return {
         "nodes": _table(truss.nodes, "position_m", "fixed", "guide_normal", "force_N"),
         "elements": {table: _elements(truss, table) for table in _engine.truss_elements()},
@@ -167,15 +166,15 @@ def path(
     """Return the quasi-static path of a truss.
 
     :param increments_per_branch: points of the path per monotone branch of the temperature
-    :param locate_events: locate every change of a joint's status, else only those that affect the state
+    :param locate_events: locate every change of a joint status; else only changes that affect the state
     :param event_tolerance: fraction of a branch within which a change is located
     :param energy_tolerance: allowed energy error, as a fraction of the work of the temperature. If events are located,
-        increments with a larger error are divided; 1: none is
+        increments with a larger error are divided; 1: no division
     :param cycle_ends_only: keep only the states at the ends of cycles
     :param problem_times: ascending times at which the frictional contact problem of a step is stored [s]
     :param progress: called with the finished fraction; returning False ends the path
     :param trace: called with each Newton iteration, see :data:`statejump.kinds.truss.trace.COLUMNS`
-    :raises FailedRun: mechanism, unloaded joint or no equilibrium; with names and temperature
+    :raises FailedRun: mechanism, unloaded joint or no equilibrium; the message has names and temperature
     :raises StatejumpError: a link is driven
     """
     check_at_rest(truss)
@@ -193,7 +192,7 @@ def path(
 
 
 def whole_path(truss: ResolvedTruss, on_progress: OnProgress = lambda share: None, **options: Any) -> TrussPath:
-    """Return the path up to its end; see :func:`path`.
+    """Return the complete path; see :func:`path`.
 
     :param on_progress: receives the finished fraction, 0 to 1
     :raises Interrupted: Ctrl-C
@@ -209,7 +208,7 @@ def whole_path(truss: ResolvedTruss, on_progress: OnProgress = lambda share: Non
 
 
 def _failed(truss: ResolvedTruss, failure: _engine.EngineFailure) -> EngineFailed:
-    """Return the engine's failure with a remedy, if one is known."""
+    """Return the error for a failure of the engine, with a remedy if one is known."""
     remedy = None
     if truss.start_friction == FRICTIONLESS and failure.time_s == 0:
         remedy = "set start.friction to 'stuck' if friction holds the truss at the start"
@@ -223,7 +222,7 @@ def solve(case: TrussCase, on_progress: OnProgress = lambda fraction: None,
 
     :param on_progress: called with the finished fraction, 0 to 1
     :param trace: as for :func:`path`
-    :raises FailedRun: mechanism, unloaded joint or no equilibrium; with names and temperature
+    :raises FailedRun: mechanism, unloaded joint or no equilibrium; the message has names and temperature
     :raises Interrupted: Ctrl-C
     """
     kept = vars(case)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Check that explicit steps of a truss in motion (``motion.scheme = "regularised"``) are short enough."""
+"""Check that steps of penalty contact in a truss in motion (``motion.scheme = "regularised"``) are short enough."""
 from __future__ import annotations
 
 from math import ceil
@@ -20,7 +20,7 @@ def _refuse(case: TrussCase, why: str, **fields: Any) -> StatejumpError:
 
 
 def _moves_along(truss: ResolvedTruss, node: int, axis: np.ndarray) -> bool:
-    """Return whether supports and guide leave a node a motion with a component along an axis."""
+    """Return whether the supports and the guide of a node allow motion with a component along an axis."""
     held = np.vstack((np.eye(3)[truss.nodes.fixed[node]], truss.nodes.guide_normal[node]))
     held = held[np.abs(held).any(axis=1)]
     across = axis - (np.linalg.lstsq(held.T, axis, rcond=None)[0] @ held if len(held) else 0)
@@ -37,8 +37,8 @@ def least_steps_per_cycle(case: TrussCase) -> int:
 
 
 def check(case: TrussCase) -> None:
-    """Raise StatejumpError for a joint without such a contact. Raise NotAllowed for steps that are too long for the
-    largest forces of the quasi-static path."""
+    """Raise StatejumpError for a joint that the scheme does not support. Raise NotAllowed for steps that are too long
+    for the largest forces of the quasi-static path."""
     truss = case.resolve()
     for joint in JOINTS:
         refused = joint.regularised_refuses(truss.joints[joint.section])

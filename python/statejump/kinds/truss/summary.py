@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Texts of a ``truss`` case, and what a command prints of its runs."""
+"""Texts of a ``truss`` case, and the output of commands about its runs."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -25,12 +25,12 @@ def is_held(case: TrussCase, node: Node) -> bool:
 
 
 def is_guided(case: TrussCase, node: Node) -> bool:
-    """Return whether a node can move in some directions only."""
+    """Return whether a node can move in some directions but not in all."""
     return bool(node.fixed or node.guide_normal) and not is_held(case, node)
 
 
 def describe(case: TrussCase) -> list[str]:
-    """Return the case in sentences, without its temperature program, which all kinds describe alike."""
+    """Return the description of the case in sentences, without the temperature program, common to all kinds."""
     kind = {2: "plane", 3: "spatial"}[case.truss.dimension]
     held = [node for node in case.node if is_held(case, node)]
     guided = [node for node in case.node if is_guided(case, node)]
@@ -75,7 +75,7 @@ def _tied(case: TrussCase) -> list[str]:
 
 
 def _what(case: TrussCase) -> str:
-    """Name of the difference between end and start of a run."""
+    """Return the noun for the difference between end and start of a run."""
     if case.ending is None:
         return f"state jump after {case.thermal.cycles} cycle(s)"
     if case.ending.returns:

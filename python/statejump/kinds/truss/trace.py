@@ -18,31 +18,31 @@ from statejump.kinds.truss.solve import solve
 
 # Entries of a row, in the order of engine/include/statejump/truss/trace.hpp.
 COLUMNS = (
-    "branch",  # monotone branch of the temperature programs, from 1; 0: the start
-    "increment",  # within the branch; 0: the short first step
-    "step",  # of the path, attempted or done, from 1; 0: the start
+    "branch",  # number of the monotone branch of the temperature programs, from 1; 0: the start
+    "increment",  # number within the branch; 0: the short first step
+    "step",  # number of the attempted step of the path, from 1; 0: the start
     "solve",  # Newton solve of the path, from 1
-    "joints",  # friction; at the start also pins or frictionless
+    "joints",  # treatment of joints: friction; at the start also pins or frictionless
     "opening",  # fraction of the clearances that is open
     "time_s",
     "temperature_change_K",
     "iteration",  # within the solve, from 1
     "node_residual_N",  # of the balance of forces at nodes
     "closure_residual_m",  # of closed or sticking joints
-    "joint_residual_N",  # of the forces of slipping or open joints
+    "joint_residual_N",  # residual of the forces of slipping or open joints
     "step_length_m",  # largest displacement of the step; empty: no step
     "status_changes",  # joints that changed their status
     "changed_joint",  # the first of them
     "factorizations",  # made in this iteration
-    "decision",  # step, halved_step, status_change, restart, or how the solve ended
-    "step_end",  # how the step of the path ended, in its last row
+    "decision",  # step, halved_step, status_change, restart, or the end of the solution
+    "step_end",  # result of the step of the path, in its last row
 )
 
 
 def traced(case: TrussCase, on_progress: OnProgress, trace: Path | Callable[[tuple[Any, ...]], object]) -> Run:
     """Run the quasi-static solver and trace it. The file also appears if the run fails or is interrupted.
 
-    :param trace: CSV file, or a function that takes each row
+    :param trace: CSV file, or a function that receives each row
     :raises NotWritten: the file cannot be written
     """
     if not isinstance(trace, Path):

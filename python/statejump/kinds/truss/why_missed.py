@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Possible reasons for a missed tolerance of a truss; its slowest natural period."""
+"""Possible reasons for a missed tolerance of a truss, and its slowest natural period."""
 from __future__ import annotations
 
 from collections.abc import Iterator
@@ -24,12 +24,12 @@ from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.scales import COMPARED, scales
 from statejump.kinds.truss.solve import TrussPath, engine_program, solve
 
-# Fraction of the stiffness of the stiffest element. A motion with less stiffness is held by rounding only.
+# Fraction of the stiffness of the stiffest element below which a stiffness is rounding.
 LEAST_STIFFNESS = 1e-12
 
 
 def why_missed(case: TrussCase, exact: Run, dem: Run, jump_scale_m: float) -> list[str]:
-    """Return sentences.
+    """Return possible reasons, one sentence each.
 
     :param jump_scale_m: reference of differences of jumps
     """
@@ -59,7 +59,7 @@ def slowest_natural_period_s(path: TrussPath) -> float:
     """Return the longest natural period [s] of a truss whose joints all stick, at the start of its path.
 
     Masses are lumped as in the DEM. Links, springs, torsion springs and contacts act as springs, and tension adds
-    lateral stiffness. inf: a part has no stiffness.
+    lateral stiffness. Infinite if a part has no stiffness.
     """
     truss = path.truss
     mass = np.repeat(lumped_mass_kg(truss), 3)
@@ -68,7 +68,7 @@ def slowest_natural_period_s(path: TrussPath) -> float:
         return 0.0
     stiffness = _stiffness(path)[free][:, free]
     largest = float(abs(stiffness).max())
-    # The shift keeps an eigenvalue positive that rounding made negative.
+    # The shift keeps eigenvalues positive that rounding makes negative.
     shift = -LEAST_STIFFNESS * largest / float(mass[free].max())
     if len(free) <= 2:  # too few for Lanczos
         scaled = diags(mass[free] ** -0.5)
@@ -99,7 +99,7 @@ def _stiffness(path: TrussPath) -> Any:
         return way / length[:, None], length
 
     def between(nodes: np.ndarray, blocks: np.ndarray) -> Any:
-        """Springs of the stiffnesses (k, 3, 3) between pairs of nodes; of one node, or with GROUND: to ground."""
+        """Return springs of stiffness (k, 3, 3) between pairs of nodes, or to ground for a single node or GROUND."""
         sides = [(one, other, 1.0 if one == other else -1.0)
                  for one in range(nodes.shape[1]) for other in range(nodes.shape[1])]
         rows, columns, values = [], [], []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Kind ``umbrella``: one rib of an umbrella antenna, two links and a joint with clearance, the paper's section 4."""
+"""Kind ``umbrella``: one rib of an umbrella antenna, two links and a clearance joint (section 4 of the paper)."""
 from __future__ import annotations
 
 from typing import ClassVar
@@ -20,7 +20,7 @@ class Umbrella(Kind):
     COLUMNS = (
         "time_s",
         "temperature_change_K",
-        "theta2_rad",  # of AB, from A to B, anticlockwise from AC
+        "theta2_rad",  # angle of AB, from A to B, anticlockwise from AC
         "theta4_rad",  # of BC, from C to B
         "length_ab_m",
         "length_bc_m",

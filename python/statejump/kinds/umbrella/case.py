@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cases of kind ``umbrella``: one rib of the umbrella antenna, the paper's section 4.
+"""Cases of kind ``umbrella``: one rib of the umbrella antenna (section 4 of the paper).
 
 Links AB and BC are pinned to the frame at A = (0, 0) and C = (length_m, 0). At B the journal of BC has clearance in the
 bearing of AB. Angles are anticlockwise from AC: theta2 of AB from A to B, theta4 of BC from C to B; the flare angle is
@@ -152,7 +152,7 @@ class UmbrellaTolerance(Section):
 
 @definition
 class UmbrellaCase(Case):
-    """One rib of the umbrella antenna, the paper's section 4."""
+    """One rib of the umbrella antenna (section 4 of the paper)."""
 
     KIND: ClassVar[str] = "umbrella"
 
@@ -180,7 +180,7 @@ class UmbrellaCase(Case):
         return self.joint.journal_radius_m + self.joint.radial_clearance_m
 
     def clearance_m(self, temperature_change_K: float) -> float:
-        """Return the radial clearance [m] at ΔT; both radii expand from the total ΔT."""
+        """Return the radial clearance [m] at ΔT; both radii expand with the full ΔT."""
         joint = self.joint
         return joint.radial_clearance_m + temperature_change_K * (
             joint.bearing_thermal_expansion_per_K * self.bearing_radius_m
@@ -188,7 +188,7 @@ class UmbrellaCase(Case):
         )
 
     def link_lengths_m(self, temperature_change_K: Any) -> tuple[Any, Any]:
-        """Return the lengths of AB and BC without load [m] at ΔT, a number or an array."""
+        """Return the stress-free lengths of AB and BC [m] at ΔT, a number or an array."""
         ab, bc = (
             link.stress_free_length_m * (1 + link.thermal_expansion_per_K * temperature_change_K)
             for link in (self.link_ab, self.link_bc)
@@ -197,7 +197,7 @@ class UmbrellaCase(Case):
 
     @property
     def ideal_position_m(self) -> tuple[float, float]:
-        """Position x and y of B [m] at which the unstrained links meet at ΔT = 0, above AC."""
+        """Position x and y [m] at which the unloaded links AB and BC meet at ΔT = 0, above AC."""
         x, y = apex_m(*self.link_lengths_m(0.0), self.frame.length_m)
         return float(x), float(y)
 
@@ -235,8 +235,8 @@ class UmbrellaCase(Case):
 
     @property
     def is_reproducible(self) -> bool:
-        """Whether the whole history, and not only the heating, can be compared point by point. With damping of the
-        links and of the pins small differences decay; without it they grow to the size of the play."""
+        """Whether the whole history can be compared point by point; otherwise only the heating. With damping of links
+        and pins, small differences decay. Without it they grow to the size of the clearance."""
         return self.damping.axial_damping_ratio > 0 and self.damping.pin_damping_N_m_s_per_rad > 0
 
     @property
@@ -259,7 +259,7 @@ class UmbrellaCase(Case):
         for part in ("link_ab", "link_bc"):
             no_length_left(f"{part}.thermal_expansion_per_K", getattr(self, part).thermal_expansion_per_K, self)
         frame = self.frame.length_m
-        # The sum is linear in ΔT and the difference is convex, so the ends of the program are decisive.
+        # The sum of lengths is linear in ΔT and the difference convex, so the ends of the program are decisive.
         for change in (0.0, *self.temperature_range_K):
             ab, bc = self.link_lengths_m(change)
             if not abs(ab - bc) < frame < ab + bc:
@@ -274,7 +274,7 @@ class UmbrellaCase(Case):
                           ("tangential_velocity", "tangential_velocity")):
             name = getattr(self.joint, key)
             problem = _engine.law_problem(kind, name)
-            if problem:  # a user law that is known and unusable
+            if problem:  # a user law that exists but is unusable
                 raise NotAllowed(f"joint.{key}", name, problem, code="bad_law")
         dissipation = laws.law("dissipation", self.joint.dissipation_law)
         may_be_zero = any(p.name == "restitution" and p.allows(0) for p in dissipation.parameters)

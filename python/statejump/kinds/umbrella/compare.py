@@ -30,7 +30,7 @@ def energy_residual(run: Run) -> float:
 
 
 def _energy_row(case: UmbrellaCase, reduced: Run, dem: Run) -> Quantity:
-    """Return both energy residues over the largest energy in the DEM run."""
+    """Return the row of both energy residues, divided by the largest energy in the DEM run."""
     about = sum(dem[name] for name in STORED) + sum(dem[name] for name in DISSIPATED)
     scale = float(np.max(about))
     tolerance = case.tolerance.energy_balance_relative
@@ -41,13 +41,13 @@ def _energy_row(case: UmbrellaCase, reduced: Run, dem: Run) -> Quantity:
 
 
 def first_contact_K(run: Run) -> float | None:
-    """Return ΔT [K] of the first contact, located by the model; None: the clearance never closed."""
+    """Return ΔT [K] of the first contact as located by the model; None: the clearance never closed."""
     found = run.events.first("first_contact")
     return None if found is None else found.temperature_change_K
 
 
 def _first_contact_rows(case: UmbrellaCase, reduced: Run, dem: Run) -> list[Quantity]:
-    """Return the rows of the first contact: both models against the closed form if it holds, else against each
+    """Return the rows of the first contact: both models against the closed form if it applies, else against each
     other."""
     tolerance = case.tolerance
     ours, other = first_contact_K(reduced), first_contact_K(dem)
@@ -64,8 +64,9 @@ def _first_contact_rows(case: UmbrellaCase, reduced: Run, dem: Run) -> list[Quan
 
 
 def closed_form_first_contact(case: UmbrellaCase) -> float | None:
-    """Return ΔT_c [K] from the closed form c/(α |AC|), if it holds: heating from a concentric start, links that do not
-    vibrate, no torsion spring before contact. Infinity: the clearance never closes; None: no closed form."""
+    """Return ΔT_c = c/(α |AC|) [K] of the first contact; infinity: the clearance never closes. None: the formula does
+    not apply; it requires heating from a concentric start, links without vibration, and no torsion spring before
+    contact."""
     first_heats = float(case.thermal_program().temperature_rate(0.0)) > 0
     expansions_agree = (
         case.link_ab.thermal_expansion_per_K == case.link_bc.thermal_expansion_per_K
@@ -92,8 +93,8 @@ def history_rows(case: UmbrellaCase, ours: Run, other: Run) -> list[Quantity]:
     until = "" if reproducible else "_until_largest_temperature"
     for angle in ("theta2", "theta4"):
         column = f"{angle}_rad"
-        # Lower bound of the scale: the allowed difference of jumps. An angle that changes less does not give a scale of
-        # zero.
+        # Lower bound of the scale, so that an angle that hardly changes does not give a scale of zero: the allowed
+        # difference of jumps.
         span = max(float(np.ptp(ours[column])), tolerance.final_theta2_rad)
         largest = float(np.max(np.abs(other[column][:end] - ours[column][:end])))
         rows.append(
@@ -106,9 +107,9 @@ def history_rows(case: UmbrellaCase, ours: Run, other: Run) -> list[Quantity]:
 def compare(case: UmbrellaCase, reduced: Run, dem: Run) -> Comparison:
     """Compare a DEM run with the reduced run of the same case.
 
-    A damped case is compared over its whole program. Without damping the motion after contact is chaotic. The
-    point-by-point comparison then ends at the largest temperature, and an ensemble covers the remainder (``statejump
-    figures``).
+    A damped case is compared over its whole program. Without damping, the motion after contact is chaotic. The
+    point-by-point comparison then ends at the largest temperature; ``statejump figures`` compares ensembles for the
+    rest.
     """
     rows = [] if case.start.mode == "loaded" else _first_contact_rows(case, reduced, dem)
     rows += history_rows(case, reduced, dem)
@@ -129,7 +130,7 @@ def difference(case: UmbrellaCase, first: Run, second: Run) -> list[Quantity]:
 def outcomes(case: UmbrellaCase, run: Run) -> dict[str, float]:
     """Return jumps and ranges of both angles, first contact, contacts and energy residue; NaN: it did not happen."""
     said = run.summary
-    # The reduced model accounts for energy in every step, the DEM at its samples.
+    # The reduced model sums energy in every step, the DEM only at its samples.
     residue = said["energy_residue_J"] if "energy_residue_J" in said else energy_residual(run)
     return {
         **{f"{angle}_jump_rad": said[f"{angle}_jump_rad"] for angle in ANGLES},

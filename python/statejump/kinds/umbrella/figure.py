@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figure of runs of an ``umbrella`` case: the models in one figure."""
+"""Figure of runs of an ``umbrella`` case: all models in one figure."""
 from __future__ import annotations
 
 from collections.abc import Sequence

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The quasi-static path of a loaded rib: what remains of its motion when it is heated infinitely slowly."""
+"""The quasi-static path of a loaded rib: the limit of its motion under infinitely slow heating."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -28,10 +28,10 @@ class QuasiStatic:
     """Quasi-static paths of a loaded rib.
 
     :param case: name of the case
-    :param notes: what is to be known of the temperature program
+    :param notes: notes on the temperature program
     :param has_jump: whether the program returns to the reference temperature
-    :param paths: by links: ``rigid``, with rigid contact and Coulomb's friction; ``elastic``, with Hertz's contact and
-        the compliance of the friction law, where the laws of the case have such a path
+    :param paths: paths by type of links: ``rigid`` with rigid contact and Coulomb friction; ``elastic`` with Hertz
+        contact and the compliance of the friction law, if the laws of the case permit this path
     """
 
     case: str
@@ -46,27 +46,27 @@ class QuasiStatic:
         return self.paths[links]
 
     def frame(self, links: str = RIGID) -> pandas.DataFrame:
-        """Return the samples of a path, units in the names of the columns.
+        """Return the samples of a path, with units in the column names.
 
-        :raises NotAllowed: there is no such path
+        :raises NotAllowed: the path does not exist
         """
         return libraries.frame(self._path(links).columns())
 
     def events(self, links: str = RIGID) -> pandas.DataFrame:
-        """Return where the joint begins to roll or to slip, a row each. :raises NotAllowed: there is no such path"""
+        """Return one row per transition to rolling or slip. :raises NotAllowed: the path does not exist"""
         return libraries.frame(self._path(links).events)
 
     @property
     def summary(self) -> dict[str, float]:
-        """Jumps of both angles on every path. NaN: the program does not return, or the contact is lost on the way, with
-        it the place in the play."""
+        """Jumps of both angles on every path. NaN: the program does not return, or the contact opens on the path, after
+        which the position of the journal is undetermined."""
         return {f"{key.removesuffix('_rad')}_{links}_rad":
                 float(getattr(path, key)) if self.has_jump and not path.separated else float("nan")
                 for links, path in self.paths.items() for key in JUMPS}
 
     @property
     def warnings(self) -> list[str]:
-        """What has to be known of the paths."""
+        """Warnings about the paths, one sentence each."""
         lost = [f"the contact is lost on the path with {links} links: the place in the play is undetermined from there"
                 for links, path in self.paths.items() if path.separated]
         lost = [*self.notes, *lost]
@@ -94,7 +94,7 @@ class QuasiStatic:
 
 
 def has_elastic_loop(case: UmbrellaCase) -> bool:
-    """Whether the path with elastic links covers the laws of a case."""
+    """Return whether the path with elastic links supports the contact laws of a case."""
     velocity = laws.law("tangential_velocity", case.joint.tangential_velocity)
     return laws.law("normal", case.joint.normal_law).point_contact and not velocity.needs_axis
 
@@ -102,7 +102,7 @@ def has_elastic_loop(case: UmbrellaCase) -> bool:
 def quasi_static(case: UmbrellaCase) -> QuasiStatic:
     """Return the quasi-static paths of a rib whose torsion spring loads the joint.
 
-    :raises FailedRun: there is no such path: nothing loads the joint at the start, or a law left its range
+    :raises FailedRun: the joint is unloaded at the start, or a law left its range
     """
     angle, program = case.start.contact_angle_rad, case.thermal_program()
     with engine("the quasi-static path failed", case=case.name):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reduced model of an ``umbrella`` case: single runs, the quasi-static path."""
+"""Reduced model of an ``umbrella`` case: single runs, and the quasi-static path."""
 from __future__ import annotations
 
 
@@ -36,7 +36,7 @@ def linkage(case: UmbrellaCase) -> _engine.Linkage:
 def start_state(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> _engine.LinkageState:
     """Return the state at t = 0.
 
-    :param offset_m: added to the journal's position in the clearance (2) [m]; not for ``loaded``
+    :param offset_m: offset (2) [m] added to the initial position of the journal; not for a ``loaded`` start
     """
     model, start = linkage(case), case.start
     if start.mode == "loaded":
@@ -53,7 +53,7 @@ def integrate(case: UmbrellaCase, offset_m: np.ndarray | None = None) -> _engine
     """Integrate a case over its whole program.
 
     :param offset_m: see :func:`start_state`
-    :raises FailedRun: a law left its range or the steps are too long; with time and temperature
+    :raises FailedRun: a law left its range, or the steps are too long; the message has time and temperature
     """
     with engine("the reduced run failed", case=case.name):
         model, program, start = linkage(case), case.thermal_program(), start_state(case, offset_m)
@@ -74,8 +74,8 @@ def run(case: UmbrellaCase, on_progress: OnProgress = lambda share: None, offset
 
 
 def quasi_static(case: UmbrellaCase, samples: int = 400) -> _engine.JointLoop | None:
-    """Return the path of the loaded joint with rigid links and exact friction; None if statics does not determine
-    it."""
+    """Return the path of the loaded joint with rigid links and exact friction; None if statics does not determine the
+    path."""
     try:
         return _engine.joint_loop(
             linkage(case), case.thermal_program(), case.start.contact_angle_rad, samples

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs of an ``umbrella`` case, from the columns of either model; and its scene for drawings."""
+"""Runs of an ``umbrella`` case from the columns of either model, and its scene for drawings."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -20,8 +20,7 @@ from statejump.results.events import from_states
 CONTACTS = ("joint_b",)
 LINKS = ("link_ab", "link_bc")
 ANGLES = ("theta2", "theta4")
-# Change of an angle at the end of a program's rows, from the start, for a program that does not end at the reference
-# temperature.
+# Change of an angle from the start to the last row of a program that does not end at the reference temperature.
 AT_END = "_change_at_program_end_rad"
 CHAOS = (
     "without damping of links and pins the motion after contact is chaotic: one run's jump is one of many, see "
@@ -35,7 +34,8 @@ def names(case: UmbrellaCase) -> dict[str, list[str]]:
 
 
 def scene(case: UmbrellaCase) -> dict[str, Any]:
-    """Scene: frame, two links, journal of BC in the bearing of AB; both rotate with their links."""
+    """Return frame, two links, and the journal of BC in the bearing of AB, for drawings; both rotate with their
+    links."""
     joint, frame = case.joint, case.frame.length_m
     pins: dict[str, drawing.Point] = {"link_ab": [0.0, 0.0, 0.0], "link_bc": [frame, 0.0, 0.0]}
     tips: dict[str, drawing.Point] = {
@@ -67,8 +67,8 @@ def scene(case: UmbrellaCase) -> dict[str, Any]:
 
 
 def _contacts(case: UmbrellaCase, history: Columns) -> dict[str, Column]:
-    """Force, state and position of the contact. n points from the bearing's centre to the journal's. The bearing pushes
-    the journal along -n; friction acts along n rotated by +90 degrees."""
+    """Return force, state and position of the contact. n points from the centre of the bearing to that of the journal.
+    The bearing pushes the journal along -n; friction acts along n rotated by +90 degrees."""
     change = history["temperature_change_K"]
     offset = np.stack([history["eccentricity_x_m"], history["eccentricity_y_m"], np.zeros(len(change))], axis=1)
     distance = np.linalg.norm(offset, axis=1, keepdims=True)
@@ -116,7 +116,7 @@ def _run(
     events = from_states(columns["time_s"], change, contacts["state"].values, CONTACTS)
     first_time, first_change = (summary.get(f"first_contact_{key}", nan) for key in ("time_s", "temperature_change_K"))
     if not isnan(first_time):
-        # Both models locate this event, more accurately than between two samples, and even if the samples miss it.
+        # Both models locate this event more accurately than samples do, even if it lies between samples.
         seen = next((event for event in events if event.kind == "contact"), None)
         if seen is not None and abs(seen.time_s - first_time) <= 2 * seen.time_uncertainty_s:
             events.remove(seen)

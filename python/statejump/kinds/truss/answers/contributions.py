@@ -18,8 +18,8 @@ from statejump.kinds.truss.solve import TrussPath, whole_path
 
 @dataclass(frozen=True)
 class Contributions:
-    """Contribution of every joint to the jump of an output. ``sum_error``: sum of contributions over the jump, less
-    one."""
+    """Contribution of every joint to the jump of an output. ``sum_error``: sum of the contributions divided by the
+    jump, minus 1."""
 
     names: tuple[str, ...]
     kinds: tuple[str, ...]
@@ -30,7 +30,7 @@ class Contributions:
 
     @property
     def sum_error(self) -> float:
-        """Relative difference of the sum from the jump."""
+        """Relative difference between the sum of contributions and the jump."""
         return float(abs(self.contribution.sum() - self.jump) / max(abs(self.jump), 1e-300))
 
     @property
@@ -56,7 +56,7 @@ def without_friction(truss: ResolvedTruss) -> ResolvedTruss:
     """Return the truss with frictionless joints that stays at ΔT = 0."""
     for joint in JOINTS:
         truss = joint.without_friction(truss)
-    # No item follows the programs any more, but all programs must have one duration.
+    # No item uses the programs any more, but all programs must have one duration.
     return replace(truss, links=replace(truss.links, temperature_fraction=0 * truss.links.temperature_fraction),
                    programs=len(truss.programs) * (truss.programs[0].repeated(1),))
 
@@ -66,12 +66,12 @@ def contributions(
 ) -> Contributions:
     """Return the contribution of each joint's friction to the jump of an output.
 
-    At the end of the cycles friction keeps the truss away from its first shape. With frictionless joints, and the
-    friction forces as loads, it is in equilibrium there. Let f_j be the change of the friction force of joint j since
-    the start, F0 and F1 the forces of all joints at start and end, and y the output of the truss with frictionless
-    joints. The contribution of joint j is the mean of its effect alone, y(F0 + f_j) - y(F0), and of its effect as the
-    last one, y(F1) - y(F1 - f_j). The sum of contributions equals the jump of a linear truss exactly, and that of
-    another truss with an error of third order.
+    At the end of the cycles, friction holds the truss away from its initial shape. A truss with frictionless joints,
+    loaded by the friction forces, is in equilibrium in the same shape. Let f_j be the change of the friction force of
+    joint j since the start, F0 and F1 the forces of all joints at start and end, and y the output of the truss with
+    frictionless joints. The contribution of joint j is the mean of its effect alone, y(F0 + f_j) - y(F0), and of its
+    effect as the last one, y(F1) - y(F1 - f_j). The sum of contributions equals the jump of a linear truss exactly, and
+    that of another truss with an error of third order.
 
     :raises FailedRun: without friction the truss is a mechanism or has no equilibrium
     """

@@ -39,7 +39,7 @@ def readable(value: float, unit: str) -> tuple[float, str]:
 
 
 def magnification(truss: ResolvedTruss, largest_jump_m: float) -> float:
-    """Return the round factor that magnifies the largest jump to about SHOWN of the truss' size."""
+    """Return the round factor that magnifies the largest jump to about SHOWN times the size of the truss."""
     if largest_jump_m == 0:
         return 1.0
     wanted = SHOWN * float(np.ptp(truss.nodes.position_m, axis=0).max()) / largest_jump_m
@@ -53,7 +53,7 @@ def joint_places(truss: ResolvedTruss) -> np.ndarray:
 
 
 def jumps_figure(found: TrussPath, shares: Contributions | None, title: str) -> Figure:
-    """Draw the truss in the reference configuration and with magnified jumps; the first MARKED joints have numbers."""
+    """Draw the truss in the reference configuration and with magnified jumps; numbers mark the first MARKED joints."""
     truss = found.truss
     jump = node_jumps(found)[-1]
     jump = np.where(np.linalg.norm(jump, axis=1, keepdims=True) > rounding_m(found), jump, 0.0)

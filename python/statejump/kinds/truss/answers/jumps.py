@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Jumps of a truss after each cycle.
-
-Displacements are those of the quasi-static path; a jump is the displacement at the end of a cycle less
-that at the start.
-"""
+"""Jumps of a truss after each cycle of the quasi-static path: displacement at the end of a cycle minus that at the
+start."""
 from __future__ import annotations
 
 from typing import Any
@@ -18,21 +15,21 @@ from statejump.kinds.truss.solve import TrussPath, whole_path
 
 def quick_path(truss: ResolvedTruss, increments_per_branch: int = 50, on_progress: OnProgress = lambda share: None,
                **more: Any) -> TrussPath:
-    """Return the path on which only those events are located that affect the state; the ends of cycles are the same."""
+    """Return the path with only those events located that affect the state; its ends of cycles are unchanged."""
     return whole_path(truss, on_progress, increments_per_branch=increments_per_branch, locate_events=False, **more)
 
 
 def node_jumps(found: TrussPath) -> np.ndarray:
-    """Return the jump [m] (cycles, nodes, 3) of every node after each cycle, against the start."""
+    """Return the jump [m] (cycles, nodes, 3) of every node from the start to the end of each cycle."""
     ends = found.cycle_ends["displacement_m"]
     return ends[1:] - ends[0]
 
 
 def rounding_m(found: TrussPath) -> float:
-    """Return the largest displacement [m] that is rounding, not a jump."""
+    """Return the largest displacement [m] that counts as rounding."""
     return scales(found.truss, found.states["displacement_m"]).rounding_m
 
 
 def most_moved(found: TrussPath) -> int:
-    """Return the node with the largest jump at the end."""
+    """Return the node with the largest jump after the last cycle."""
     return int(np.argmax(np.linalg.norm(node_jumps(found)[-1], axis=1)))

@@ -20,7 +20,7 @@ class Output:
 
     :param short: the output in a few words
     :param value: the output as a function of displacements (nodes, 3), along the jump
-    :param vector: all components of the output as a function of displacements, also those across the jump
+    :param vector: all components of the output as a function of displacements
     """
 
     name: str
@@ -45,7 +45,8 @@ class Output:
         return np.linalg.norm(motion, axis=1)
 
     def rounding(self, found: TrussPath) -> float:
-        """Return the largest change that is rounding; a tilt is related to the size of the truss."""
+        """Return the largest change that counts as rounding; for a tilt [rad] it is relative to the size of the
+        truss."""
         size = float(np.ptp(found.truss.nodes.position_m, axis=0).max())
         return rounding_m(found) / size if self.unit == "rad" else rounding_m(found)
 

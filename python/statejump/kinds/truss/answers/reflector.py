@@ -15,9 +15,9 @@ from scipy.optimize import least_squares
 
 from statejump.kinds.truss.resolved import ResolvedTruss
 
-# A parameter is not determined if its singular value of the fit, with columns of length 1, is below this.
+# Parameters of a fit with columns scaled to length 1 are undetermined if their singular value is below this.
 LEAST_SINGULAR_VALUE = 1e-6
-# Square of an angle [rad²] below which two terms of the series of its functions are exact: the third is below 1e-16.
+# Square of an angle [rad²] below which two terms of the series are exact, because the third is below 1e-16.
 SMALL_SQUARE = 1e-7
 
 
@@ -27,7 +27,7 @@ class Fit:
 
     residual_m: np.ndarray  # (nodes,) along the normal
     rms_error_m: float
-    tilt_rad: np.ndarray  # (1 or 2,) of the axis towards the frame's lateral axes
+    tilt_rad: np.ndarray  # (1 or 2,) rotation of the axis towards the lateral axes of the frame
     focal_length_m: float | None  # None: flat, or not determined
     depth_m: float  # of the vertex, along the axis
 
@@ -37,7 +37,7 @@ class Surface:
     """A surface, and the parameters that its nodes determine; ``notes`` name the others."""
 
     nodes: np.ndarray
-    frame: np.ndarray  # (2 or 3, 3) lateral axes, then the axis
+    frame: np.ndarray  # (2 or 3, 3) rows: lateral axes, then the axis of the paraboloid
     origin_m: np.ndarray
     drawn_m: np.ndarray  # (nodes, 2 or 3) in the frame
     free: tuple[str, ...]
@@ -65,13 +65,13 @@ def _names(kind: str, lateral: int) -> list[str]:
 def _residual(
     points: np.ndarray, values: dict[str, float], with_slopes: bool = False
 ) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Distances [m] (n,) along the normal, after the points are rotated by -tilt; on request their derivatives by every
+    """Return distances [m] (n,) along the normal of points rotated by -tilt and, on request, their derivatives by every
     parameter."""
     lateral = points.shape[1] - 1
     across, along = points[:, :lateral], points[:, lateral]
     tilt = np.array([values[name] for name in _names("tilt", lateral)])
-    # Functions of the angle's square: its cosine, sin(angle)/angle, (cos(angle) - 1)/angle² and the derivatives of the
-    # last two.
+    # Functions of the squared angle: its cosine, sin(angle)/angle, (cos(angle) - 1)/angle², derivatives of the last
+    # two.
     square = float(tilt @ tilt)
     angle = np.sqrt(square)
     if square > SMALL_SQUARE:
@@ -93,7 +93,7 @@ def _residual(
         return found, {}
 
     def slope(height: np.ndarray | float, by_squared: np.ndarray | float, by_curvature: float = 0.0) -> np.ndarray:
-        """Effect of a parameter on the residual, from its effects on height, square of the distance, and curvature."""
+        """Return the effect of a parameter on the residual, from its effects on height, squared distance, curvature."""
         lower = 4 * curvature * (2 * squared * by_curvature + curvature * by_squared)
         return np.asarray((height - by_curvature * squared - curvature * by_squared) / root
                           - found * lower / (2 * below))
@@ -123,7 +123,7 @@ def _fit(points: np.ndarray, free: tuple[str, ...], held: dict[str, float]):  # 
         return np.stack([slopes[name] for name in free], axis=1) * scale / size
 
     found = least_squares(residual, np.zeros(len(free)), method="lm", jac=jacobian, xtol=1e-15, ftol=1e-15, gtol=1e-15)
-    # The search ends where the sum of squares is flat to rounding. One more step reaches the zero of its slope.
+    # Least squares stops when the sum of squares is flat to rounding. A further Newton step makes its gradient zero.
     found.x = found.x - np.linalg.lstsq(jacobian(found.x), residual(found.x), rcond=None)[0]
     found.jac = jacobian(found.x)
     found.x = found.x * scale
@@ -133,8 +133,8 @@ def _fit(points: np.ndarray, free: tuple[str, ...], held: dict[str, float]):  # 
 def surface(truss: ResolvedTruss) -> Surface | None:
     """Return the reflecting surface of a truss; None if it has none, or too few nodes for a plane.
 
-    Parameters that the nodes do not determine are held, in this order: the vertex' lateral shift (instead of the tilt),
-    the curvature.
+    Parameters that the nodes do not determine are held: first the lateral shift of the vertex (not the tilt), then the
+    curvature.
     """
     if truss.reflector is None:
         return None

@@ -41,7 +41,7 @@ def node_rows(found: TrussPath) -> list[Row]:
 
 
 def joint_rows(found: TrussPath) -> list[Row]:
-    """Return slide or eccentricity, its jump and the heat of every joint after each cycle."""
+    """Return slide or eccentricity, its jump, and the frictional heat of every joint after each cycle."""
     ends, truss = found.cycle_ends, found.truss
     rows = []
     for cycle in range(1, len(ends["time_s"])):

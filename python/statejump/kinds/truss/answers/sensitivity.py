@@ -16,14 +16,14 @@ from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath
 
-STEP = 1e-2  # relative step of a parameter; the second difference uses half of it
-AGREE = 0.02  # allowed relative difference of the results of both steps
-NOISE = 1e-6  # fraction of the jump: error by locating a hundred events to 1e-9 of a branch, with a margin
+STEP = 1e-2  # relative change of a parameter; the second difference uses half of this change
+AGREE = 0.02  # allowed relative difference between the results of both changes
+NOISE = 1e-6  # fraction of the jump: error of a hundred events located to 1e-9 of a branch, with a margin
 
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """Derivative of the jump with respect to the logarithm of a parameter: change per change of 100 %."""
+    """Derivative of the jump by the logarithm of a parameter: change of the jump per relative change of 1."""
 
     parameter: str  # "revolute.*.radial_clearance_m", "revolute.joint3.radial_clearance_m"
     items: int
@@ -75,12 +75,12 @@ def sensitivities(
     found: TrussPath, output: Output, *, each: bool = False, step: float = STEP,
     on_progress: OnProgress = lambda share: None,
 ) -> list[Sensitivity]:
-    """Return the sensitivities of an output's jump. Parameters without value (0 or no stop) are omitted.
+    """Return the sensitivities of an output's jump. Parameters that are 0 or missing are omitted.
 
     A parameter is changed by ±step and ±step/2 of its value: all items of a section together or, with ``each``, one by
-    one. The verdict is "not differentiable" in two cases. The slopes on both sides differ by more than AGREE, at half
-    the step as at the whole. Or both steps disagree, and the sequence of statuses of a joint depends on the change.
-    "steps disagree": the slopes of both steps differ by more than AGREE for another reason.
+    one. The verdict is "not differentiable" in two cases: the one-sided slopes differ by more than AGREE at both steps,
+    or both steps disagree and the sequence of statuses of a joint depends on the change. "steps disagree": the slopes
+    of both steps differ by more than AGREE for another reason.
     """
     truss, own_jump = found.truss, output.jump(found)
     asked: list[tuple[str, str, str, np.ndarray, np.ndarray]] = []

@@ -37,7 +37,7 @@ _JUMPS = Later("statejump.kinds.truss.answers.figure:jumps_figure")
 _RANKING = Later("statejump.kinds.truss.answers.figure:ranking_figure")
 _WRITTEN = Later("statejump.kinds.truss.answers.write:write")
 NO_JUMP = 1e-9  # fraction of the largest jump of a node below which a jump is rounding
-MOST_SAMPLES = 1000  # samples of the path in the result file; every cycle has at least its ends
+MOST_SAMPLES = 1000  # samples of the path in the result file; at least the ends of every cycle
 CYCLES = Rule(WHOLE, allowed=Range(1, 100_000), optional=True)
 STEPS = Rule(NUMBER, allowed=Range(1e-6, 0.2))
 
@@ -82,7 +82,7 @@ class TrussAnswers:
 
     @property
     def verdict(self) -> str:
-        """``no jump``, ``one cycle``, ``shakedown``, ``ratcheting``, ``not settled`` or ``not resolved``."""
+        """One of ``no jump``, ``one cycle``, ``shakedown``, ``ratcheting``, ``not settled``, ``not resolved``."""
         return self.record.verdict
 
     @property
@@ -131,8 +131,8 @@ def study(
     :param output: the output whose jump is divided among the joints: ``node`` (the one that moves most), ``node:NAME``,
         ``rms`` or ``tilt`` of the reflector
     :param cycles: replaces those of the case
-    :param each: sensitivities to every single item, besides those to all of a kind together
-    :param step: of the sensitivities, relative
+    :param each: also compute the sensitivity to every single item
+    :param step: relative change of parameters for sensitivities
     :param sensitivity: whether to compute sensitivities
     :param phase: called with the name of the next step
     :raises NotAllowed: the output does not exist, or a number is out of its range
@@ -191,13 +191,13 @@ def _of_cycles(case: TrussCase, cycles: int | None) -> TrussCase:
             raise NotAllowed("cycles", ABSENT, code="program_has_own_cycles", program=program.name)
     changed = case.changed({"thermal.cycles": cycles})
     assert isinstance(changed, TrussCase)
-    # The answers name the given file. The resolved case has the number of cycles that were run.
+    # The answers refer to the given file. The resolved case has the number of cycles that were run.
     changed.with_origin(replace(changed.origin, text=case.origin.text))
     return changed
 
 
 def _surface(found: TrussPath, tables: dict[str, list[rows.Row]]) -> list[str]:
-    """Add the table of the reflecting surface; return its limits, as notes."""
+    """Add the table of the reflecting surface; return notes on its limits."""
     surface = reflector.surface(found.truss)
     if surface is not None:
         tables["surface"] = rows.surface_rows(found, surface)
@@ -206,7 +206,7 @@ def _surface(found: TrussPath, tables: dict[str, list[rows.Row]]) -> list[str]:
 
 
 def _jumps(found: TrussPath, output: Output, jump: float) -> bool:
-    """Return whether an output jumps by more than rounding."""
+    """Return whether the jump of an output exceeds rounding."""
     largest = float(np.linalg.norm(node_jumps(found)[-1], axis=1).max())
     size = float(np.ptp(found.truss.nodes.position_m, axis=0).max())
     return abs(jump) > NO_JUMP * (largest / size if output.unit == "rad" else largest)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Decides whether the jump of an output settles over the cycles. The decision must agree for smaller increments.
+"""Decides whether the jump of an output settles over the cycles. The verdict must not depend on the size of increments.
 
-Between located changes, a path of rigid contacts does not depend on its increments. Two integrals do. Rolling at a
-radius that follows Hertz's depth and elastic sticking are fourth-order accurate. Balls that slip and partial slip are
-second-order accurate: the error of a cycle falls to a quarter with twice as many increments. So two paths are compared,
-with n and 2 n increments per branch. For every order from the first on, their difference is at least the error of the
-finer one (three times the error for the second order). A motion that does not exceed this difference gives no verdict.
+Between located events, a path with rigid contacts does not depend on increments. Two groups of integrals do. Rolling on
+a radius that depends on the Hertz depth, and elastic sticking, are fourth-order accurate. Slipping balls and partial
+slip are second-order accurate: twice as many increments reduce the error of a cycle to a quarter. Two paths are
+therefore compared, with n and 2 n increments per branch. For any order ≥ 1, their difference is at least the error of
+the finer path (three times this error for second order). A motion below this difference counts as unresolved.
 """
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from statejump.kinds.truss.answers.jumps import rounding_m
 from statejump.kinds.truss.answers.outputs import Output
 from statejump.kinds.truss.solve import TrussPath, heat_of_joints_J
 
-# A jump of a cycle below this fraction of the largest has settled, because events are located to 1e-9 of a branch.
+# Fraction of the largest jump below which a jump of a cycle has settled: events are located to 1e-9 of a branch.
 SETTLED = 1e-6
-STEADY = 0.01  # relative difference below which two jumps are equal growth
-RESOLVED = 0.01  # largest error by the increments of a growth that counts as zero, over the largest jump
-DOUBLINGS = 3  # doublings of the increments if two paths do not agree
+STEADY = 0.01  # relative difference below which the jumps of two cycles count as equal
+RESOLVED = 0.01  # largest uncertainty of a growth that counts as zero, as a fraction of the largest jump
+DOUBLINGS = 3  # number of doublings of the increments while two paths disagree
 
 # Path of so many increments a branch.
 Solve = Callable[[int], TrussPath]
@@ -42,7 +42,7 @@ class Verdict:
 
 
 def judged(found: TrussPath, increments: int, solve: Solve, output: Output) -> tuple[Verdict, TrussPath]:
-    """Return whether an output settles over the cycles, and the path with twice the increments.
+    """Return the verdict on an output over the cycles, and the finer path.
 
     :param found: path with the given number of increments per branch
     :param solve: returns paths with more increments; called more than once only if two paths do not agree
@@ -58,8 +58,7 @@ def judged(found: TrussPath, increments: int, solve: Solve, output: Output) -> t
 
 
 def verdict(coarse: TrussPath, finer: TrussPath, increments: int, output: Output) -> Verdict:
-    """Return the verdict of two paths. The finer one has the given number of increments per branch, twice those of the
-    other."""
+    """Return the verdict from two paths. The finer one has ``increments`` per branch, twice those of the coarse one."""
     motion = output.over_cycles(finer)
     each = output.sizes(motion)
     left = output.sizes(motion - output.over_cycles(coarse))

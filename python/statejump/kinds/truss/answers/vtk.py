@@ -17,12 +17,11 @@ from statejump.kinds.truss.joints import JOINTS
 from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath, engine_programs
 
-# "kind" of a cell: 0 for links, then elements between nodes in the order of ELEMENTS, then joints in the order of
-# JOINTS.
+# "kind" of a cell: 0 for links, then element types in the order of ELEMENTS, then joint types in the order of JOINTS.
 LINK = 0
 BETWEEN_NODES = [element for element in ELEMENTS if isinstance(element, BetweenNodes)]
 FIRST_JOINT = 1 + len(BETWEEN_NODES)
-# Columns with one name in the files for all types.
+# Columns of several types that share one name in the files.
 SHARED = {"slider_force_N": "friction_force_N"}
 
 
@@ -37,7 +36,7 @@ def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,
     """Write ``<name>.N.vtu`` and ``<name>.vtu.series`` and return the latter.
 
     Points are the nodes in the reference configuration; ``displacement_m`` moves them (Warp By Vector). Cells are
-    links, elements between nodes, and joints as points at their first or bearing node. Missing values of a cell are
+    links, elements between nodes, and joints as points at their first or bearing node. A missing value of a cell is
     NaN, a missing status is 255.
 
     :param wanted_frames: number of states of the path, evenly spread; 0: all

@@ -16,7 +16,7 @@ from statejump.results import record
 _SERIES = Later("statejump.kinds.truss.answers.vtk:series")
 MOST_ROWS = 15  # rows of a table in answers.md
 MOST_NODES = 8
-# Large tables, which are not in the JSON file but beside it as CSV.
+# Large tables, written as CSV files beside the JSON file.
 NOT_IN_JSON = ("cycles", "node_jumps", "joint_jumps")
 
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Control of the jump of a node of a truss: springs at candidate positions, parameters that are scaled."""
+"""Control of the jump of a node of a truss by added springs and scaled parameters."""

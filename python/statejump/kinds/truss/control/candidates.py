@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Candidates for a smaller jump of a node: a spring that is added, a parameter that is scaled."""
+"""Changes of a truss that may reduce the jump of a node: an added spring, or a scaled parameter."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
@@ -22,7 +22,7 @@ from statejump.schema.rules import suggestion
 
 PER_DECADE = 3
 FACTORS = (1e-3, 1e3)  # factors of a scaled parameter
-STIFFER = 1e3  # stiffness of tried springs, over that of the stiffest link or below that of the softest element
+STIFFER = 1e3  # range of spring stiffnesses: stiffest link times this, softest element divided by this
 STIFFNESS = "spring.*.stiffness_N_per_m"
 
 
@@ -30,8 +30,8 @@ STIFFNESS = "spring.*.stiffness_N_per_m"
 class Candidate:
     """A change of a truss with one number.
 
-    :param parameter: as the user gave it
-    :param own: the number for the unchanged case: no spring, factor 1
+    :param parameter: name of the change as the user gave it
+    :param own: the number of the unchanged case: stiffness 0, or factor 1
     :param values: numbers to try
     :param truss: returns the truss for a number
     :param section: of the changed items, with their key and their indices in the changed truss
@@ -49,7 +49,7 @@ class Candidate:
 
     @property
     def is_spring(self) -> bool:
-        """Whether it adds a spring; else it scales a parameter."""
+        """Whether the candidate adds a spring; else it scales a parameter."""
         return self.own == 0
 
     def size(self, value: float) -> float:

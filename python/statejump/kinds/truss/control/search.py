@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Search for the change of a truss at which the jump of a node reaches a bound.
 
-The path of every changed truss is solved; the search assumes nothing about the jump. It scans values, narrows every
-crossing of the bound between scanned values, and reports whether the jump is monotone between them.
+The path of every changed truss is solved; the search assumes nothing about the jump. It scans values, locates every
+crossing of the bound between scanned values, and reports whether the scanned jumps are monotone.
 """
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from statejump.kinds.truss.resolved import ResolvedTruss
 from statejump.kinds.truss.solve import TrussPath
 
 NARROW = 1e-9  # relative accuracy of a value; events are located within 1e-9 of a branch
-LEAP = 1e-6  # fraction of the wanted jump: if the jump at the value found is lower by more, it is discontinuous there
-ROUNDING = 1e-9  # fraction of the largest jump below which a reversal of the curve is rounding
+LEAP = 1e-6  # fraction of the wanted jump: a jump that is lower by more at the value found is discontinuous there
+ROUNDING = 1e-9  # fraction of the largest jump: smaller reversals of the curve are rounding
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Search:
     node: int
     increments: int
     value: float | None = None
-    found: dict[str, Any] = field(default_factory=dict)  # fields about the value, as in the results
+    found: dict[str, Any] = field(default_factory=dict)  # results about the value, by name
     sentence: str = ""
     turns: list[float] = field(default_factory=list)  # values at which the jump reverses its slope along the scan
     ways: set[str] = field(default_factory=set)  # methods that found the ends of ranges
@@ -91,7 +91,7 @@ class Search:
         self.turns = [self.candidate.values[there[place + 1]] for place in turning]
 
     def narrow(self, wanted: float) -> None:
-        """Find all ranges of values with jumps at or below the wanted one, and the smallest change in them."""
+        """Find all ranges of values with jumps of at most ``wanted``, and the smallest change of the truss in them."""
         jumps, values = self.sweep.column("jump_m"), self.candidate.values
         self.sweep.meets = ranges_that_pass(values, list(jumps <= wanted),
                                             narrow=lambda bad, good: self._end(bad, good, wanted))
@@ -100,12 +100,12 @@ class Search:
             self.value = self.sweep.recommended = min(ends, key=self.candidate.size)
 
     def _nearest(self, low: float, high: float) -> float:
-        """Return the value of a range with the smallest change of the truss."""
+        """Return the value within a range that changes the truss least."""
         return min(max(low, self.candidate.own), high)
 
     def _end(self, bad: float, good: float, wanted: float) -> float:
-        """Return the point between two values at which the jump crosses the wanted one, on the side on which it is
-        small enough."""
+        """Return the value between two others at which the jump crosses ``wanted``, on the side with the smaller
+        jump."""
         def excess(exponent: float) -> float:
             return self.jump(exp(exponent)).size_m - wanted
 
@@ -125,12 +125,12 @@ class Search:
             except Interrupted:
                 raise
             except (StatejumpError, ValueError):
-                pass  # a truss between has no path, or the scanned one was not solved: only signs decide
+                pass  # a truss has no path, or an end was not solved: bisection needs signs only
         self.ways.add("bisection")
         return bisect(passes, bad, good, NARROW)[1]
 
     def tell_value(self, now: Jump, wanted: float, node: str) -> None:
-        """Solve for the resulting value, also with twice the increments, and check whether the path is smooth there."""
+        """Solve for the resulting value, also with twice the increments, and check the differentiability there."""
         assert self.value is not None
         candidate, with_it = self.candidate, self.jump(self.value)
         finer = jump_of(candidate.truss(self.value), self.node, 2 * self.increments)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Control of the jump of a node of a truss: the smallest spring, preload, friction or other parameter that keeps it at
-or below a bound, and which of several candidates is best."""
+"""Control of the jump of a node of a truss: smallest spring, preload, friction or other parameter that keeps the jump
+at or below a bound, and the best of several candidates."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -31,9 +31,9 @@ def control(
     """Sweep every candidate, and search for the values that keep the jump of a node below a bound.
 
     :param jump_below: largest allowed jump [m]; None: half of that of the case
-    :param runs: must be None: there is one path
-    :param with_dem: not for trusses, see ``statejump compare``
-    :param choices: node, springs that may be added, parameters that may be scaled; empty: all that may affect the jump
+    :param runs: must be None, because there is one path
+    :param with_dem: not available for trusses, see ``statejump compare``
+    :param choices: node, springs that may be added, parameters that may be scaled; empty: all
     :raises StatejumpError: invalid input, or the case has no path
     """
     check_wanted(jump_below, "m")

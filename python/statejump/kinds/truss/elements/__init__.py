@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The registry of elements of a truss beside links: one file per type. :mod:`.protocol` documents a type."""
+"""The registry of element types beside links, one file per type. :mod:`.protocol` documents a type."""
 from __future__ import annotations
 
 from typing import Any, ClassVar

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Python part of a type of element: one object per type, in a file of its own.
+"""The Python part of an element type: one object per type, in its own file.
 
 Elements have a conservative law between nodes or links. Links are part of the truss itself, because joints and
 temperatures refer to them. Case, checks, arrays, solver, result, drawing, sensitivities and input of the DEM use the
@@ -33,12 +33,12 @@ class Lines:
     which: np.ndarray  # (elements,) bool
     colour: str
     legend: str
-    dashed: bool = False  # else a zigzag, if a drawing has room for it
+    dashed: bool = False  # False: drawn as a zigzag if the drawing has room for it
 
 
 @dataclass(frozen=True)
 class Switch:
-    """An element whose stiffness switches between on and off."""
+    """An element whose stiffness is switched on or off during a run (a cable that becomes slack)."""
 
     element: int
     is_on: np.ndarray  # (samples,) bool
@@ -54,7 +54,7 @@ class ElementType(PartType[ItemType, ArraysType]):
     # ---------------------------------------------------------------- case
 
     def check_keys(self, item: ItemType) -> None:
-        """Raise an error for keys that exclude each other."""
+        """Raise an error for keys that contradict each other."""
 
     def may_be_wrong_keys(self, items: ItemColumns[ItemType]) -> np.ndarray:
         """Return the items (n,) that :meth:`check_keys` has to check; must include all invalid ones."""
@@ -66,11 +66,11 @@ class ElementType(PartType[ItemType, ArraysType]):
     # ---------------------------------------------------------------- mechanics
 
     def ends(self, elements: ArraysType) -> np.ndarray:
-        """Return the pairs of nodes (k, 2) that it connects; empty (0, 2) for a type that acts on angles."""
+        """Return the pairs of nodes (k, 2) that the elements connect; empty (0, 2) for a type that acts on angles."""
         return np.zeros((0, 2), dtype=int)
 
     def stiffness_N_per_m(self, elements: ArraysType) -> np.ndarray:
-        """Return the largest stiffness (k,) [N/m] between the ends."""
+        """Return the largest stiffness (k,) [N/m] between the two nodes of each element."""
         return np.zeros(0)
 
     def preload_N(self, elements: ArraysType) -> np.ndarray:
@@ -78,15 +78,15 @@ class ElementType(PartType[ItemType, ArraysType]):
         return np.zeros(0)
 
     def tension_N(self, states: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Return the tension (states, k) [N] between the ends, computed from its columns."""
+        """Return the tension (states, k) [N] between the ends, from the type's columns."""
         return np.zeros((len(states["time_s"]), 0))
 
     def switches(self, elements: ArraysType, columns: Mapping[str, np.ndarray]) -> list[Switch]:
-        """Return the elements whose switching is an event, computed from its columns at the samples of a run."""
+        """Return the elements whose switching is an event, from the type's columns at the samples of a run."""
         return []
 
     def changed(self, truss: ResolvedTruss, elements: ArraysType) -> ArraysType:
-        """Return the elements after a change of one of the ``varied`` numbers, with the arrays that depend on it."""
+        """Return the elements with dependent arrays updated, after one of the ``varied`` numbers changed."""
         return elements
 
     # ---------------------------------------------------------------- drawing and sentences
@@ -96,14 +96,14 @@ class ElementType(PartType[ItemType, ArraysType]):
         return []
 
     def counted(self, items: Sequence[ItemType]) -> list[tuple[Sequence[ItemType], str]]:
-        """Return the number of items by the noun that sentences use for them."""
+        """Return groups of items, each with the noun that summaries use for them."""
         return [(items, self.section.replace("_", " "))]
 
     # ---------------------------------------------------------------- DEM
 
     def dem_refuses(self, elements: ArraysType) -> tuple[str, str, str] | None:
-        """Return name, error code and reason of an element that the DEM does not support, although it supports others
-        of the type."""
+        """Return name, error code and reason for an element that the DEM does not support, although it supports the
+        type."""
         return None
 
 
@@ -125,7 +125,7 @@ EndsType = TypeVar("EndsType", bound=EndsArrays)
 
 
 class BetweenNodes(ElementType[ItemType, EndsType]):
-    """A type of element between two nodes: its items have ``nodes``, its arrays those of :class:`EndsArrays`."""
+    """An element type between two nodes: its items have ``nodes``, its arrays the fields of :class:`EndsArrays`."""
 
     def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
         known_nodes(cast(Ended, item).nodes, 2, nodes, self.where(item.name))
@@ -144,7 +144,7 @@ class BetweenNodes(ElementType[ItemType, EndsType]):
 
 
 def check_lengths(truss: ResolvedTruss, section: str, names: Sequence[str], ends: np.ndarray) -> None:
-    """Raise StatejumpError for the first item of a section whose two ends (k, 2) have one position."""
+    """Raise StatejumpError for the first item of a section whose two end nodes (k, 2) coincide."""
     for index in np.flatnonzero(distances(truss.nodes.position_m, ends) == 0)[:1]:
         nodes = [truss.nodes.names[node] for node in ends[index]]
         place = truss.nodes.position_m[ends[index, 0]][: truss.dimension].tolist()

@@ -34,7 +34,7 @@ class Spring(Item):
 
 @dataclass(frozen=True)
 class Springs(EndsArrays):
-    """Springs and cables: tension stiffness · (length - free length), of a cable never below 0."""
+    """Springs and cables with tension stiffness · (length - free length); the tension of a cable is at least 0."""
 
     names: Sequence[str]
     nodes: np.ndarray  # (k, 2) int
@@ -45,7 +45,7 @@ class Springs(EndsArrays):
 
 
 class SpringType(BetweenNodes[Spring, Springs]):
-    """Springs and cables, in the solver and in the DEM."""
+    """Springs and cables, supported by the solver and the DEM."""
 
     section = "spring"
     Item = Spring
@@ -88,7 +88,7 @@ class SpringType(BetweenNodes[Spring, Springs]):
                 for cable in np.flatnonzero(elements.cable)]
 
     def changed(self, truss: ResolvedTruss, elements: Springs) -> Springs:
-        # The stiffness changes at constant preload, and the preload at constant stiffness.
+        # A change of stiffness keeps the preload, and a change of preload keeps the stiffness.
         drawn = distances(truss.nodes.position_m, elements.nodes)
         return replace(elements, free_length_m=drawn - elements.preload_N / elements.stiffness_N_per_m)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Springs on the angle between two links, or on the angle of one link in space."""
+"""Springs on the angle between two links or, in space, between one link and the ground."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -35,18 +35,18 @@ class TorsionSpring(Item):
 
 @dataclass(frozen=True)
 class TorsionSprings:
-    """Springs on the angle from the first link to the second, both from their first to their second node,
-    anticlockwise about the axis; moment stiffness · (angle - drawn angle - bias)."""
+    """Springs on the anticlockwise angle about the axis from the first link to the second; links point from their first
+    to their second node. Moment: stiffness · (angle - angle in the reference configuration - bias)."""
 
     names: Sequence[str]
-    links: np.ndarray  # (t, 2) int; (link, GROUND): the angle of one link, from ground to it
+    links: np.ndarray  # (t, 2) int; (link, GROUND): the angle from the ground to one link
     stiffness_N_m_per_rad: np.ndarray
     bias_rad: np.ndarray
     axis: np.ndarray  # (t, 3) unit; z in planar trusses
 
 
 class TorsionSpringType(BetweenLinks[TorsionSpring, TorsionSprings], ElementType[TorsionSpring, TorsionSprings]):
-    """Torsion springs, in the solver and in the DEM."""
+    """Torsion springs, supported by the solver and the DEM."""
 
     section = "torsion_spring"
     Item = TorsionSpring
@@ -60,7 +60,7 @@ class TorsionSpringType(BetweenLinks[TorsionSpring, TorsionSprings], ElementType
         return Torsion(elements.names, elements.links, elements.axis, elements.stiffness_N_m_per_rad)
 
     def symbols(self, truss: ResolvedTruss, elements: TorsionSprings) -> list[Symbol]:
-        # A revolute has its own symbol in the middle, so the spring is drawn around it.
+        # A revolute has its own symbol at the centre, so the spiral is drawn around it.
         return [Symbol(truss.turning_places(elements.links), SPIRAL, 1.6, 1.3, colour=PINK, face="none", order=4.5)]
 
     def legend(self, elements: TorsionSprings) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Generators of trusses: functions that return the document of a case; :mod:`statejump.truss` makes cases of them."""
+"""Generators of trusses: functions that return case documents. :mod:`statejump.truss` converts these to cases."""
 from __future__ import annotations
 
 from collections.abc import Callable

@@ -26,7 +26,7 @@ def document(
     name: str, title: str, source: str, dimension: int, temperature_change_K: float, shape: str, cycles: int,
     period_s: float, sticking: str = "rigid",
 ) -> Document:
-    """Return a case document with header and temperature program and without items."""
+    """Return a case document with header and temperature program, without items."""
     header = {"name": name, "kind": "truss", "title": title, "source": source}
     return {
         "case": header,
@@ -47,12 +47,12 @@ def finished(made: Document) -> Document:
 
 
 def tidy(values: Iterable[float]) -> list[float]:
-    """Return numbers without the rounding of sines and cosines: 0 instead of 6e-17 or -0."""
+    """Return numbers with rounding of sines and cosines removed: 0 instead of 6e-17 or -0."""
     return [round(value, 15) + 0.0 for value in values]
 
 
 def node(name: str, position_m: Sequence[float], fixed: str = "", **more: Any) -> dict[str, Any]:
-    """Return a node; ``fixed`` has the letters of the directions."""
+    """Return a node; ``fixed`` lists the letters of its fixed directions."""
     made: dict[str, Any] = {"name": name, "position_m": tidy(map(float, position_m))}
     if fixed:
         made["fixed"] = list(fixed)

@@ -34,19 +34,17 @@ def ring(
            .                .
               .          .                       spokes: links to the hub, in tension
 
-    A closed planar lattice of 4 n links on 2 n nodes is rigid with three self-stresses, so it stays
-    rigid while the joints, one per outer hoop link, are in contact. The spokes compress the hoops, each
-    with half of the hoop force, and so load every joint. All links are so much longer or shorter, the
-    outer ones by the clearance too, that the drawn shape is the equilibrium with all joints in contact.
-    The hub is fixed and node I0 held across its spoke: three supports, no force from uniform expansion,
-    for spokes expand as their bays do. A sunlit ring has (1 + cos(angle)) / 2 of the temperature change,
-    another all of it everywhere. The hoops then bend, which takes compression from the joints on one
-    side: the default hoop force, E A alpha dT depth / radius and at least 1 kN, leaves two thirds of it in
-    every joint.
+    The closed planar lattice has 4 n links on 2 n nodes and three self-stresses. It is rigid while the joints, one per
+    outer hoop link, are in contact. The spokes compress each hoop with half of the hoop force and thereby load every
+    joint. Stress-free lengths are chosen such that the reference configuration is the equilibrium with all joints in
+    contact. The hub is fixed and node I0 is held across its spoke; uniform expansion causes no force with these three
+    supports. In sunlight the temperature change is multiplied by (1 + cos(angle)) / 2, which bends the hoops and
+    unloads the joints on one side. The default hoop force, E A alpha dT depth / radius and at least 1 kN, leaves two
+    thirds of the compression in every joint.
 
-    The spokes are stretched by a thousandth, and stiff enough to hold the ring like a wheel: a slender
-    ring under compression on an elastic bed k per bay buckles at 2 sqrt(k / bay E I), E I the bending
-    stiffness of both hoops; the spokes make that four times the hoop force.
+    The spokes have a strain of 1e-3 and prevent buckling of the ring. A slender ring on an elastic bed of stiffness k
+    per bay buckles at a compression of 2 sqrt(k / bay E I), with E I the bending stiffness of both hoops. The spokes
+    make this load four times the hoop force.
 
     :param n: number of bays, at least 3
     :param name: name of the case
@@ -130,13 +128,12 @@ def mast(
             .         .
         L[k] --------- R[k]
 
-    A scissor bar is two half links that share the middle pin; the torsion spring 3 E I / L between them
-    gives it the deflection of a beam of length L under a force at its middle. With both feet fixed the
-    mast is rigid without being redundant: 3 n + 2 places, 4 n half links, 2 n torsion springs and 4
-    supports. At the levels between two bays the bar from below carries the bearing, the bar that goes on
-    on the same side the journal. The tip load, downwards and shared by the two tip nodes, loads every
-    joint; it pushes level after level harder, so it is 6 N / n by default, and the joint at
-    the foot carries some 6 N whatever n. Bars that lean to the left are shaded.
+    A scissor bar consists of two half links that share the middle pin. The torsion spring 3 E I / L between them gives
+    the deflection of a beam of length L under a force at its middle. With both feet fixed the mast is statically
+    determinate: 3 n + 2 nodes, 4 n half links, 2 n torsion springs, 4 supports. Between two bays, the lower bar carries
+    the bearing and the upper bar on the same side the journal. The downward tip load, shared by the two tip nodes,
+    loads every joint. Joint forces grow towards the foot in proportion to n, so the default load is 6 N / n: the joint
+    at the foot then carries about 6 N for any n. Bars that lean to the left are shaded.
 
     :param n: number of bays
     :param name: name of the case
@@ -187,7 +184,8 @@ def mast(
             break
         made["node"].append(node(f"M{k}", (BAY_M / 2, BAY_M * (k + 0.5))))
         for side, other, fraction in (("L", "R", 1.0), ("R", "L", shaded_fraction)):
-            # The lower half starts on this side, the upper half on the other; an upper half has the name of its end.
+            # The lower half of a bar starts on this side, the upper half on the other; an upper half is named after its
+            # end.
             foot = f"{side}{k}j" if 0 < k and radial_clearance_m else f"{side}{k}"
             bar: dict[str, Any] = {**TUBE, "temperature_fraction": fraction}
             made["link"] += [

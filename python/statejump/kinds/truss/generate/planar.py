@@ -19,7 +19,7 @@ FRICTION_COEFFICIENT = 0.3  # Table 1
 
 
 def _free_expansion_force_N(temperature_change_K: float) -> float:
-    """Force E A alpha dT [N] that holds the heated bar of Table 1 at its length."""
+    """Return the force E A alpha dT [N] that keeps the heated bar of Table 1 at its length."""
     rigidity = TABLE1_BAR["young_modulus_Pa"] * TABLE1_BAR["cross_section_area_m2"]
     return rigidity * TABLE1_BAR["thermal_expansion_per_K"] * abs(temperature_change_K)
 
@@ -28,11 +28,11 @@ def chain(
     n: int, *, name: str = "", friction_force_N: float = 0.0, temperature_change_K: float = 100.0,
     shape: str = "triangle", cycles: int = 1, period_s: float = 1.0,
 ) -> Document:
-    """Blocks with friction on ground, one behind the other, joined by bars of Table 1.
+    """Chain of blocks with friction on the ground, connected by bars of Table 1.
 
-    Node N0 is fixed, link i joins block i - 1 to block i. Link i carries the friction of all blocks
-    beyond it, so the first one decides: with f = E A alpha dT / (4 n), all blocks slide out by half of
-    the heating and, since the force has to turn from -n f to n f, back by half of the cooling.
+    Node N0 is fixed; link i connects block i - 1 to block i and carries the friction of all blocks beyond it. With f =
+    E A alpha dT / (4 n), all blocks slide outwards after a quarter of the heating, when link 1 carries n f. They slide
+    back after half of the cooling, when this force has changed from -n f to n f.
 
     :param n: number of blocks
     :param name: name of the case
@@ -64,11 +64,10 @@ def iwan(
 ) -> Document:
     """Spring-sliders in parallel behind one heated bar: an Iwan (Prandtl-Ishlinskii) model.
 
-    The drive, the bar of Table 1, pushes platform P along x; n bars that do not expand join P to blocks
-    with friction. All bars have the stiffness k = k_drive / n, the longer ones a larger section, and
-    block i slips at the platform's displacement d i / n from the turning point: one after another. The
-    last slips when the drive's free expansion reaches d (1 + (n + 1) / (2 n)), which is ``slipped_at``
-    of its largest; below 0.5 all of them slip back during the cooling as well.
+    The drive, a bar of Table 1, pushes platform P along x. n bars that do not expand connect P to blocks with friction.
+    All bars have the stiffness k = k_drive / n; longer bars have a larger section. Block i slips when the platform has
+    moved by d i / n since the last reversal. The last block slips when the drive's free expansion reaches d (1 + (n +
+    1) / (2 n)), which is ``slipped_at`` times its maximum. Below 0.5, all blocks also slip back during cooling.
 
     :param n: number of blocks
     :param name: name of the case
@@ -116,11 +115,11 @@ def umbrella(
     cable_stiffness_N_per_m: float = 1e3, temperature_change_K: float = 100.0, shape: str = "triangle",
     cycles: int = 1, period_s: float = 16.0,
 ) -> Document:
-    """Ribs of the umbrella antenna around its axis AC, which is x.
+    """Ribs of the umbrella antenna around its axis AC, the x axis.
 
-    One rib is planar, the rib of the paper with a torsion spring that loads the joint. Several are
-    spatial: each has its own A and C and stays in its own plane through the axis. Bar AB carries the
-    bearing (node B), bar CB the journal (node J). Cables join neighbouring B when they have a preload.
+    One rib is planar: the rib of the paper with a torsion spring that loads the joint. Several ribs are spatial: each
+    has its own A and C and stays in its plane through the axis. Bar AB carries the bearing (node B), bar CB the journal
+    (node J). Cables with a preload connect neighbouring nodes B.
 
     :param n: number of ribs
     :param name: name of the case

@@ -17,12 +17,12 @@ import numpy as np
 from statejump.kinds.truss.importing.model import Deck, Equation, RigidBody
 from statejump.kinds.truss.importing.supports import ALONG, SAME, basis_of, held_directions, is_held
 
-# Nodes nearer than this fraction of the size of the truss are at one position, because decks have eight digits.
+# Nodes nearer than this fraction of the truss size coincide, because decks have eight digits.
 ONE_PLACE = 1e-9
 
 
 def settle_bodies(deck: Deck) -> None:
-    """Process moments, rigid bodies and equations. Supports, loads, bars and springs must be known."""
+    """Process moments, rigid bodies and equations, after supports, loads, bars and springs are read."""
     turning = Turning(deck)
     for moment in deck.moments:
         turning.take(moment.line, moment.card, moment.node, moment.vector, moment.waiver)
@@ -48,7 +48,7 @@ def named_nodes(deck: Deck) -> set[str]:
 
 
 class _Bodies:
-    """Processes the rigid bodies of a deck; bodies that share nodes are one body."""
+    """Processes the rigid bodies of a deck. Bodies that share nodes are merged."""
 
     def __init__(self, deck: Deck, turning: Turning) -> None:
         self.deck, self.turning = deck, turning
@@ -100,8 +100,8 @@ class _Bodies:
             deck.take(body.card, "nodes at one place made one; forces and masses of its other nodes act there")
 
     def _move_by_lever(self, body: RigidBody, kept: str, gone: str) -> None:
-        """Move force and mass of a node to the position at which bars end. A lever arm gives the body a moment; with
-        gravity, so does a mass."""
+        """Move force and mass of a node to the position where bars end. A lever arm causes a moment on the body; with
+        gravity, a mass does too."""
         deck = self.deck
         lever = np.subtract(self.places[gone], self.places[kept])
         for lines, force in ((deck.force_line, np.array(deck.force.get(gone, [0.0] * 3))),
@@ -118,7 +118,7 @@ class _Bodies:
 def join(deck: Deck, one: Mapping[str, str]) -> None:
     """Merge nodes at one position.
 
-    :param one: the remaining node, by the name of each removed one
+    :param one: name of the remaining node by the name of each removed node
     """
     for bar in deck.bars:
         first, second = (one.get(end, end) for end in bar.nodes)
@@ -150,7 +150,7 @@ def _move(deck: Deck, kept: str, gone: str) -> None:
 
 
 def _take_followers(deck: Deck) -> None:
-    """Convert means of other nodes to equations. Omit those on which nothing acts."""
+    """Convert nodes that follow means of other nodes to equations; omit nodes on which nothing acts."""
     used = named_nodes(deck)
     turned = {moment.node for moment in deck.moments}
     for one in deck.followers:
@@ -165,7 +165,7 @@ def _take_followers(deck: Deck) -> None:
 
 
 def _follow_joined(deck: Deck, joined: Mapping[str, str]) -> None:
-    """Write equations of merged nodes. Refuse those of nodes that a rigid arm replaced."""
+    """Rewrite equations of merged nodes. Refuse equations of nodes that a rigid arm replaced."""
     kept = []
     for one in deck.equations:
         one.follow(joined)
@@ -177,7 +177,7 @@ def _follow_joined(deck: Deck, joined: Mapping[str, str]) -> None:
 
 
 def _take_equations(deck: Deck, near: Callable[[str, str], bool]) -> None:
-    """Process equations until none can be processed; the remaining ones become constraints."""
+    """Process equations until no further one can be processed; the remaining ones become constraints."""
     waiting = [replace(one, terms=[term for term in one.terms if not is_held(deck, *term[:2])])
                for one in deck.equations]
     taken: list[Equation] | None = waiting
@@ -193,7 +193,7 @@ def _take_equations(deck: Deck, near: Callable[[str, str], bool]) -> None:
 
 
 def _hold_loose(deck: Deck) -> None:
-    """Hold nodes without bars in the directions in which no equation moves them, because nothing is stiff there."""
+    """Hold nodes without bars in the directions in which no equation moves them, because they have no stiffness."""
     ends = carriers(deck)
     for node, ways in deck.equation_directions().items():
         if node in ends:
@@ -210,8 +210,7 @@ def _hold_loose(deck: Deck) -> None:
 
 
 def _held_by(deck: Deck, equations: list[Equation]) -> list[Equation]:
-    """Process equations of one node, which are supports in the direction of their terms, and equations without a
-    node."""
+    """Convert equations of one node to supports along their terms, and drop equations without nodes."""
     found = [one for one in equations if len({term[0] for term in one.terms}) < 2]
     for one in found:
         normal = sum((direction * factor for _, direction, factor in one.terms), start=np.zeros(3))
@@ -231,7 +230,7 @@ def _equal(one: Equation) -> tuple[str, str] | None:
 
 
 def _made_one(deck: Deck, equations: list[Equation], near: Callable[[str, str], bool]) -> list[Equation]:
-    """Merge two nodes whose displacements are equal in all directions that are not held."""
+    """Merge pairs of nodes whose displacements are equal in all directions that are not held."""
     pairs: dict[tuple[str, str], list[Equation]] = {}
     for one in equations:
         if pair := _equal(one):
@@ -241,7 +240,7 @@ def _made_one(deck: Deck, equations: list[Equation], near: Callable[[str, str], 
     stays: set[str] = set()
     for pair, several in pairs.items():
         kept, gone = pair if pair[0] in ends else pair[::-1]
-        # A removed node is in no other pair of this round, because remaining nodes are not removed later.
+        # A node removed here must be in no other pair of this round, because remaining nodes are removed only later.
         if kept not in ends or not near(kept, gone) or joined.keys() & {kept, gone} or gone in stays or \
                 any(of.get(kept) != of.get(gone) for of in (deck.temperature, deck.initial)):
             continue
@@ -258,7 +257,7 @@ def _made_one(deck: Deck, equations: list[Equation], near: Callable[[str, str], 
 
 
 def _followed(deck: Deck, equations: list[Equation]) -> list[Equation]:
-    """Move the loads of nodes without bars to the nodes that determine their motion."""
+    """Move loads of nodes without bars to the nodes that determine their motion."""
     ends = carriers(deck)
     of_node: dict[str, list[Equation]] = {}
     for one in equations:
@@ -309,8 +308,8 @@ class Turning:
     def bends(self, node: str, moment: np.ndarray) -> bool:
         """Return whether a moment bends a beam.
 
-        Rods carry only moments about their own axis, and torsion of straight bars does not move their ends. In beams
-        the moment causes torsion only if all beams that are connected to the node are along it.
+        Rods carry only moments about their own axis, and torsion of straight bars does not move their ends. In beams a
+        moment causes torsion only if all beams at the node are parallel to it.
         """
         reached, waiting = {node}, [node]
         while waiting:

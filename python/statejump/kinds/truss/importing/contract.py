@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Declaration of the use of every card of a deck and every field of a card: it is used, it has no influence, or it is
-not supported. The import refuses cards according to this table. The documentation is generated from it."""
+"""Classes that declare every card of a deck and every field of a card as used, without influence, or unsupported. The
+import refuses cards by these tables, and the documentation is generated from them."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -29,8 +29,8 @@ class Card:
     :param what: the result of a used card, or the reason why it is not used
     :param fields: in the order of a card; parameters of a keyword have no order
     :param repeats: number of last fields that repeat
-    :param sets: kind of set that the case control must select for the card to count
-    :param own: whether its reader finds the positions of the fields, because they depend on values
+    :param sets: kind of set by which the case control selects the card
+    :param own: whether its reader locates the fields itself, because their positions depend on values
     :param bending: whether it needs --beams-as-bars
     """
 

@@ -9,8 +9,7 @@ from math import cos, radians, sin
 import numpy as np
 
 KINDS = ("R", "C", "S")
-# Points or directions nearer than this fraction of their distance span no plane, because input has at least four
-# digits.
+# Points or directions nearer than this fraction of their distance span no plane; input has at least four digits.
 PARALLEL = 1e-6
 
 
@@ -40,7 +39,7 @@ class Frame:
         return np.array([first, second, third], dtype=float)
 
     def directions(self, at: Sequence[float]) -> np.ndarray:
-        """Return its three directions at a point, as rows in the basic system; on the axis those of x, y, z."""
+        """Return the three directions at a point, as rows in the basic system; on the axis, those of x, y, z."""
         if self.kind == "R":
             return self.axes
         x, y, z = self.axes @ (np.asarray(at, dtype=float) - self.origin)
@@ -59,7 +58,7 @@ BASIC = Frame("R", np.zeros(3), np.eye(3))
 
 
 def by_points(kind: str, origin: np.ndarray, on_z: np.ndarray, in_xz: np.ndarray) -> Frame | None:
-    """Return the system of Nastran: a point on its z axis and one in its xz plane; None: they span no plane."""
+    """Return the system of Nastran, from a point on its z axis and one in its xz plane; None: they span no plane."""
     z, across = on_z - origin, in_xz - origin
     length, size = np.linalg.norm(z), np.linalg.norm(across)
     if length == 0 or size == 0:
@@ -74,19 +73,19 @@ def by_points(kind: str, origin: np.ndarray, on_z: np.ndarray, in_xz: np.ndarray
 
 
 def by_axis(kind: str, origin: np.ndarray, on_x: np.ndarray, in_xy: np.ndarray) -> Frame | None:
-    """Return the system of Abaqus: a point on its x axis and one in its xy plane; None: they span no plane."""
+    """Return the system of Abaqus, from a point on its x axis and one in its xy plane; None: they span no plane."""
     found = by_points(kind, origin, on_x, in_xy)
     if found is None:
         return None
-    # by_points has its z axis along our x, and its x axis, in the plane of the third point, along our y.
+    # by_points gets x as its z axis, and its x axis, in the plane of the third point, becomes y.
     y, _, x = found.axes
     return Frame(kind, origin, np.array([x, y, np.cross(x, y)]))
 
 
 def about_axis(first: np.ndarray, second: np.ndarray) -> Frame | None:
-    """Return the cylindrical system whose axis goes through two points; None: both points are equal.
+    """Return the cylindrical system with the axis through two points; None: the points coincide.
 
-    Its angle counts from an arbitrary direction, so only its directions are meaningful.
+    The zero of its angle is arbitrary, so only its directions are meaningful.
     """
     z = second - first
     aside = np.eye(3)[int(np.argmin(np.abs(z)))]

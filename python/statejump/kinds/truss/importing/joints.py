@@ -117,14 +117,14 @@ def _slider(made: Document, node: dict[str, Any], values: dict[str, Any], dimens
     if "axis" not in values:
         raise MissingKey("axis", code="slider_axis_missing", directions=", ".join("xyz"[:dimension]))
     place = values["axis"].index(1.0)
-    # The support no longer holds the node along the axis. Across it the node stays held.
+    # The slider replaces the support along the axis; the supports across it remain.
     node["fixed"] = [axis for axis in node.get("fixed", ()) if axis != "xyz"[place]]
     made["slider"].append({"name": f"S_{node['name']}", "nodes": [node["name"]], **values})
 
 
 def _slider_in_link(made: Document, link: dict[str, Any], nodes: Mapping[str, Any], at: str | None,
                     values: dict[str, Any]) -> None:
-    """Separate a link from its node and connect both by a slider along the link."""
+    """Separate the end of a link from its node, and connect both by a slider along the link."""
     ends = link["nodes"]
     name = ends[0] if at is None else _one("node", at, ends)
     other = ends[1] if name == ends[0] else ends[0]
@@ -132,7 +132,7 @@ def _slider_in_link(made: Document, link: dict[str, Any], nodes: Mapping[str, An
     own = {"name": f"{name}_{link['name']}", "position_m": list(nodes[name]["position_m"])}
     made["node"].append(own)
     link["nodes"] = [own["name"] if end == name else end for end in ends]
-    # The axis points into the link, because it slides in this direction in tension.
+    # The axis points into the link, the direction of the slide under tension.
     made["slider"].append({"name": f"S_{link['name']}", "nodes": [own["name"], name],
                            "axis": [round(float(part), 12) for part in way / np.linalg.norm(way)], **values})
 
@@ -158,7 +158,7 @@ def _revolute(made: Document, node: dict[str, Any], values: dict[str, Any], dime
 
 
 def _bearing(name: str, bearing: str | None, others: Sequence[str]) -> str:
-    """Return the default link that carries the bearing, and all possible ones."""
+    """Return the note on the link that carries the bearing, and on other links that could carry it."""
     if bearing is None:
         return f"revolute {name!r}: no bearing_link, the bearing does not turn" + (
             f"; {', '.join(map(repr, others))} could carry it" if others else "")

@@ -13,13 +13,13 @@ DEEPEST = 10  # depth of included files
 
 
 class Line(int):
-    """The number of a line; in an included file it also has the name of the file."""
+    """A line number; in an included file it also has the name of the file."""
 
     file: str | None = None
 
     @classmethod
     def of(cls, number: int, file: str | None) -> int:
-        """Return a number that knows its file; None: the deck itself."""
+        """Return a line number with the name of its file; None: the deck itself."""
         if file is None:
             return number
         line = cls(number)
@@ -44,7 +44,7 @@ def text_of(path: Path, most: int = LARGEST_BYTES) -> list[str]:
             raise Unreadable(code="file_too_large", file=path, largest=size(LARGEST_BYTES))
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
-        # Comments may be in the user's language; names and numbers are ASCII in either encoding.
+        # Comments may be in any encoding; names and numbers are ASCII.
         text = content.decode("latin-1")
         if "\x00" in text:
             raise Unreadable(code="not_text_file", file=path) from None

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes and bars of a mesh. VTK reads its own formats, meshio the others.
-
-Meshes have no sections and supports. The properties of bars are data with the names of our keys, or options. Meshes are
-in SI units.
-"""
+"""Nodes and bars of a mesh. VTK reads its own formats, meshio the others. Meshes are in SI units and have no sections
+and supports. Properties of bars are cell data named after keys of cases, or options."""
 from __future__ import annotations
 
 import contextlib
@@ -29,7 +26,7 @@ FORMATS = {".vtk": "vtk", ".vtu": "vtu", ".vtp": "vtp", ".msh": "gmsh", ".med": 
 BY_VTK = (".vtk", ".vtu", ".vtp")
 ADDRESS = re.compile(r"\(0x[0-9a-f]+\)")  # address of an object in messages of VTK
 LINES = ("line", "polyline", "line3")  # cells of two nodes, of straight segments, or with an omitted middle node
-# Data of cells that are read, and the number of a bar that they set.
+# Cell data that are read, and the attribute of a bar that they set.
 DATA = {"young_modulus_Pa": "young_modulus", "cross_section_area_m2": "area", "thermal_expansion_per_K": "expansion",
         "density_kg_per_m3": "density", "poisson_ratio": "poisson_ratio", "temperature_change_K": "temperature_change"}
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The content of a deck, independent of its program, and the account of used and omitted cards."""
+"""The content of a deck, independent of the program it was written for, and the record of used and omitted cards."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -31,7 +31,7 @@ class Bar:
     :param expansion_table: temperatures and secant coefficients, if these depend on temperature
     :param expansion_zero: temperature at which the secants begin
     :param more_mass: mass per length besides that of the density
-    :param why_no_area: reason why the deck's section gives no area
+    :param why_no_area: reason why the section in the deck gives no area
     :param bends: whether it is a beam whose bending is omitted
     :param lengthened: its length over the distance of its nodes, which rigid ends along the bar connect to it
     """
@@ -67,7 +67,7 @@ class RigidBody:
 class Moment:
     """A moment on a node.
 
-    :param waiver: argument of ``--ignore`` that omits it; None: the card
+    :param waiver: argument of ``--ignore`` that omits the moment; None: the name of its card
     """
 
     line: int
@@ -89,7 +89,7 @@ class Equation:
     terms: list[tuple[str, np.ndarray, float]]
 
     def follow(self, joined: Mapping[str, str]) -> None:
-        """Replace in its terms the names of nodes that were merged into others."""
+        """Replace the names of merged nodes in its terms."""
         self.terms[:] = [(joined.get(node, node), way, factor) for node, way, factor in self.terms]
 
 
@@ -97,7 +97,7 @@ class Equation:
 class Follower:
     """A node whose motion follows from others.
 
-    :param equations: equations of its motion; none: they need rotations
+    :param equations: equations of its motion; empty: the motion depends on rotations
     """
 
     line: int
@@ -108,7 +108,7 @@ class Follower:
 
 @dataclass
 class Spring:
-    """A linear spring along the line between two nodes, or between a node and the ground in a direction.
+    """A linear spring along the line between two nodes, or between a node and the ground along a direction.
 
     :param second: the other node; None: the ground
     :param direction: unit vector, of a spring to the ground
@@ -143,16 +143,16 @@ class Options:
 class Deck:
     """A truss in the units of its deck.
 
-    :param temperature: of nodes, absolute or from zero as in the deck
+    :param temperature: temperature of nodes, on the scale of the deck
     :param held: directions in which a node does not move, besides those of ``fixed``
-    :param mass: lumped at nodes
+    :param mass: lumped masses of nodes
     :param mass_scale: factor of all masses and densities
     :param gravity: acceleration of all masses
-    :param refused: first line, reason, its sentence and count, by card and the option that waives it
-    :param taken: count by card and its result
-    :param left: first line and count, by card and the reason of the omission
+    :param refused: first line, reason, sentence and count, by card and by the option that waives the refusal
+    :param taken: count by card and result, for used cards
+    :param left: first line and count by card and reason, for omitted cards
     :param named_units: whether the file names the units of its numbers
-    :param choices: choices of the import where the user made none, one sentence each
+    :param choices: assumptions that the import made without an option of the user, one sentence each
     """
 
     path: Path
@@ -200,11 +200,11 @@ class Deck:
         self.left[card, why] = (first, count + 1)
 
     def refuse(self, card: str, why: str, line: int, waiver: str | None = None, **values: str) -> None:
-        """Record that a part of a card has influence and is not supported; ``--ignore`` omits it.
+        """Record an unsupported part of a card that has influence; ``--ignore`` omits it.
 
         :param why: key of ``REASONS``, or a sentence of the table of cards
-        :param waiver: argument of ``--ignore`` that omits it; None: the card. It ends with ``=`` or begins with ``--``
-            if it is an option of its own
+        :param waiver: argument of ``--ignore`` that omits the part; None: the card. An option of its own ends with
+            ``=`` or begins with ``--``
         :param values: numbers and names in the sentence of the reason
         """
         reason, why = (why, REASONS[why].format_map(values)) if why in REASONS else (TABLE_REASON, why)
@@ -220,7 +220,7 @@ class Deck:
         """Raise an error for unsupported cards. :raises StatejumpError: one sentence with card, line and option"""
         if not self.refused:
             return
-        # Bending first, because the user has to decide about it before other cards matter.
+        # Bending first, because the user must decide on it before other cards matter.
         found = sorted(self.refused.items(), key=lambda item: (item[0][1] != BENDING, item[1][0]))
         (card, waiver), (line, reason, why, _) = found[0]
         shown = [f"{quoted(also)[1:-1]} (line {at})" for (also, _), (at, *_) in found[1:MOST_SHOWN + 1]]
@@ -235,7 +235,7 @@ class Deck:
             if waiver.startswith("--") else f"--ignore {_argument(waiver)} leaves it out")
 
     def check_waived(self) -> None:
-        """Refuse an ``--ignore`` that matches nothing in the deck. :raises NotAllowed: there is one"""
+        """Raise an error for an ``--ignore`` that matches nothing in the deck. :raises NotAllowed: there is one"""
         for name in sorted(self.options.ignored - self.waived):
             raise NotAllowed("--ignore", name, code="nothing_to_ignore")
 
@@ -251,7 +251,7 @@ class Deck:
         return Unreadable(what, code=code, file=self.path, line=line, card=card, **details)
 
     def room(self, line: int, count: int) -> None:
-        """Raise Unreadable for more items than any truss has."""
+        """Raise Unreadable if the deck exceeds the largest number of items."""
         if count > MOST_ITEMS:
             raise self.fail(line, "deck_too_many_items", most=MOST_ITEMS)
 
@@ -270,7 +270,7 @@ class Deck:
         """Hold a node in a direction, a unit vector."""
         x, y, z = (float(part) for part in direction)
         for axis, size in zip("xyz", (x, y, z)):
-            if abs(size) == 1:  # the usual case, exact in the basic system
+            if abs(size) == 1:  # the usual case, a direction along an axis, without rounding
                 self.fix(name, axis)
                 return
         self.held.setdefault(name, []).append((x, y, z))

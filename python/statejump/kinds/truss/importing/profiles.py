@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from math import log1p, pi
 
-# Shape of PBARL and PBEAML: number of dimensions and area (MSC and NX Nastran, Quick Reference Guide, PBARL).
+# Number of dimensions and area by shape of PBARL and PBEAML (MSC and NX Nastran, Quick Reference Guide, PBARL).
 NASTRAN: dict[str, tuple[int, Callable[..., float]]] = {
     "ROD": (1, lambda r: pi * r**2),
     "TUBE": (2, lambda outer, inner: pi * (outer**2 - inner**2)),
@@ -44,10 +44,10 @@ def nastran(shape: str, sizes: Sequence[float]) -> float | None:
 
 
 def taper(stations: Sequence[tuple[float, float]]) -> tuple[float, float]:
-    """Return the area of a uniform bar with the stiffness of one whose area is linear between stations, and its mean
-    area.
+    """Return the area of the uniform bar with the axial stiffness of a bar whose area is linear between stations, and
+    the mean area.
 
-    :param stations: fractions of the length from 0 to 1, ascending, and areas there
+    :param stations: pairs of fraction of the length, increasing from 0 to 1, and area
     """
     flexibility = mean = 0.0
     for (start, first), (end, second) in zip(stations, stations[1:]):
@@ -58,25 +58,26 @@ def taper(stations: Sequence[tuple[float, float]]) -> tuple[float, float]:
 
 
 def between(shape: str, first: tuple[float, float], last: tuple[float, float]) -> tuple[float, float] | None:
-    """Return the area of a uniform bar with the stiffness of one whose two sizes are linear between its ends, and its
-    mean area; None: the shape does not have two sizes.
+    """Return the area of the uniform bar with the axial stiffness of a bar whose two sizes are linear between its ends,
+    and the mean area; None: the shape does not have two sizes.
 
-    :param shape: ``RECT`` or ``CIRC``, whose sizes are those of its two axes
+    :param shape: ``RECT`` or ``CIRC``, each with one size per axis
     """
     if shape not in ("RECT", "CIRC") or min(*first, *last) <= 0:
         return None
     factor = pi / 4 if shape == "CIRC" else 1.0
     (one, two), (wide, high) = first, last
     ratio = one * high / (two * wide) - 1
-    # The integral of dx / A is ln(1 + ratio) / (two wide ratio).
+    # ∫ dx / A = ln(1 + ratio) / (two wide ratio)
     area = factor * two * wide * (ratio / log1p(ratio) if ratio else 1.0)
     return area, factor * (2 * one * two + one * high + wide * two + 2 * wide * high) / 6
 
 
 def calculix(shape: str, sizes: Sequence[float]) -> float | None:
-    """Return the area of ``*SOLID SECTION`` (``AREA``) or of a shape of ``*BEAM SECTION``; None: it has none.
+    """Return the area of ``*SOLID SECTION`` (``AREA``) or of a shape of ``*BEAM SECTION``; None: it has no area.
 
-    CIRC has the lengths of its two axes in CalculiX; here one length is the diameter. RECT with one length is a square.
+    CIRC has the lengths of its two axes in CalculiX; a single length is the diameter here. RECT with one length is a
+    square.
     """
     found: float | None = None
     match shape, [*sizes]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Selection of the reader of a file by its format."""
+"""Selects the reader of a file by its format."""
 from __future__ import annotations
 
 import re
@@ -67,7 +67,7 @@ def read(path: Path, form: str | None = None, bars: Path | None = None, options:
 def checked(document: Document, parse: Callable[[Document], Made]) -> tuple[Made, str | None]:
     """Return the case of a document, and a hint if parts of the truss have no support.
 
-    All other checks run as if one node of each of these parts were held.
+    All other checks run with one node of each unsupported part held.
 
     :param parse: returns the case of a document
     :raises StatejumpError: another check fails

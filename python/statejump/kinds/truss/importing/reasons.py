@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reasons why a card of a deck is not supported: the reason of ``deck_not_supported``, and its sentence."""
+"""Reasons why the import refuses a card: key of the reason for ``deck_not_supported``, and its sentence."""
 from __future__ import annotations
 
-# Where the table of cards gives the sentence.
+# Key for reasons whose sentence is in the table of cards.
 TABLE_REASON = "no_truss"
 REASONS: dict[str, str] = {
     "amplitude_at_end_unknown": "its value at the end of the step is not known",

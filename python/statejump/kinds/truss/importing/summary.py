@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Quantities to check after an import: sizes and ranges in SI units, and hints if they are implausible."""
+"""Quantities for a check after an import: sizes and ranges in SI units, and hints if they are implausible."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -11,10 +11,10 @@ from statejump.core.tables import Shown
 
 # Range for solids: polymers have more than 1e9 Pa, diamond has 1.2e12 Pa.
 LEAST_MODULUS_PA, MOST_MODULUS_PA = 1e9, 1.3e12
-# No bar of a deployable structure is longer than 1 km, shorter than 0.1 mm, or thicker than 1 m2 or than a tenth of its
-# squared length.
+# Limits for a bar of a deployable structure: at most 1 km long, at least 0.1 mm, at most 1 m2 or a tenth of its squared
+# length in area.
 LONGEST_M, SHORTEST_M, THICKEST_M2, THICKEST = 1e3, 1e-4, 1.0, 0.1
-DENSEST_KG_PER_M3, LIGHTEST_KG_PER_M3 = 2.3e4, 1.0  # density of osmium; less than the density of any foam
+DENSEST_KG_PER_M3, LIGHTEST_KG_PER_M3 = 2.3e4, 1.0  # density of osmium; a density below that of any foam
 UNITS = "--units mm-N, mm-kN-t, mm-kg-s, in-lbf or --length-unit and --force-unit name the units of the deck"
 
 
@@ -48,7 +48,7 @@ def summary(made: Mapping[str, Any]) -> Shown:
 
 
 def hints(made: Mapping[str, Any]) -> list[str]:
-    """Return the reasons why the units of a deck are implausible, one sentence each."""
+    """Return hints that the units of a deck are implausible, one sentence each."""
     positions = _positions(made)
     links = made["link"]
     lengths = [_length(link, positions) for link in links]
@@ -71,7 +71,7 @@ def hints(made: Mapping[str, Any]) -> list[str]:
 
 
 def _positions(made: Mapping[str, Any]) -> dict[str, np.ndarray]:
-    """Return positions of the deck's own nodes, without the far ends of springs to the ground."""
+    """Return the positions of nodes of the deck, without the far ends of springs to the ground."""
     ground = {spring["nodes"][1] for spring in made.get("spring", ()) if spring["nodes"][1].startswith("G_")}
     return {node["name"]: np.array(node["position_m"]) for node in made["node"] if node["name"] not in ground}
 

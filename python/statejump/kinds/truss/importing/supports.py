@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Directions without motion in the form of a case: along axes, and one of any direction."""
+"""Held directions in the form of a case: along axes, and one in any direction."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -9,11 +9,10 @@ import numpy as np
 
 from statejump.kinds.truss.importing.model import Deck, Spring
 
-# Sine of the angle below which two directions are equal: axes come from coordinates with at least four digits. A
-# support with this error changes the direction of the displacement by as little.
+# Sine of the angle below which directions are equal: coordinates have at least four digits. A support with this error
+# changes the direction of the displacement by the same angle.
 SAME = 1e-6
-# Sine of the angle between a spring and the line of its nodes below which both are parallel, because decks have at
-# least four digits.
+# Sine of the angle below which a spring is parallel to the line of its nodes; decks have at least four digits.
 ALONG = 1e-4
 
 
@@ -43,7 +42,7 @@ def supports(deck: Deck, node: str, dimension: int) -> dict[str, Any]:
 
 
 def held_directions(deck: Deck, node: str) -> np.ndarray:
-    """Return the directions in which a node is held, as rows; they may be dependent."""
+    """Return the directions in which a node is held, as rows that may be linearly dependent."""
     axes = np.eye(3)
     rows = [axes["xyz".index(axis)] for axis in sorted(deck.fixed.get(node, ()))]
     return np.array(rows + [np.array(direction) for direction in deck.held.get(node, ())]).reshape(-1, 3)
@@ -69,8 +68,8 @@ def add_spring(deck: Deck, line: int, card: str, name: str, stiffness: float,
                ends: Sequence[tuple[str, np.ndarray]]) -> None:
     """Add a spring between nodes, each with its direction, or between one node and the ground.
 
-    A truss cannot represent the effect of a spring across the line between its nodes. Such a spring is refused, unless
-    one end is held in its direction: it is then a spring to the ground. Supports must be known.
+    A truss cannot represent a spring across the line between its nodes. Such a spring is refused unless one end is held
+    in its direction, which makes it a spring to the ground. Call this function after supports are read.
     """
     if not ends or not stiffness:
         deck.leave(card, "it has no stiffness or no node", line)

@@ -52,7 +52,7 @@ def read(nodes: Path, bars: Path) -> Deck:
 
 
 def _rows(deck: Deck, path: Path, needed: Sequence[str], more: Sequence[str]) -> list[tuple[int, dict[str, Cell]]]:
-    """Return the rows of a table by column, with their lines; numbers in SI units."""
+    """Return the rows of a table with their line numbers, by column, in SI units."""
     deck.path = path
     if not is_file(path):
         raise Unreadable(code="file_not_found", file=path)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A deck as a case document: units, dimension, temperatures, and joints that are inserted by name."""
+"""Conversion of a deck to a case document: units, dimension, temperatures, and inserted joints."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -16,22 +16,22 @@ from statejump.kinds.truss.importing.model import Bar, Deck, Equation, Spring
 from statejump.kinds.truss.importing.supports import supports
 from statejump.kinds.truss.sections import MOST_DENSITY_KG_PER_M3, MOST_EXPANSION_PER_K
 
-# A smaller difference of coordinates, over the size of the truss, counts as zero, because decks have eight digits.
+# Fraction of the truss size below which a difference of coordinates is zero, because decks have eight digits.
 FLAT = 1e-9
-# A smaller coefficient, over the largest one of its equation, comes from the rounding of directions.
+# Fraction of the largest coefficient of an equation below which a coefficient is rounding of directions.
 ROUNDING = 1e-12
-# Length of a spring to the ground, over the size of the truss. If a node moves across the spring by a thousandth of the
-# size, it feels a millionth of its force. Positions keep 13 digits.
+# Length of a spring to the ground, as a multiple of the truss size. If the node moves across the spring by 1/1000 of
+# the size, the transverse force is a millionth of the spring force. Positions keep 13 digits.
 FAR, FARTHEST_M = 1e3, 9e5
-# Mass of a bar without density under gravity: cases need a mass, and this one is negligible.
+# Mass of a bar without density under gravity [kg]: cases need a mass, and this mass is negligible.
 WEIGHTLESS_KG = 1e-15
-# Options that give all links a number that the deck lacks.
+# Options that give all links a number that is missing in the deck.
 OPTIONS = {"young_modulus_Pa": "--young-modulus", "cross_section_area_m2": "--area",
            "thermal_expansion_per_K": "--thermal-expansion"}
 # Beyond its table a coefficient is constant. Tables of cases extend this far [K].
 BEYOND_K = 1e3
-# Half the width of a jump over the range of the table. Beyond the jump, the error of the strain is the square of this
-# fraction. Narrower jumps need more steps of the solver.
+# Half the width of a jump, as a fraction of the range of the table. Beyond the jump, the strain error is the square of
+# this fraction. Narrower jumps need more solver steps.
 JUMP = 1e-3
 
 
@@ -39,9 +39,9 @@ JUMP = 1e-3
 class Units:
     """The units of a deck.
 
-    :param length_m: of length [m]
-    :param force_N: of force [N]
-    :param mass_kg: of mass [kg]; None: force times seconds squared by length
+    :param length_m: one unit of length of the deck [m]
+    :param force_N: one unit of force [N]
+    :param mass_kg: one unit of mass [kg]; None: force · s² / length
     """
 
     length_m: float = 1.0
@@ -61,7 +61,7 @@ class Units:
 
 POUND_FORCE_N = 4.4482216152605  # exact
 INCH_M = 0.0254  # exact
-# Usual ones first: among equally plausible ones, the first is chosen.
+# Common systems first: the first of several equally plausible ones is chosen.
 SYSTEMS = {
     "SI": Units(), "mm-N": Units(1e-3), "in-lbf": Units(INCH_M, POUND_FORCE_N), "mm-kg-s": Units(1e-3, 1e-3),
     "mm-kN-t": Units(1e-3, 1e3, 1e3),
@@ -75,17 +75,17 @@ def case_document(
     reflector: tuple[Sequence[str], Sequence[float]] | None = None, links: Mapping[str, float] | None = None,
     fixed: Sequence[tuple[str, str]] = (), check_ignored: bool = True,
 ) -> Document:
-    """Return the case of a deck; the deck's account records the use of its cards.
+    """Return the case document of a deck, and record in the deck the use of its cards.
 
     :param units: units of the deck
-    :param temperature_change_K: of all links, for a deck without temperatures
-    :param density_kg_per_m3: of links without density in the deck
+    :param temperature_change_K: temperature change of all links, for a deck without temperatures
+    :param density_kg_per_m3: density of links that have none in the deck
     :param joints: arguments of ``--joint``, see :mod:`~statejump.kinds.truss.importing.joints`
-    :param sections: sections that the deck lacks; ``thermal`` replaces its temperatures
+    :param sections: further sections of the case; ``thermal`` replaces the temperatures of the deck
     :param reflector: nodes of a reflecting surface, names or patterns, and its axis
-    :param links: keys of links whose number the deck lacks
+    :param links: values of link keys that are missing in the deck
     :param fixed: names or patterns of nodes, and further directions in which they are held
-    :param check_ignored: whether to refuse an item of ``Options.ignored`` that the deck does not have
+    :param check_ignored: whether to raise an error for an item of ``Options.ignored`` that matches nothing in the deck
     :raises StatejumpError: a link lacks a number, or a node does not exist
     """
     used = named_nodes(deck)
@@ -136,7 +136,7 @@ def _hold(made: Document, fixed: Sequence[tuple[str, str]], dimension: int) -> N
 
 
 def _check_unused(deck: Deck, used: set[str]) -> None:
-    """Refuse loads on a node without bars and springs; record other items there."""
+    """Refuse loads on a node without bars and springs; record its other items as omitted."""
     acting = [(deck.force_line[node], node, "force") for node, force in deck.force.items()
               if node in deck.force_line and any(force)]
     acting += [(deck.mass_line[node], node, "mass") for node, mass in deck.mass.items() if mass]
@@ -159,7 +159,7 @@ def _dimension(deck: Deck, used: set[str]) -> int:
 
 
 def _springs(deck: Deck, made: Document, units: Units, dimension: int) -> None:
-    """Add springs. A spring to the ground in a direction ends at a far node, so that it acts in that direction only."""
+    """Add springs. A spring to the ground ends at a far node, so that it acts in its direction only."""
     places = np.array([node["position_m"] for node in made["node"]])
     size = float(np.ptp(places, axis=0).max()) or 1.0
     for spring in deck.springs:
@@ -187,7 +187,7 @@ def _constraint(name: str, equation: Equation) -> dict[str, Any]:
 
 
 def _expansions(deck: Deck, made: Document) -> None:
-    """Give links coefficients that depend on temperature: one for each table and stress-free temperature."""
+    """Give links temperature-dependent coefficients: one [[expansion]] per table and stress-free temperature."""
     names: dict[tuple[tuple[tuple[float, float], ...], float, float], str] = {}
     for bar, link in zip(deck.bars, made["link"]):
         if not bar.expansion_table:
@@ -203,8 +203,8 @@ def _expansions(deck: Deck, made: Document) -> None:
 def _leave_impossible(deck: Deck, made: Document, *, heated: bool, weighed: bool) -> None:
     """Omit numbers that are out of range and have no influence.
 
-    These are expansions of a truss that nothing heats, and densities without gravity. Some decks have 1 for both,
-    others a weight for a mass.
+    These are expansion coefficients of an unheated truss, and densities without gravity. Some decks have 1 for both,
+    others a weight instead of a mass.
     """
     for bar, link in zip(deck.bars, made["link"]):
         expansion, density = link.get("thermal_expansion_per_K", 0.0), link.get("density_kg_per_m3", 0.0)
@@ -231,7 +231,7 @@ def _ground(deck: Deck, spring: Spring, name: str, units: Units, length: float, 
 
 
 def node_name(name: str) -> str:
-    """Return the name of a node of a deck: numbers begin with N, those of an instance with its name."""
+    """Return the name in the case of a node of a deck: N and its number, or the name of its instance and its number."""
     return _called("N", name)
 
 
@@ -240,7 +240,7 @@ def _called(letter: str, name: str) -> str:
 
 
 def _changes(deck: Deck, given: float | None) -> list[float]:
-    """Return the temperature change of every bar, from its stress-free temperature to the mean of its ends."""
+    """Return the temperature change of every bar: mean of its ends minus the stress-free temperature."""
     found = []
     for bar in deck.bars:
         change = bar.temperature_change
@@ -310,14 +310,14 @@ def _link(deck: Deck, bar: Bar, change: float, peak: float, units: Units,
 
 
 def in_units(value: float, unit: float) -> float:
-    """Return a number of a deck in the units of cases, rounded to the digits of a deck: 50 mm2 are 5e-05 m2."""
+    """Return a number of a deck in the units of cases, rounded to the digits of a deck: 50 mm2 is 5e-05 m2."""
     return value if unit == 1 else float(f"{value * unit:.15g}")
 
 
 def item(name: str, table: Sequence[tuple[float, float]], zero: float, start: float) -> dict[str, Any]:
     """Return the ``[[expansion]]`` of a table.
 
-    :param table: temperatures, rising, and secant coefficients
+    :param table: increasing temperatures with secant coefficients
     :param zero: temperature at which the secants begin
     :param start: stress-free temperature
     """

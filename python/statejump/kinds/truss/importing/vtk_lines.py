@@ -23,7 +23,7 @@ NOT_READ = 3  # exit status
 
 
 def grid_of(path: str) -> Any:
-    """Return the content of a file as an unstructured grid. :raises SystemExit: VTK reports an error"""
+    """Return the contents of a file as an unstructured grid. :raises SystemExit: VTK reports an error"""
     window = vtkStringOutputWindow()
     vtkOutputWindow.SetInstance(window)
     reader: Any = vtkDataSetReader() if path.lower().endswith(".vtk") else vtkXMLGenericDataObjectReader()
@@ -43,8 +43,8 @@ def grid_of(path: str) -> Any:
 
 
 def arrays_of(grid: Any) -> dict[str, np.ndarray]:
-    """Return points, names of data, and for each block of cells of one type its name, the ends, and the positions of
-    its lines."""
+    """Return points, names of data and, for each block of cells of one type, its name, the line ends and the line
+    positions."""
     types = vtk_to_numpy(grid.GetCellTypesArray()) if grid.GetNumberOfCells() else np.zeros(0, dtype=np.uint8)
     cells = grid.GetCells()
     offsets, nodes = (vtk_to_numpy(part) for part in (cells.GetOffsetsArray(), cells.GetConnectivityArray()))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Joints whose first node moves along an axis fixed in space, on ground or on a second node."""
+"""Joints whose first node slides along an axis fixed in space, relative to the ground or to a second node."""
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -32,7 +32,7 @@ class Axes(Protocol):
 
     @property
     def nodes(self) -> np.ndarray:
-        """(s, 2) int; the second is GROUND, or a node that the joint constrains across the axis."""
+        """(s, 2) int; the second is GROUND, or a node that the joint couples to the first across the axis."""
 
     @property
     def axis(self) -> np.ndarray:
@@ -44,7 +44,7 @@ ArraysType = TypeVar("ArraysType", bound=Axes)
 
 
 class AlongAxis(JointType[ItemType, ArraysType]):
-    """Between two nodes such a joint also constrains both across the axis; on ground the supports of the node do."""
+    """A joint type along an axis. Across it the joint couples two nodes; on ground, the supports hold the node."""
 
     noun: ClassVar[str]  # in sentences
 
@@ -65,7 +65,7 @@ class AlongAxis(JointType[ItemType, ArraysType]):
         on_ground = np.flatnonzero(joints.nodes[:, 1] == GROUND)
         carrier, axis = joints.nodes[on_ground, 0], joints.axis[on_ground]
         guide = nodes.guide_normal[carrier]
-        # Sum of n n^T over the directions in which supports hold the node. Its rank is the number of these directions.
+        # Projector on the directions in which supports hold the node; its rank is their number.
         held = nodes.fixed[carrier][:, :, None] * np.eye(3) + guide[:, :, None] * guide[:, None, :]
         along = np.einsum("ki,kij,kj->k", axis, held, axis) > SAME_DIRECTION**2
         across = np.linalg.eigvalsh(held)[:, 1] <= SAME_DIRECTION**2
@@ -85,7 +85,7 @@ class AlongAxis(JointType[ItemType, ArraysType]):
         return joints.nodes[:, 0]
 
     def places(self, truss: ResolvedTruss, joints: ArraysType) -> tuple[np.ndarray, np.ndarray]:
-        """Return the positions of its symbols (s, 3), and their upward directions in the plane (s, 3)."""
+        """Return the positions (s, 3) of its symbols, and the upward direction of each in the drawing plane (s, 3)."""
         along = joints.axis
         return (truss.nodes.position_m[joints.nodes[:, 0]],
                 np.stack((-along[:, 1], along[:, 0], np.zeros(len(along))), axis=1))
@@ -97,7 +97,8 @@ class AlongAxis(JointType[ItemType, ArraysType]):
             loads.push(index, second, friction * axis)
 
     def friction_N(self, joints: ArraysType, state: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Return the friction on the first node against the axis (joints,) in one state of the solver."""
+        """Return the friction on the first node [N] (joints,), positive against the axis, in one state of the
+        solver."""
         raise NotImplementedError
 
     def covered_nodes(self, joints: ArraysType) -> np.ndarray:

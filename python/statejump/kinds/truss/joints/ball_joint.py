@@ -53,7 +53,7 @@ class BallJoints(RoundArrays):
 
 
 class BallJointType(RoundParts[BallJoint, BallJoints]):
-    """Ball joints with clearance, in the solver and in the DEM."""
+    """Ball joints with clearance, supported by the solver and the DEM."""
 
     section = "ball_joint"
     Item = BallJoint

@@ -22,7 +22,7 @@ from statejump.schema.fields import CHOICE, definition, numbers, parameter, text
 from statejump.schema.items import Item
 
 NUMBERS = ("tangent_stiffness_N_per_m", "slip_force_N", "exponent", "stiffness_ratio")
-LONGEST = 1e12  # longest interval over the first one, so that the first is above rounding
+LONGEST = 1e12  # limit of the longest interval over the first one, which must stay above rounding
 # A bolt through two plates.
 BOLT: Strokes = (
     ((-0.9, -0.35), (0.9, -0.35), (0.9, 0.35), (-0.9, 0.35), (-0.9, -0.35)), ((-0.9, 0.0), (0.9, 0.0)),
@@ -49,10 +49,10 @@ class IwanJoint(Item):
 
 @dataclass(frozen=True)
 class IwanJoints:
-    """Iwan joints: axis · (motion of the first node - motion of the second) slides."""
+    """Iwan joints; the slide is axis · (displacement of the first node - displacement of the second)."""
 
     names: Sequence[str]
-    nodes: np.ndarray  # (j, 2) int; the second is GROUND, or a node that the joint constrains across the axis
+    nodes: np.ndarray  # (j, 2) int; the second is GROUND, or a node that the joint couples to the first across the axis
     axis: np.ndarray  # (j, 3) unit
     tangent_stiffness_N_per_m: np.ndarray
     slip_force_N: np.ndarray
@@ -106,7 +106,7 @@ class IwanJointType(AlongAxis[IwanJoint, IwanJoints]):
         )
 
     def friction_N(self, joints: IwanJoints, state: Mapping[str, np.ndarray]) -> np.ndarray:
-        # All of its springs end in friction, so without friction the joint carries nothing.
+        # Every spring of the joint ends in a slider, so without friction the joint carries no force.
         return state["iwan_force_N"]
 
     def carried_friction(self, joints: IwanJoints, at: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:

@@ -41,10 +41,10 @@ class LatchHinge(Item):
 
 @dataclass(frozen=True)
 class LatchHinges:
-    """Hinges with free play, stiffness beyond it and friction on the angle that torsion springs have."""
+    """Hinges with rotational play, stiffness beyond it, and friction. Their angle is that of torsion springs."""
 
     names: Sequence[str]
-    links: np.ndarray  # (h, 2) int; (link, GROUND): the angle of one link, from ground to it
+    links: np.ndarray  # (h, 2) int; (link, GROUND): the angle from the ground to one link
     deadband_rad: np.ndarray
     stiffness_N_m_per_rad: np.ndarray
     friction_moment_N_m: np.ndarray
@@ -54,7 +54,7 @@ class LatchHinges:
 
 
 class LatchHingeType(BetweenLinks[LatchHinge, LatchHinges], JointType[LatchHinge, LatchHinges]):
-    """Latch hinges, in the solver and in the DEM."""
+    """Latch hinges, supported by the solver and the DEM."""
 
     section = "latch_hinge"
     turns = True
@@ -102,7 +102,7 @@ class LatchHingeType(BetweenLinks[LatchHinge, LatchHinges], JointType[LatchHinge
     def add_friction(self, loads: Loads, joints: LatchHinges, state: Mapping[str, np.ndarray]) -> None:
         for index, (moment, (first, second)) in enumerate(zip(self._friction_N_m(joints, state), joints.links)):
             against = moment * joints.axis[index]
-            # Against the ground, the rotation of the first link itself counts.
+            # Against the ground, the angle of the hinge is the rotation of the first link.
             loads.turn(index, first, -against if second == GROUND else against)
             loads.turn(index, second, -against)
 
@@ -115,7 +115,7 @@ class LatchHingeType(BetweenLinks[LatchHinge, LatchHinges], JointType[LatchHinge
 
     @staticmethod
     def _friction_N_m(joints: LatchHinges, state: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Return the moment of friction in a state."""
+        """Return the friction moment [N m] of each hinge in a state."""
         rotation = state["hinge_rotation_rad"]
         beyond = rotation - np.clip(rotation, -joints.deadband_rad, joints.deadband_rad)
         elastic = joints.preload_moment_N_m + joints.stiffness_N_m_per_rad * beyond

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Python part of a type of joint: one object per type, in a file of its own.
+"""The Python part of a joint type: one object per type, in its own file.
 
-Case, checks, arrays, solver, result, drawing, texts, sensitivities, DEM and motion use the registry
-(:data:`statejump.kinds.truss.joints.JOINTS`) and know no single type. A type omits methods that it does not support. If
-a model has no such joint, the type returns the reason as a sentence.
+Case, checks, arrays, solver, result, drawing, texts, sensitivities, DEM and motion use only the registry
+(:data:`statejump.kinds.truss.joints.JOINTS`). A type defines only the methods that it supports. If a model does not
+support the type, a method returns the reason.
 """
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ ArraysType = TypeVar("ArraysType")
 
 Strokes = tuple[tuple[tuple[float, float], ...], ...]  # in units of a symbol's size, the node at (0, 0)
 BLACK = "#000000"
-# Friction may double a contact's force for a moment, and Hertz's stiffness is proportional to its cube root.
+# Friction may double a contact force momentarily; the Hertz stiffness grows with its cube root.
 IMPACT = 2 ** (1 / 3)
 USER = "no default: the truss decides"
 ALUMINIUM = "choice, the paper is silent: aluminium"
@@ -34,7 +34,7 @@ ALUMINIUM = "choice, the paper is silent: aluminium"
 
 @dataclass(frozen=True)
 class ItemColumn:
-    """A column of every joint or element of a type, under the name of the engine's output."""
+    """A column with one value per joint or element of a type, named as in the engine's output."""
 
     name: str  # with its unit
     note: str = ""
@@ -64,12 +64,12 @@ class Sampled:
     truss: ResolvedTruss
     position_m: np.ndarray  # (samples, nodes, 3)
     columns: Mapping[str, np.ndarray]  # of the joints of the type
-    temperature_change_K: np.ndarray  # (samples, joints); of types without temperature (samples, 0)
+    temperature_change_K: np.ndarray  # (samples, joints); (samples, 0) for types without temperature
 
 
 @dataclass(frozen=True)
 class Contacts:
-    """Contacts over the samples of a run; forces act on the first part."""
+    """Contacts over the samples of a run; forces are those on the first part."""
 
     gap_m: np.ndarray  # (samples, joints)
     point_m: np.ndarray  # (samples, joints, 3)
@@ -82,22 +82,22 @@ class Drawn:
     """Parts of the page's drawing for the joints of a type."""
 
     parts: list[dict[str, Any]]
-    contacts: list[tuple[str, str, str]]  # contact, its part, the part that it touches
+    contacts: list[tuple[str, str, str]]  # name of the contact, its part, the part it touches
     clearances_m: np.ndarray
 
 
 @dataclass(frozen=True)
 class ContactPart:
-    """Nodes that get a contact part in the DEM. A node has one; equal parts are one."""
+    """Nodes with a contact part in the DEM. A node has one part; equal parts of several joints are shared."""
 
-    nodes: np.ndarray  # (k,) GROUND: this joint gives no node a part
+    nodes: np.ndarray  # (k,) GROUND: the joint needs no part at a node
     roles: list[tuple[Any, ...]]  # (k,) shape and material of the part
     shared: bool = True  # whether several joints may share one part
 
 
 @dataclass(frozen=True)
 class Torsion:
-    """Moments between two links, or a link and the ground, with the law of the DEM's torsion springs."""
+    """Torsional stiffnesses between two links, or a link and the ground, by the law of the DEM's torsion springs."""
 
     names: Sequence[str]
     links: np.ndarray  # (k, 2) int; (link, GROUND)
@@ -111,10 +111,10 @@ class PartType(Generic[ItemType, ArraysType]):
 
     section: ClassVar[str]
     Item: ClassVar[type[Item]]
-    Arrays: ClassVar[type[Any]]  # dataclass: names, and a field of the name of each key that models use
+    Arrays: ClassVar[type[Any]]  # dataclass of arrays: names, and one field per key that models use
     columns: ClassVar[tuple[ItemColumn, ...]] = ()  # of a joint first its position: a slide, an offset, a rotation
     varied: ClassVar[tuple[str, ...]] = ()  # numbers of its arrays that may affect a jump
-    not_in_dem: ClassVar[str] = ""  # text after its name if the DEM refuses it; empty: the DEM supports it
+    not_in_dem: ClassVar[str] = ""  # reason why the DEM refuses the type; empty: the DEM supports it
 
     @property
     def items(self) -> str:
@@ -131,10 +131,10 @@ class PartType(Generic[ItemType, ArraysType]):
         return found
 
     def check_vectors(self, item: ItemType, dimension: int) -> None:
-        """Raise NotAllowed for a vector whose length differs from the truss' dimension."""
+        """Raise NotAllowed for a vector whose length differs from the dimension of the truss."""
 
     def check_references(self, item: ItemType, nodes: Mapping[str, Any], links: Mapping[str, Any]) -> None:
-        """Raise an error for a name that does not exist or does not match."""
+        """Raise an error for a reference to a missing or unsuitable node or link."""
         raise NotImplementedError
 
     def may_be_wrong_vectors(self, items: ItemColumns[ItemType], dimension: int) -> np.ndarray:
@@ -151,19 +151,19 @@ class PartType(Generic[ItemType, ArraysType]):
         return made
 
     def derived(self, items: Sequence[ItemType], known: References) -> dict[str, Any]:
-        """Return the arrays whose values differ from those of a key."""
+        """Return the arrays that are not simply the values of a key."""
         return {}
 
     def torsion(self, arrays: ArraysType) -> Torsion:
-        """Return the moments by which it rotates links against each other."""
+        """Return the torsional stiffnesses between links."""
         return Torsion((), np.zeros((0, 2), dtype=int), np.zeros((0, 3)), np.zeros(0))
 
     def symbols(self, truss: ResolvedTruss, arrays: ArraysType) -> list[Symbol]:
-        """Return its symbols, the first of them for the legend; empty for a type that is drawn as lines."""
+        """Return the symbols of the type, first the one for the legend; empty for a type that is drawn as lines."""
         return []
 
     def legend(self, arrays: ArraysType) -> str:
-        """Return the text of the legend for its symbol, with the numbers that a drawing cannot show."""
+        """Return the legend text of the symbol, with the numbers that a drawing cannot show."""
         raise NotImplementedError
 
 
@@ -200,7 +200,7 @@ class BetweenLinks(AboutAxis[ItemType, ArraysType]):
 
 
 class JointType(PartType[ItemType, ArraysType]):
-    """A type of joint. ``section`` is its list in a case file, its kind in the engine and its name in messages."""
+    """A joint type. ``section`` is its list in a case file, its kind in the engine and its name in messages."""
 
     has_temperature: ClassVar[bool] = False  # its items have a program and a temperature_fraction
     has_contacts: ClassVar[bool] = False  # two surfaces touch: it has rows among the contacts of a result
@@ -208,17 +208,17 @@ class JointType(PartType[ItemType, ArraysType]):
 
     @property
     def state_column(self) -> str:
-        """Name of the column of its states in the samples of the DEM; the solver has other statuses."""
+        """Name of the column of its states in the samples of the DEM; the statuses of the solver differ."""
         return f"{self.section}_state"
 
     def where(self, name: str) -> dict[str, Any]:
-        """Return the name of one of its joints in messages."""
+        """Return the fields of a message that name a joint."""
         return {**super().where(name), "joint": name}
 
     # ---------------------------------------------------------------- case
 
     def expands(self, item: ItemType) -> bool:
-        """Return whether joints that have a temperature expand with it."""
+        """Return whether a joint with a temperature expands with it."""
         return False
 
     def check_geometry(self, truss: ResolvedTruss, joints: ArraysType, ranges_K: np.ndarray) -> None:
@@ -228,17 +228,17 @@ class JointType(PartType[ItemType, ArraysType]):
         """
 
     def joined(self, joints: ArraysType) -> np.ndarray:
-        """Return the pairs of nodes (k, 2) that the joints constrain."""
+        """Return the pairs of nodes (k, 2) that the joints couple."""
         return np.zeros((0, 2), dtype=int)
 
     # ---------------------------------------------------------------- solver
 
     def engine_arrays(self, truss: ResolvedTruss, joints: ArraysType) -> dict[str, Any]:
-        """Return the engine's parameters that have no array of the same name."""
+        """Return the arrays for the engine that have no field of the same name."""
         return {}
 
     def path_refuses(self, joints: ArraysType) -> tuple[str, str] | None:
-        """Return name and error code of a joint without a quasi-static path: it needs ``motion.start = "drawn"``."""
+        """Return name and error code of a joint without a quasi-static path, which needs ``motion.start = "drawn"``."""
         return None
 
     # ---------------------------------------------------------------- result
@@ -251,14 +251,14 @@ class JointType(PartType[ItemType, ArraysType]):
         """Return the parts of the page's drawing.
 
         :param labels: names of its contacts
-        :param taken: existing names of parts; the new ones are added
+        :param taken: names of existing parts; the method adds its own
         """
         return Drawn([], [], np.zeros(0))
 
     # ---------------------------------------------------------------- drawing and words
 
     def place_nodes(self, truss: ResolvedTruss, joints: ArraysType) -> np.ndarray:
-        """Return the node (joints,) at which a point represents a joint."""
+        """Return the node (joints,) that represents each joint as a point."""
         raise NotImplementedError
 
     def covered_nodes(self, joints: ArraysType) -> np.ndarray:
@@ -266,11 +266,11 @@ class JointType(PartType[ItemType, ArraysType]):
         return np.zeros(0, dtype=int)
 
     def guided_nodes(self, joints: ArraysType) -> np.ndarray:
-        """Return the nodes whose guides its symbols show."""
+        """Return the nodes whose guides the symbols already show."""
         return np.zeros(0, dtype=int)
 
     def sides(self, joints: ArraysType) -> Iterable[tuple[int, np.ndarray]]:
-        """Yield nodes of planar trusses whose names are written below a symbol, and its upward direction (2,)."""
+        """Yield nodes of planar trusses with the upward direction (2,) of their symbol; names are written below it."""
         return ()
 
     def describe(self, items: Sequence[ItemType]) -> str:
@@ -280,36 +280,34 @@ class JointType(PartType[ItemType, ArraysType]):
     # ---------------------------------------------------------------- answers
 
     def parameters(self, joints: ArraysType) -> list[tuple[str, np.ndarray]]:
-        """Return keys and values (joints,) of parameters that may affect a jump; 0 or infinity: the joint has none."""
+        """Return keys and values (joints,) of parameters that may affect a jump; 0 or infinity: a joint has none."""
         return [(key, getattr(joints, key)) for key in self.varied]
 
     def add_friction(self, loads: Loads, joints: ArraysType, state: Mapping[str, np.ndarray]) -> None:
-        """Add the forces that represent the friction of its joints in one state of the solver."""
+        """Add the forces that represent the friction of the joints in one state of the solver."""
         raise NotImplementedError
 
     def without_friction(self, truss: ResolvedTruss) -> ResolvedTruss:
-        """Return the truss whose joints of this type have no friction, and the temperature of the reference
-        configuration."""
+        """Return the truss with frictionless joints of this type, at the temperature of the reference configuration."""
         raise NotImplementedError
 
     def unknown_friction(self, joints: ArraysType, state: Mapping[str, np.ndarray]) -> Iterable[int]:
-        """Return the joints with unknown friction in a state."""
+        """Return the joints whose friction cannot be determined in a state."""
         return ()
 
     def carried_friction(self, joints: ArraysType, at: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        """Return the friction of its joints and its limits (joints,) [N], or [N m] for a type that rotates, from its
-        columns at one sample of any model. If stop and friction carry a force together, friction gets as much as it can
-        carry."""
+        """Return absolute friction and friction limit (joints,) [N], or [N m] for a rotating type, from its columns at
+        one sample of any model. If a stop and friction share a force, friction carries as much as its limit allows."""
         raise NotImplementedError
 
     # ---------------------------------------------------------------- DEM
 
     def dem_refuses(self, joints: ArraysType) -> tuple[str, str] | None:
-        """Return name and reason of a joint that the DEM does not support, although it supports others of the type."""
+        """Return name and reason for a joint that the DEM does not support, although it supports the type."""
         return None
 
     def regularised_refuses(self, joints: ArraysType) -> tuple[str, str] | None:
-        """Return name and reason of a joint that ``motion.scheme = "regularised"`` does not support."""
+        """Return name and reason for a joint that ``motion.scheme = "regularised"`` does not support."""
         return (joints.names[0], "has no contact of two bodies") if joints.names else None  # type: ignore[attr-defined]
 
     def contact_parts(self, joints: ArraysType) -> list[ContactPart]:
@@ -317,20 +315,19 @@ class JointType(PartType[ItemType, ArraysType]):
         return []
 
     def contact_nodes(self, joints: ArraysType) -> np.ndarray:
-        """Return the nodes (joints, k) whose bodies touch or carry touching parts; the position of the contact
-        first."""
+        """Return the nodes (joints, k) whose bodies touch or carry touching parts; first the one at the contact."""
         return np.zeros((0, 1), dtype=int)
 
     def pushed_nodes(self, joints: ArraysType) -> np.ndarray:
-        """Return the nodes (joints, k), or GROUND, on which a contact acts; their masses move."""
+        """Return the nodes (joints, k), or GROUND, on which a contact acts and whose masses it accelerates."""
         return self.contact_nodes(joints)
 
     def bodies_touch(self, joints: ArraysType) -> np.ndarray:
-        """Return the joints with bodies that touch in the DEM. For the others an engine computes the forces."""
+        """Return for each joint whether its bodies touch in the DEM. Otherwise an engine computes its forces."""
         return np.full(len(self.contact_nodes(joints)), True)
 
     def reach_m(self, path: Course, joints: ArraysType) -> np.ndarray:
-        """Return the largest distance of a contact's bodies from its position [m] (joints,)."""
+        """Return the largest distance [m] (joints,) of the bodies of a contact from its position."""
         return np.zeros(0)
 
     def contact_stiffness(self, path: Course, joints: ArraysType) -> tuple[np.ndarray, np.ndarray]:
@@ -339,16 +336,17 @@ class JointType(PartType[ItemType, ArraysType]):
         return np.zeros((0, 1), dtype=int), np.zeros(0)
 
     def gives_in_dem(self, path: Course, joints: ArraysType, told_m: float) -> list[str]:
-        """Return sentences about joints that are rigid in the reduced model and yield in the DEM by more than
+        """Return sentences about joints that are rigid in the reduced model and in the DEM deform by more than
         ``told_m`` [m]."""
         return []
 
     def largest_turn_rad(self, path: Course, joints: ArraysType) -> np.ndarray:
-        """Return the largest rotation of :meth:`torsion` from the reference configuration on the path (joints,)."""
+        """Return the largest rotation [rad] (joints,) on the path from the reference configuration, see
+        :meth:`torsion`."""
         return np.zeros(0)
 
     def scene(self, path: Course, joints: ArraysType) -> dict[str, Any]:
-        """Return data for the YADE script besides the arrays."""
+        """Return data for the YADE script that are not in the arrays."""
         return {}
 
 
@@ -358,23 +356,23 @@ def count(items: Sequence[object], one: str) -> str:
 
 
 def spread(values: Iterable[float], unit: str = "-", digits: int = 4) -> str:
-    """Return the common value of many items, or the range of their values."""
+    """Return the common value of many items or, if they differ, their range."""
     known = [float(value) for value in values]
     low, high = min(known), max(known)
     return text(low, unit, digits) if low == high else f"{text(low, unit, digits)} to {text(high, unit, digits)}"
 
 
 def scaled(values: np.ndarray, scale: float, unit: str) -> str:
-    """Return one value or the range of several, in a readable unit of the values times ``scale``."""
+    """Return the common value or the range of several values times ``scale``, in a readable unit."""
     low, high = values.min() * scale, values.max() * scale
     return f"{low:.4g} {unit}" if high - low <= 1e-9 * abs(high) else f"{low:.3g} to {high:.3g} {unit}"
 
 
 @dataclass(frozen=True)
 class Loads:
-    """Forces of one joint after the other.
+    """Nodal forces of all joints, joint by joint.
 
-    :param force_N: (joints, nodes, 3), to which forces are added
+    :param force_N: (joints, nodes, 3), incremented by the methods
     :param place_m: (nodes, 3), positions of nodes in the state
     """
 
@@ -383,12 +381,12 @@ class Loads:
     place_m: np.ndarray
 
     def push(self, joint: int, node: int, force_N: np.ndarray) -> None:
-        """Add a force on a node; on GROUND none."""
+        """Add a force on a node; GROUND is ignored."""
         if node != GROUND:
             self.force_N[joint, node] += force_N
 
     def turn(self, joint: int, link: int, moment_N_m: np.ndarray) -> None:
-        """Add a moment on a link; on GROUND none."""
+        """Add a moment on a link; GROUND is ignored."""
         if link == GROUND:
             return
         one, two = self.truss.links.nodes[link]
@@ -399,12 +397,12 @@ class Loads:
 
     def rub(self, joint: int, nodes: tuple[int, int], links: tuple[int, int], friction_N: np.ndarray,
             offset_m: np.ndarray, arm_m: float) -> None:
-        """Add the friction between a round part and a hollow one, with the moments on both about their own nodes.
+        """Add the friction between a round part and a hollow one, with the moments on both about their nodes.
 
-        :param nodes: of the hollow part and of the round one; ``links`` likewise
-        :param friction_N: on the round part
-        :param offset_m: of the round part's centre from the hollow one's
-        :param arm_m: from the round part's centre to the contact point
+        :param nodes: nodes of the hollow part and of the round one; ``links`` likewise
+        :param friction_N: friction on the round part
+        :param offset_m: vector from the centre of the hollow part to that of the round one
+        :param arm_m: distance from the centre of the round part to the contact point
         """
         distance = float(np.linalg.norm(offset_m))
         if distance == 0 or not friction_N.any():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Clearance revolutes: a journal with clearance in a bearing, with Coulomb friction."""
+"""Clearance revolutes: a journal with clearance and Coulomb friction in a bearing."""
 from __future__ import annotations
 
 from collections.abc import Mapping

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Joints with clearance: a round part at one node in a bore at another, with Coulomb friction."""
+"""Joints with clearance: a round part at one node in a bore at another node, with Coulomb friction."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -35,14 +35,14 @@ class RoundArrays:
     program: np.ndarray  # int, index into ResolvedTruss.programs
     young_modulus_Pa: np.ndarray
     poisson_ratio: np.ndarray
-    rigid: np.ndarray  # bool: contact = "rigid" in the reduced model
+    rigid: np.ndarray  # bool: contact = "rigid" of the reduced model
 
 
 ArraysType = TypeVar("ArraysType", bound=RoundArrays)
 
 
 class RoundParts(JointType[ItemType, ArraysType]):
-    """Keys and arrays of both parts begin with their names: ``journal_node``, ``journal_radius_m``, ..."""
+    """A joint of a round part in a bore. Keys and arrays of each part begin with its name: ``journal_node``, ..."""
 
     noun: ClassVar[str]  # in sentences
     inner: ClassVar[str]  # name of the inner part
@@ -50,13 +50,13 @@ class RoundParts(JointType[ItemType, ArraysType]):
     eccentricity: ClassVar[str]  # columns: inner less outer centre
     normal_force: ClassVar[str]
     friction_force: ClassVar[str]
-    has_axis: ClassVar[bool] = True  # whether its arrays have the axis of rotation of the parts
+    has_axis: ClassVar[bool] = True  # whether its arrays have the axis of rotation of both parts
     has_temperature = True
     has_contacts = True
 
     @property
     def parts(self) -> tuple[str, str]:
-        """Names of both parts, the position of the contact first."""
+        """Names of both parts, first the one at the position of the contact."""
         return self.outer, self.inner
 
     def _nodes(self, joints: ArraysType) -> np.ndarray:
@@ -67,19 +67,19 @@ class RoundParts(JointType[ItemType, ArraysType]):
         return found if part == self.inner else found + joints.radial_clearance_m
 
     def hertz_stiffness(self, joints: Any) -> np.ndarray:
-        """Return K of F = K δ^1.5 [N/m^1.5] of every joint. Both parts are of one material and touch as a sphere of R =
-        R1 R2/(R2 - R1) on a plane, as bodies of the DEM do. The formulas are independent of its contact law."""
+        """Return K of F = K δ^1.5 [N/m^1.5] of every joint. Both parts have one material and touch like a sphere of
+        radius R = R1 R2/(R2 - R1) on a plane, as in the DEM. The formulas are independent of the DEM's contact law."""
         inner, outer = (self.radius_m(joints, part) for part in (self.inner, self.outer))
         radius = physics.conforming_radius_m(inner, outer, joints.radial_clearance_m)
         modulus = physics.effective_young_modulus_Pa(joints.young_modulus_Pa, joints.poisson_ratio)
         return physics.hertz_stiffness_N_per_m15(modulus, radius)
 
     def mindlin_stiffness(self, joints: Any) -> np.ndarray:
-        """Return k_t over the root of the depth [N/m^1.5] of every joint, 8 G* sqrt(R)."""
+        """Return k_t / sqrt(depth) [N/m^1.5] of every joint, 8 G* sqrt(R)."""
         return 1.5 * self.hertz_stiffness(joints) * physics.shear_over_normal_stiffness(joints.poisson_ratio)
 
     def clearance_m(self, joints: Any, temperature_change_K: Any) -> np.ndarray:
-        """Return the radial clearance [m] of the joints at these ΔT [K] (fraction included)."""
+        """Return the radial clearance [m] of the joints at ΔT [K], already multiplied by the temperature fraction."""
         grown = [getattr(joints, f"{part}_thermal_expansion_per_K") * self.radius_m(joints, part)
                  for part in self.parts]
         found: np.ndarray = joints.radial_clearance_m + temperature_change_K * (grown[0] - grown[1])
@@ -107,7 +107,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
             node, link = getattr(item, node_key), getattr(item, link_key)
             known_name(node_key, node, node, nodes, "node", **where)
             if link is None:
-                # Nothing determines the rotation of such a part.
+                # Nothing determines the rotation of this part.
                 if not nodes[node].fixed and nodes[node].guide_normal is None:
                     raise MissingKey(link_key, code="rotating_part_unsupported", nodes=(node,), part=part,
                                      node_wanted=node, **where)
@@ -139,7 +139,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
     def check_parts(self, truss: ResolvedTruss, joints: Any, ranges_K: np.ndarray, apart_m: np.ndarray) -> None:
         """Raise NotAllowed for parts that expand too far, or are too far apart in the reference configuration.
 
-        :param apart_m: distance of both parts' centres, in the directions that close the clearance (joints,)
+        :param apart_m: distance of the centres of both parts [m] (joints,), in the directions that close the clearance
         """
         for side in (0, 1):
             changes = joints.temperature_fraction * ranges_K[joints.program, side]
@@ -167,8 +167,8 @@ class RoundParts(JointType[ItemType, ArraysType]):
                              **self.where(joints.names[index]))
 
     def offset_m(self, truss: ResolvedTruss, joints: ArraysType) -> np.ndarray:
-        """Return the vector from the outer to the inner part's centre in the reference configuration [m] (joints,
-        3)."""
+        """Return the vector [m] (joints, 3) from the centre of the outer part to that of the inner one, in the
+        reference configuration."""
         outer, inner = self._nodes(joints).T
         return truss.nodes.position_m[inner] - truss.nodes.position_m[outer]
 
@@ -203,8 +203,7 @@ class RoundParts(JointType[ItemType, ArraysType]):
                 if label in taken:
                     continue
                 taken.add(label)
-                # In space, the angle of a link in the view along z does not determine its rotation about the joint's
-                # axis.
+                # In space, the angle of a link in the view along z is not its rotation about the joint's axis.
                 turns = link != GROUND and truss.dimension == 2
                 angle = drawing.ref("links/angle_rad", truss.links.names[link]) if turns else 0.0
                 axis = {"axis": joints.axis[place].tolist()} if truss.dimension == 3 and self.has_axis else {}
@@ -238,13 +237,13 @@ class RoundParts(JointType[ItemType, ArraysType]):
                 f"{radius}, friction coefficient {spread(joint.friction_coefficient for joint in items)}.")
 
     def friction_on_inner_N(self, joints: Any, state: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Return the friction on the inner part (joints, 3) in one state of the solver."""
+        """Return the friction on the inner part [N] (joints, 3) in one state of the solver."""
         raise NotImplementedError
 
     def add_friction(self, loads: Loads, joints: Any, state: Mapping[str, np.ndarray]) -> None:
         links = np.stack([getattr(joints, f"{part}_link") for part in self.parts], axis=1)
         offset = state[self.eccentricity]
-        # The radii meet in the middle of the depth; at the ends of cycles ΔT = 0.
+        # The contact point is in the middle of the penetration depth. At the ends of cycles ΔT = 0.
         depth = np.maximum(np.linalg.norm(offset, axis=1) - joints.radial_clearance_m, 0.0)
         arm = self.radius_m(joints, self.inner) - depth / 2
         for index, friction in enumerate(self.friction_on_inner_N(joints, state)):

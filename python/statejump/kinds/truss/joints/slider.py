@@ -52,11 +52,11 @@ class Slider(Item):
 
 @dataclass(frozen=True)
 class Sliders:
-    """Prismatic joints: axis · (motion of the first node - motion of the second) slides, against friction
-    friction_coefficient · normal_force_N, from -clearance_minus_m to clearance_plus_m."""
+    """Prismatic joints. The slide, axis · (displacement of the first node - displacement of the second), lies between
+    -clearance_minus_m and clearance_plus_m and has the friction limit friction_coefficient · normal_force_N."""
 
     names: Sequence[str]
-    nodes: np.ndarray  # (s, 2) int; the second is GROUND, or a node that the joint constrains across the axis
+    nodes: np.ndarray  # (s, 2) int; the second is GROUND, or a node that the joint couples to the first across the axis
     axis: np.ndarray  # (s, 3) unit
     friction_coefficient: np.ndarray
     normal_force_N: np.ndarray
@@ -75,30 +75,30 @@ class Sliders:
 
     @property
     def have_stops(self) -> np.ndarray:
-        """Whether there is a stop on either side."""
+        """Whether each slider has a stop on at least one side."""
         return np.isfinite(self.clearance_minus_m) | np.isfinite(self.clearance_plus_m)
 
     @property
     def have_springs(self) -> np.ndarray:
-        """Whether stops are soft or there is a play. Such a slider is a prismatic joint in the DEM, also on ground."""
+        """Whether each slider has soft stops or a play. It is then a prismatic joint in the DEM, also on ground."""
         return np.isfinite(self.stop_stiffness_N_per_m) | (self.play_m > 0)
 
     def soft_stop_N(self, slide_m: np.ndarray) -> np.ndarray:
-        """Return the force of soft stops on the sliders against their axes [N]; 0 for rigid stops."""
+        """Return the force of soft stops on the sliders [N], positive against their axes; 0 for rigid stops."""
         soft = np.isfinite(self.stop_stiffness_N_per_m)
         beyond = slide_m - np.clip(slide_m, -self.clearance_minus_m, self.clearance_plus_m)
         return np.asarray(np.where(soft, self.stop_stiffness_N_per_m, 0.0) * beyond)
 
     def beside_soft_stops_N(self, state: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Return the force on the sliders without that of soft stops [N]."""
+        """Return the force on the sliders minus that of soft stops [N]."""
         return np.asarray(state["slider_force_N"] - self.soft_stop_N(state["slide_m"]))
 
 
 @dataclass(frozen=True)
 class Pad:
-    """Contacts of sliders with their floors: pads of a sphere on a plane."""
+    """Contacts of sliders with their floors: a spherical pad on a plane."""
 
-    depth_m: np.ndarray  # depth at which the floor carries the normal force
+    depth_m: np.ndarray  # depth [m] at which the floor carries the normal force
     normal_N_per_m: np.ndarray  # tangent stiffnesses at that depth
     tangential_N_per_m: np.ndarray
 
@@ -108,8 +108,8 @@ def _effective_modulus(sliders: Sliders) -> np.ndarray:
 
 
 def pad_hertz_stiffness(sliders: Sliders) -> np.ndarray:
-    """Return K of F = K δ^1.5 [N/m^1.5] of every slider's pad on a plane, its floor or a stop. Both parts are of one
-    material. The formulas are Hertz's and Mindlin's, independent of the DEM's contact law."""
+    """Return K of F = K δ^1.5 [N/m^1.5] of every slider's pad on a plane: its floor or a stop. Both parts have one
+    material. The formulas are those of Hertz and Mindlin, independent of the DEM's contact law."""
     return physics.hertz_stiffness_N_per_m15(_effective_modulus(sliders), sliders.pad_radius_m)
 
 
@@ -131,11 +131,11 @@ def pressing_directions(truss: ResolvedTruss, sliders: Sliders) -> np.ndarray:
     return np.array(found).reshape(-1, 3)
 
 
-AT_STOP = (3, 4)  # numbers of the engine's statuses at a stop
+AT_STOP = (3, 4)  # numbers of the engine's statuses "at a stop"
 
 
 def with_sliders(truss: ResolvedTruss, joints: Axes) -> ResolvedTruss:
-    """Return the truss with further sliders, along the axes of joints, without friction and stops."""
+    """Return the truss with further sliders along the axes of joints, without friction and stops."""
     sliders, count = truss.sliders, len(joints.names)
     nothing, no_stop = np.zeros(count), np.full(count, np.inf)
     more = {**dict.fromkeys(vars(sliders), nothing), "nodes": joints.nodes, "axis": joints.axis,
@@ -148,7 +148,7 @@ def with_sliders(truss: ResolvedTruss, joints: Axes) -> ResolvedTruss:
 
 
 def _across_N(path: Course, joints: Sliders, which: np.ndarray) -> np.ndarray:
-    """Return the largest force [N] across the axes of sliders (k,) by links, elements and dead loads on their first
+    """Return the largest force [N] (k,) across the axes of sliders from links, elements and dead loads on their first
     nodes."""
     truss, states = path.truss, path.states
     largest = []
@@ -166,8 +166,8 @@ def _across_N(path: Course, joints: Sliders, which: np.ndarray) -> np.ndarray:
 
 
 class SliderType(AlongAxis[Slider, Sliders]):
-    """Sliders, in the solver, in motion and in the DEM. In the DEM they are a pad on a floor on ground, or an engine
-    between nodes."""
+    """Sliders, supported by solver, motion and DEM. In the DEM a slider on ground is a pad on a floor, and one between
+    nodes an engine."""
 
     section = "slider"
     noun = "a slider"
@@ -199,7 +199,7 @@ class SliderType(AlongAxis[Slider, Sliders]):
                              **self.where(joints.names[index]))
 
     def engine_arrays(self, truss: ResolvedTruss, joints: Sliders) -> dict[str, Any]:
-        # A play closes elastically, even if everything else sticks rigidly.
+        # A play closes elastically, even if sticking is rigid otherwise.
         loaded = ((truss.sticking != "rigid") | (joints.play_m > 0)) & (joints.normal_force_N > 0)
         return {
             **super().engine_arrays(truss, joints),
@@ -313,7 +313,7 @@ class SliderType(AlongAxis[Slider, Sliders]):
         return joints.nodes
 
     def reach_m(self, path: Course, joints: Sliders) -> np.ndarray:
-        # The length of the floor is twice the motion of the quasi-static model, and the pad itself.
+        # The floor extends to twice the largest slide of the quasi-static model, plus the radius of the pad.
         return joints.pad_radius_m + 2 * np.abs(path.states["slide_m"]).max(axis=0)
 
     def contact_stiffness(self, path: Course, joints: Sliders) -> tuple[np.ndarray, np.ndarray]:
@@ -339,12 +339,12 @@ class SliderType(AlongAxis[Slider, Sliders]):
 
     def _start_slip_m(self, truss: ResolvedTruss, joints: Sliders, slide_m: np.ndarray, friction_N: np.ndarray
                       ) -> np.ndarray:
-        """Return the slides without friction force, in the middle of a play."""
+        """Return the slides [m] at which the friction force would be zero; with a play, the middle of its range."""
         bend = np.divide(friction_N, pads(joints).tangential_N_per_m, out=np.zeros_like(slide_m), where=friction_N != 0)
         closed = slide_m - bend - np.sign(friction_N) * joints.play_m / 2
         if truss.start_friction == FRICTIONLESS:
             return closed
-        # An open play is at its position in the reference configuration.
+        # A slider with an open play starts at its position in the reference configuration.
         return np.where((joints.play_m > 0) & (friction_N == 0), 0.0, closed)
 
     def scene(self, path: Course, joints: Sliders) -> dict[str, Any]:

@@ -16,8 +16,8 @@ from statejump.kinds.truss.importing.bodies import settle_bodies
 from statejump.kinds.truss.importing.contract import IDLE, REFUSED, Card, Field
 from statejump.kinds.truss.importing.model import Bar, Deck, Options
 
-# Order in which keywords are read, because decks have them in any order. Keywords of one stage are read in the order of
-# the deck.
+# Order in which keywords are read, because a deck may have them in any order. Keywords of one stage are read in the
+# deck's order.
 STAGES: tuple[dict[str, Reading], ...] = (
     {"SYSTEM": mesh.system, "NODE": mesh.node},
     {"NGEN": generation.ngen, "NSET": mesh.node_set, "NFILL": generation.nfill, "NCOPY": generation.ncopy},
@@ -29,14 +29,14 @@ STAGES: tuple[dict[str, Reading], ...] = (
     {"SOLID SECTION": sections.section, "BEAM SECTION": sections.section, "BEAM GENERAL SECTION": sections.general,
      "NODAL THICKNESS": sections.thickness,
      "MASS": sections.mass, "INITIAL CONDITIONS": loads.initial},
-    # Read after the steps, because their effect depends on supports.
+    # Read after the steps, because the result depends on supports.
     {"SPRING": sections.spring, "EQUATION": loads.equation},
 )
 # Keywords that are read with the steps, or that delimit parts.
 TOGETHER = ("BOUNDARY", "CLOAD", "DLOAD", "TEMPERATURE", "AMPLITUDE", "STEP", "STATIC", "END STEP", "PART", "END PART",
             "ASSEMBLY", "END ASSEMBLY", "INSTANCE", "END INSTANCE", "PARAMETER")
 SHORTEST = 3  # letters of an abbreviated parameter
-# Tolerance of the middle node of a bar with three nodes: decks have eight digits, and meshers position it to six.
+# Tolerance of the middle node of a bar with three nodes: decks have eight digits, meshers position it to six digits.
 MIDDLE = 1e-6
 # CalculiX ignores blanks in keywords and parameters.
 BY_LETTERS = {name.replace("_", ""): (name.replace("_", " "), card) for name, card in KEYWORDS.items()}
@@ -71,8 +71,7 @@ def read(path: Path, options: Options | None = None) -> Deck:
 
 
 def _check(model: Model, block: Block) -> bool:
-    """Return whether a keyword is read; according to the table it is otherwise refused, or noted as without
-    influence."""
+    """Return whether a keyword is read. Otherwise the table refuses it, or records it as without influence."""
     deck = model.deck
     letters = block.name.replace(" ", "")
     if letters not in BY_LETTERS:
@@ -131,7 +130,7 @@ def _steps(given: list[tuple[Block, Scope]]) -> tuple[list[loads.Step], list[tup
 
 
 def _bars(model: Model) -> None:
-    """Make bars of elements. An element becomes two bars if something else acts at its middle node."""
+    """Make bars of elements. An element becomes two bars if another item acts on its middle node."""
     shared = Counter(end for one in model.elements.values() for end in set(one.nodes))
     shared.update(term[0] for one in model.deck.equations for term in one.terms)
     shared.update(moment.node for moment in model.deck.moments)
@@ -161,7 +160,7 @@ def _bars(model: Model) -> None:
 
 
 def _taper(model: Model, bar: Bar, section: Section) -> None:
-    """Give a bar with sizes at its nodes the area and the density of an equivalent uniform bar."""
+    """Give a bar whose sizes vary between its nodes the area and the density of an equivalent uniform bar."""
     sizes = [model.thickness.get(end, (0.0, 0.0)) for end in bar.nodes]
     if found := profiles.between(section.shape, *sizes):
         bar.area, mean = found
@@ -170,7 +169,7 @@ def _taper(model: Model, bar: Bar, section: Section) -> None:
 
 
 def _splits(model: Model, one: Element, shared: Counter[str]) -> bool:
-    """Return whether the middle node of an element is more than a point of a straight bar."""
+    """Return whether the middle node of an element is more than an interior point of a straight bar."""
     deck, middle = model.deck, one.nodes[1]
     first, between, last = (np.array(deck.nodes[end]) for end in one.nodes)
     if shared[middle] > 1 or any(deck.force.get(middle, ())) or middle in deck.mass or \

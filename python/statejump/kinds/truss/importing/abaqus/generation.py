@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nodes and elements that are generated or copied: ``*NGEN``, ``*NFILL``, ``*NCOPY``, ``*ELGEN``, ``*ELCOPY``."""
+"""Generated or copied nodes and elements: ``*NGEN``, ``*NFILL``, ``*NCOPY``, ``*ELGEN``, ``*ELCOPY``."""
 from __future__ import annotations
 
 from math import atan2, degrees
@@ -20,13 +20,13 @@ def _place(model: Model, line: int, name: str) -> np.ndarray:
 
 
 def _shifted(model: Model, line: int, name: str, shift: int) -> str:
-    """Return the name of a node or element with another number."""
+    """Return the name of a node or element with its number increased by ``shift``."""
     prefix, stop, number = name.rpartition(".")
     return f"{prefix}{stop}{int(number) + shift}"
 
 
 def ngen(model: Model, block: Block, scope: Scope) -> None:
-    """Nodes between two others, on a straight line or an arc about a point."""
+    """Generate nodes between two others, on a straight line or an arc about a point."""
     line_kind = block.parameters.get("LINE", "").upper()
     if line_kind not in ("", "C"):
         model.deck.refuse("*NGEN, LINE", "parabola", block.line, "NGEN.LINE")
@@ -76,7 +76,7 @@ def _arc(model: Model, line: int, words: list[str], scope: Scope, start: np.ndar
 
 
 def nfill(model: Model, block: Block, scope: Scope) -> None:
-    """Nodes on straight lines between the nodes of two sets."""
+    """Generate nodes on straight lines between the nodes of two sets."""
     made: list[str] = []
     for line, words in block.data:
         if len(words) < 3:
@@ -101,7 +101,7 @@ def nfill(model: Model, block: Block, scope: Scope) -> None:
 
 
 def ncopy(model: Model, block: Block, scope: Scope) -> None:
-    """Nodes of a set, shifted and rotated, once or repeatedly."""
+    """Copy the nodes of a set, shifted and rotated, once or repeatedly."""
     step = model.whole(block.line, model.needed(block, "CHANGE NUMBER"))
     source = list(model.nodes_of(block.line, model.needed(block, "OLD SET"), scope))
     times = model.whole(block.line, block.parameters.get("MULTIPLE") or "1")
@@ -128,7 +128,7 @@ def ncopy(model: Model, block: Block, scope: Scope) -> None:
 
 
 def elgen(model: Model, block: Block, scope: Scope) -> None:
-    """Elements in rows, columns and layers after the pattern of one."""
+    """Generate elements in rows, columns and layers from one element."""
     made: list[str] = []
     for line, words in block.data:
         master = model.name(line, words[0], scope)
@@ -159,7 +159,7 @@ def _copies(model: Model, line: int, master: str, shifts: list[tuple[int, int]],
 
 
 def elcopy(model: Model, block: Block, scope: Scope) -> None:
-    """Elements of a set with other numbers and other nodes."""
+    """Copy the elements of a set with shifted numbers and nodes."""
     element_step, node_step = (model.whole(block.line, model.needed(block, key))
                                for key in ("ELEMENT SHIFT", "SHIFT NODES"))
     made: list[str] = []

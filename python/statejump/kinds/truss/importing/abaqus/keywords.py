@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Keywords of a deck of CalculiX or Abaqus with their parameters and data lines, and ``*INCLUDE``."""
+"""Reader of a deck of CalculiX or Abaqus: keywords with parameters and data lines, and ``*INCLUDE``."""
 from __future__ import annotations
 
 import re

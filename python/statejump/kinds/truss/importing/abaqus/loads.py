@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Supports, loads and temperatures, from step to step."""
+"""Readers of supports, loads and temperatures, step by step."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
@@ -19,7 +19,7 @@ STATIC = ("STATIC", "COUPLED TEMPERATURE-DISPLACEMENT", "UNCOUPLED TEMPERATURE-D
 
 @dataclass
 class Step:
-    """Blocks of a step; those of the model itself precede the first step."""
+    """Blocks of a step. Blocks before the first step belong to the model."""
 
     line: int = 0
     perturbation: bool = False
@@ -78,7 +78,7 @@ def initial(model: Model, block: Block, scope: Scope) -> None:
 
 
 def run(model: Model, steps: list[Step]) -> None:
-    """Apply the model's own supports and the steps up to the chosen one."""
+    """Apply the supports of the model and all steps up to the chosen one."""
     chosen = _chosen(model, steps)
     state = State()
     amplitudes = {block.parameters.get("NAME", "").upper(): block
@@ -89,7 +89,7 @@ def run(model: Model, steps: list[Step]) -> None:
 
 
 def _chosen(model: Model, steps: list[Step]) -> int:
-    """Return the index of the chosen step: that of --step, else the first static one, else the first."""
+    """Return the index of the chosen step: that of --step, else the first static step, else the first step."""
     wanted, count = model.deck.options.step or 0, len(steps) - 1
     if wanted > max(count, 1):
         raise NotAllowed("--step", wanted, code="undefined_step", steps=count, plural="s" if count != 1 else "")
@@ -137,7 +137,7 @@ def _apply(model: Model, step: Step, state: State, amplitudes: dict[str, Block],
 
 
 def _clear(state: State, name: str) -> None:
-    """Remove the state that earlier steps set by a keyword."""
+    """Remove supports or loads that earlier steps set by a keyword."""
     if name == "BOUNDARY":
         state.held.clear()
     elif name == "CLOAD":
@@ -149,7 +149,7 @@ def _clear(state: State, name: str) -> None:
 
 
 def _factor(model: Model, block: Block, amplitudes: dict[str, Block], period: float | None) -> float | None:
-    """Return the factor of AMPLITUDE= at the end of a step; None: it is refused."""
+    """Return the factor of AMPLITUDE= at the end of a step; None: the amplitude is refused."""
     name = block.parameters.get("AMPLITUDE")
     if name is None:
         return 1.0
@@ -161,7 +161,7 @@ def _factor(model: Model, block: Block, amplitudes: dict[str, Block], period: fl
     times, values = pairs[::2], pairs[1::2]
     relative = given.get("VALUE", "RELATIVE").upper() == "RELATIVE" and \
         given.get("DEFINITION", "TABULAR").upper() == "TABULAR" and block.name != "TEMPERATURE"
-    constant = len(set(values)) == 1 and len(values) == len(times)  # constant in time, for any type of step
+    constant = len(set(values)) == 1 and len(values) == len(times)  # constant in time, so any type of step may have it
     if not relative or not constant and (period is None or given.get("TIME")):
         model.deck.refuse(f"*{block.name}, AMPLITUDE", "amplitude_at_end_unknown", block.line,
                           f"{block.name}.AMPLITUDE")
@@ -245,7 +245,7 @@ def _temperatures(model: Model, found: dict[str, float], block: Block, scope: Sc
 
 
 def _finish(model: Model, state: State) -> None:
-    """Write what acts into the deck, in the basic system."""
+    """Write the resulting supports and loads into the deck, in the basic coordinate system."""
     deck = model.deck
     deck.temperature.update(state.temperature)
     for node, directions in state.held.items():
@@ -266,7 +266,7 @@ def _finish(model: Model, state: State) -> None:
 
 
 def _gravity(model: Model, state: State) -> None:
-    """Raise an error unless gravity acts equally on everything that has a mass."""
+    """Raise an error unless one gravity acts on all items with mass."""
     acting: dict[str, np.ndarray] = {}
     for group, (vector, line) in state.gravity.items():
         for one in model.elements_of(line, group, Scope()):
@@ -282,7 +282,7 @@ def _gravity(model: Model, state: State) -> None:
 
 
 def equation(model: Model, block: Block, scope: Scope) -> None:
-    """Equations of one block: a number of terms, then node, direction and factor of each."""
+    """Read the equations of one block: number of terms, then node, direction and factor of each term."""
     rest = [(line, words) for line, words in block.data]
     while rest:
         begun, words = rest.pop(0)

@@ -17,7 +17,7 @@ NODES = re.compile(r"[A-Z]+(?:3D|2D)?(\d+)[A-Z]*$")
 
 
 def system(model: Model, block: Block, scope: Scope) -> None:
-    """Read the coordinate system of the following nodes; without data it is the basic one."""
+    """Read the coordinate system of the nodes that follow; without data lines it is the basic system."""
     if not block.data:
         model.system = BASIC
         return
@@ -62,7 +62,7 @@ def node(model: Model, block: Block, scope: Scope) -> None:
 
 
 def add_node(model: Model, line: int, name: str, values: list[float]) -> None:
-    """Add a node; it may exist already at the same position."""
+    """Add a node. A repeated node must have the same position."""
     x, y, z = values
     if model.deck.nodes.get(name) == (x, y, z):
         return
@@ -70,7 +70,7 @@ def add_node(model: Model, line: int, name: str, values: list[float]) -> None:
 
 
 def element(model: Model, block: Block, scope: Scope) -> None:
-    """Elements of one type, over as many lines as their nodes need."""
+    """Read elements of one type, each over as many lines as its nodes need."""
     kind = model.needed(block, "TYPE").upper()
     known = ELEMENTS.get(kind)
     found = NODES.match(kind)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shared by the readers of keywords: numbers, names, sets of nodes and elements, scopes of instances."""
+"""Shared code of the keyword readers: numbers, names, sets of nodes and elements, scopes of instances."""
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
@@ -19,7 +19,7 @@ from statejump.kinds.truss.importing.model import Deck, quoted
 class Scope:
     """Scope of a block: the model, or an instance of a part.
 
-    :param prefix: of names of nodes, elements and sets, with its full stop
+    :param prefix: prefix of names of nodes, elements and sets, with a final full stop
     :param move: converts a position in the part to one in the assembly
     """
 
@@ -32,7 +32,7 @@ Reading = Callable[["Model", Block, Scope], None]
 
 @dataclass
 class Element:
-    """An element by its family, with all its nodes."""
+    """An element with its family and all its nodes."""
 
     name: str
     family: str
@@ -43,7 +43,7 @@ class Element:
 
 @dataclass
 class Material:
-    """Properties of a material; None: not in the deck."""
+    """Properties of a material; None: missing in the deck."""
 
     young_modulus: float | None = None
     poisson_ratio: float | None = None
@@ -57,7 +57,7 @@ class Material:
 class Section:
     """Area and material of a bar.
 
-    :param shape: shape whose sizes are given at nodes; empty: the area is given
+    :param shape: shape of a section whose sizes are given at nodes; empty: the area is given
     """
 
     area: float | None
@@ -101,7 +101,7 @@ class Model:
         return int(text)
 
     def name(self, line: int, text: str, scope: Scope) -> str:
-        """Return the name of a node or element: its number, after that of its instance."""
+        """Return the name of a node or element: its number, preceded by the name of its instance."""
         instance, stop, number = text.rpartition(".")
         prefix = f"{instance.upper()}." if stop else scope.prefix
         if not number.isdecimal() or not number.isascii() or len(number) > 12:
@@ -169,7 +169,7 @@ class Model:
         return [f"{prefix}{number}" for number in within if (number - first) % step == 0]
 
     def frame(self, node: str) -> Frame:
-        """Return the directions in which the supports and loads of a node are given."""
+        """Return the directions of the supports and loads of a node."""
         return self.frames.get(node, BASIC)
 
     def refuse(self, block: Block, known: Card, parameter: str) -> None:

@@ -21,7 +21,7 @@ def material(model: Model, block: Block, scope: Scope) -> None:
 
 
 def _of_material(model: Model, block: Block, counts: int) -> tuple[Material, list[float]] | None:
-    """Return the material and its numbers; None: they depend on temperature or direction, which is refused.
+    """Return the material of a block and its numbers; None: they depend on temperature or direction and are refused.
 
     :param counts: number of values before the temperature
     """
@@ -51,8 +51,8 @@ def elastic(model: Model, block: Block, scope: Scope) -> None:
 
 
 def expansion(model: Model, block: Block, scope: Scope) -> None:
-    """Read a thermal expansion. ZERO matters if the coefficient depends on temperature. Bars are stress-free at their
-    initial temperature."""
+    """Read a thermal expansion. ZERO is used only if the coefficient depends on temperature. Bars are stress-free at
+    their initial temperature."""
     kind = block.parameters.get("TYPE", "").upper()
     counts = {"ORTHO": 3, "ANISO": 6}.get(kind, 1)
     if kind not in (*ISOTROPIC, "ORTHO", "ANISO"):
@@ -100,7 +100,7 @@ def section(model: Model, block: Block, scope: Scope) -> None:
 
 
 def thickness(model: Model, block: Block, scope: Scope) -> None:
-    """Read two sizes of nodes; a single one applies to both."""
+    """Read two sizes at nodes; a single size applies to both."""
     for line, words in block.data:
         sizes = model.numbers(line, words[1:3])
         if not sizes:
@@ -130,7 +130,7 @@ def _area(model: Model, block: Block, shape: str, values: list[float]) -> float 
 
 
 def general(model: Model, block: Block, scope: Scope) -> None:
-    """Read a section with an area and a material of its own."""
+    """Read a section that gives its area and material itself."""
     if block.parameters.get("SECTION", "GENERAL").upper() != "GENERAL":
         model.deck.refuse("*BEAM GENERAL SECTION, SECTION", "unsupported_type", block.line,
                           "BEAM GENERAL SECTION.SECTION", only="GENERAL")
@@ -147,7 +147,7 @@ def general(model: Model, block: Block, scope: Scope) -> None:
 
 
 def spring(model: Model, block: Block, scope: Scope) -> None:
-    """Stiffness of springs: a line of directions for SPRING1 and SPRING2, then the stiffness."""
+    """Read the stiffness of springs: a line of directions for SPRING1 and SPRING2, then the stiffness."""
     if not block.data:
         raise model.deck.fail(block.line, "deck_incomplete", "*SPRING", needed="a stiffness")
     found = model.elements_of(block.line, model.needed(block, "ELSET"), scope)
@@ -173,7 +173,7 @@ def spring(model: Model, block: Block, scope: Scope) -> None:
 
 
 def mass(model: Model, block: Block, scope: Scope) -> None:
-    """Mass of the nodes of elements of type MASS."""
+    """Read the mass of the nodes of elements of type MASS."""
     if not block.data:
         raise model.deck.fail(block.line, "deck_incomplete", "*MASS", needed="data")
     value = model.numbers(*block.data[0])[0]

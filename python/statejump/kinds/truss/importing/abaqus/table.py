@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every known keyword of CalculiX and Abaqus with its parameters in exactly one class."""
+"""Table of all known keywords of CalculiX and Abaqus; each parameter is in exactly one class."""
 from __future__ import annotations
 
 from statejump.kinds.truss.importing.contract import Card, idle, refused, table, used
@@ -14,7 +14,7 @@ HEAT = "heat transfer: temperatures are those of *TEMPERATURE"
 CONTACT = "contact"
 TIES = "couplings of nodes, surfaces or rotations: only *EQUATION is supported"
 USER = "a routine of the user"
-# In this table "_" stands for blanks in names of keywords and parameters, because blanks separate them.
+# In this table "_" stands for a blank in a name, because blanks separate names.
 KEYWORDS: dict[str, Card] = table(
     used("NODE", "node", "NSET SYSTEM INPUT", refused={"INPUT": "a file of its own"}),
     used("SYSTEM", "coordinate system of nodes"),
@@ -123,7 +123,7 @@ KEYWORDS: dict[str, Card] = table(
     idle("DEPVAR", "state of routines that are not supported"),
 )
 
-# Elements: family (link, spring, mass or nothing) and number of nodes.
+# Families of elements; "nothing" has no influence.
 BAR, BEAM, SPRING, MASS, NOTHING = "bar", "beam", "spring", "mass", "nothing"
 ELEMENTS: dict[str, tuple[str, int]] = {
     "T2D2": (BAR, 2), "T3D2": (BAR, 2), "T2D3": (BAR, 3), "T3D3": (BAR, 3), "T2D2T": (BAR, 2), "T3D2T": (BAR, 2),

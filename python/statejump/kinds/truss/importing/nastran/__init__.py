@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bulk data of Nastran. A table declares the use of every card; the readers follow it."""
+"""Reader of Nastran bulk data. A table declares the use of every card; the readers follow it."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -14,7 +14,7 @@ from statejump.kinds.truss.importing.nastran.cards import BARE_EXPONENT, Card, s
 from statejump.kinds.truss.importing.nastran.reader import Reader
 from statejump.kinds.truss.importing.nastran.table import CARDS, PARAMS
 
-# In the order of reading: each needs the ones before it.
+# In the order of reading: each reader needs the results of those before it.
 READERS: dict[str, Callable[[Reader, Card], None]] = {
     "MAT1": properties.mat1, "PROD": properties.simple, "PBAR": properties.simple, "PTUBE": properties.ptube,
     "PBARL": properties.pbarl, "PBEAM": properties.pbeam, "PBEAML": properties.pbeaml, "PELAS": properties.pelas,
@@ -27,7 +27,7 @@ READERS: dict[str, Callable[[Reader, Card], None]] = {
     "RBAR": bodies.rbar, "RBAR1": bodies.rbar, "RBE2": bodies.rbe2, "RBE3": bodies.rbe3, "RROD": bodies.rrod,
     "MPC": bodies.mpc,
 }
-# Cards of one kind that other functions read together.
+# Cards that functions outside of READERS read together.
 TOGETHER = ("GRID", "GRDSET", "CORD1R", "CORD1C", "CORD1S", "CORD2R", "CORD2C", "CORD2S", "BAROR", "BEAMOR", "PBUSH",
             "SPCADD", "MPCADD", "LOAD", "LOADADD", "TEMP", "TEMPD", "PARAM")
 
@@ -70,7 +70,7 @@ def read(path: Path, options: Options | None = None) -> Deck:
 
 
 def _counts(reader: Reader, card: Card) -> bool:
-    """Whether the set of a card is selected."""
+    """Return whether the case control selects the set of a card."""
     kind = CARDS[card.name].sets
     return not kind or card.name == "TEMP" or reader.factor(card, kind) is not None
 

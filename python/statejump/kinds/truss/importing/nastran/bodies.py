@@ -15,7 +15,7 @@ ALL, MOVES = frozenset("123456"), frozenset("123")
 
 
 def rbar(reader: Reader, card: Card) -> None:
-    """RBAR and RBAR1: a rigid bar of two nodes, if it couples all components."""
+    """Read a rigid bar of two nodes (RBAR, RBAR1) that couples all components."""
     first, second = (reader.node(card, place) for place in (1, 2))
     if card.name == "RBAR1":
         if not MOVES <= set(card[3] or "123456"):
@@ -28,7 +28,7 @@ def rbar(reader: Reader, card: Card) -> None:
             free[0] = ALL
         if not any(coupled):
             coupled = [ALL - one for one in free]
-        # Either one end has all components and the translations of the other follow, as for a hinge; or all components
+        # Accepted: one end with all components and the other end following in translation (a hinge), or all components
         # that are not free follow.
         hinge = free in ([ALL, frozenset()], [frozenset(), ALL]) and MOVES <= coupled[free.index(frozenset())] and \
             not coupled[free.index(ALL)]
@@ -39,7 +39,7 @@ def rbar(reader: Reader, card: Card) -> None:
 
 
 def rbe2(reader: Reader, card: Card) -> None:
-    """Read a rigid body. For components of nodes at one position it becomes equations."""
+    """Read a rigid body (RBE2). If it couples only some components of nodes at one position, it becomes equations."""
     first, components = reader.node(card, 1), set(card[2])
     texts = [text for text in card.fields[3:] if text]
     if texts and not texts[-1].isdecimal():  # its coefficient of thermal expansion
@@ -63,12 +63,12 @@ def rbe2(reader: Reader, card: Card) -> None:
 
 
 def rbe3(reader: Reader, card: Card) -> None:
-    """A node that follows the mean of others."""
+    """Read a node that follows the mean motion of others (RBE3)."""
     reader.deck.followers.append(Follower(card.line, card.name, reader.node(card, 2), equations(reader, card)))
 
 
 def rrod(reader: Reader, card: Card) -> None:
-    """A rod that keeps its length: one equation of the displacements along it."""
+    """Read a rod of constant length (RROD): one equation of the displacements along it."""
     first, second = (reader.node(card, place) for place in (1, 2))
     way = np.subtract(reader.deck.nodes[second], reader.deck.nodes[first])
     length = float(np.linalg.norm(way))
@@ -80,7 +80,7 @@ def rrod(reader: Reader, card: Card) -> None:
 
 def mpc(reader: Reader, card: Card) -> None:
     """An equation between displacements."""
-    # Each line has two terms: a node, a component, a factor.
+    # Each line of the card has two terms: node, component, factor.
     places = [place for start in range(0, len(card.fields), 8) for place in (start + 1, start + 4) if card[place]]
     if {card[place + 1] for place in places} <= set("456"):
         reader.deck.leave(card.name, "an equation of rotations: ends of bars turn freely", card.line)
@@ -100,7 +100,7 @@ def mpc(reader: Reader, card: Card) -> None:
 
 
 def equations(reader: Reader, card: Card) -> list[Equation]:
-    """Return the equations of the translations in REFC; none if the card needs rotations or has weights by components.
+    """Return the equations of the translations in REFC; empty if the card needs rotations or has weights by components.
 
     :raises Unreadable: a field is no number, or a node does not exist
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cards of a Nastran deck: free, small and large fields, continuations, replication, INCLUDE."""
+"""Reader of the cards of a Nastran deck: free, small and large fields, continuations, replication, INCLUDE."""
 from __future__ import annotations
 
 import re
@@ -17,7 +17,7 @@ NAME = re.compile(r"[A-Z][A-Z0-9]{0,7}$")
 # Old meshers and textbooks write BEGIN_BULK and BEGING BULK.
 BEGIN_BULK = re.compile(r"\s*BEGIN(G?[\s_]+BULK\b|\s*$)", re.IGNORECASE)
 REPEAT = re.compile(r"=\(?(\d+)\)?$")
-# A number without the letter of its exponent: 7.+10, 2.3-5.
+# A number without the letter of its exponent, for example 7.+10 or 2.3-5.
 BARE_EXPONENT = re.compile(r"([0-9.])([+-][0-9]+)$")
 INCLUDE = re.compile(r"\s*INCLUDE\s+(\S.*)$|\s*INCLUDE(['\"].*)$", re.IGNORECASE)
 
@@ -29,7 +29,7 @@ class Card:
     line: int
     name: str
     fields: list[str] = field(default_factory=list)
-    rule: list[str] = field(default_factory=list)  # rule by which it repeats the card before it
+    rule: list[str] = field(default_factory=list)  # replication rule for repeating the card before it
 
     def __getitem__(self, place: int) -> str:
         return self.fields[place] if place < len(self.fields) else ""
@@ -69,7 +69,7 @@ def split(deck: Deck) -> tuple[list[tuple[int, str]], list[Card]]:
 
 
 def _cards(deck: Deck, lines: Iterable[tuple[int, str]]) -> list[Card]:
-    """Return the cards. A continuation belongs to the card with the same mark, else to the card before it."""
+    """Return the cards. A continuation belongs to the card with the matching mark, else to the card before it."""
     cards: list[Card] = []
     marks = _Marks()
     orphans: list[tuple[int, str, list[str]]] = []
@@ -122,11 +122,8 @@ def _cards(deck: Deck, lines: Iterable[tuple[int, str]]) -> list[Card]:
 
 
 class _Marks:
-    """Cards by the mark at the end of their last line.
-
-    A continuation repeats columns 2 to 8 of the mark; its first column may be any letter: the mark PEG continues with
-    +EG.
-    """
+    """Cards by the continuation mark at the end of their last line. A continuation line repeats columns 2 to 8 of the
+    mark. Its first column may be any character: the mark PEG continues with +EG."""
 
     def __init__(self) -> None:
         self._cards: dict[str, Card] = {}
@@ -146,7 +143,7 @@ class _Marks:
 
 def _repeat(deck: Deck, number: int, head: str, fields: list[str], cards: list[Card]) -> None:
     """Add cards that repeat the last one. ``=`` repeats its field, ``*(x)`` adds x to it, ``==`` repeats all further
-    fields, and ``=(n)`` repeats the card n times, with the fields after it or those of the last line of this kind."""
+    fields, and ``=(n)`` repeats the card n times, by the fields after ``=(n)`` or by the previous replication line."""
     last = cards[-1]
     count = REPEAT.match(head)
     if count and any(fields):
@@ -184,7 +181,7 @@ def _repeated(deck: Deck, number: int, rule: list[str], last: Card) -> list[str]
 
 
 def _extend(deck: Deck, number: int, card: Card, fields: list[str]) -> None:
-    # A continuation begins at a multiple of eight fields: the next line completes a half line of large fields.
+    # The fields of a continuation begin at a multiple of eight; a half line of large fields is padded by the next line.
     if len(card.fields) > MOST_FIELDS:
         raise deck.fail(number, "deck_bad_syntax", problem=f"a card of more than {MOST_FIELDS} fields")
     if len(fields) == 8 and len(card.fields) % 8:
@@ -193,14 +190,14 @@ def _extend(deck: Deck, number: int, card: Card, fields: list[str]) -> None:
 
 
 def _fields(deck: Deck, number: int, line: str) -> tuple[str, list[str], str]:
-    """Return the first field of a line, those with data (8 in small or free form, 4 in large), and the mark of its
+    """Return the first field of a line, its data fields (8 in small or free form, 4 in large), and the mark of its
     continuation."""
     if "," in line[:FREE_COMMA]:
         words = [word.strip() for word in line.split(",")]
         count = 4 if words[0].endswith("*") or words[0].startswith("*") else 8
         beyond = words[count + 1:]
         if beyond and beyond[0] and beyond[0][0] not in "+*" and (any(beyond[1:]) or _is_number(beyond[0])):
-            return words[0], words[1:], ""  # continued without a mark, because no mark is a number
+            return words[0], words[1:], ""  # continues without a mark, because a mark is never a number
         if any(beyond[1:]):
             raise deck.fail(number, "deck_bad_syntax", problem=f"a line of more than {count + 2} free fields")
         mark = words[count + 1] if len(words) > count + 1 else ""

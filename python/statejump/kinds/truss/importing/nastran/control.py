@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Executive and case control of a Nastran deck: which sets the chosen subcase selects."""
+"""Executive and case control of a Nastran deck: selection of sets by the chosen subcase."""
 from __future__ import annotations
 
 import re
@@ -13,9 +13,9 @@ from statejump.kinds.truss.importing.nastran.table import CONTROL
 COMMAND = re.compile(r"([A-Z][A-Z0-9]*)\s*(?:\(([^)]*)\)?)?\s*=?\s*(.*)$")
 HEAT = ("153", "159", "NLSCSH", "NLTCSH")
 DYNAMIC_SOLUTIONS = ("108", "109", "111", "112", "118", "129", "DFREQ", "DTRAN", "MFREQ", "MTRAN")
-# In these solutions SUPORT defines rigid-body motion only and holds nothing: modes, responses, flutter.
+# In these solutions (modes, responses, flutter) SUPORT only defines rigid-body motion and holds nothing.
 FREE_SOLUTIONS = (*DYNAMIC_SOLUTIONS, "103", "107", "110", "145", "146", "MODES", "DCEIG", "MCEIG", "FLUTTER")
-# Name and option of a command, and the kind of set that it selects.
+# Kind of set that a command selects, by name and option of the command.
 SELECTED = {
     "SPC": "spc", "LOAD": "load", "MPC": "mpc", "DEFORM": "deform", "SUPORT1": "suport", "NSM": "nsm",
     "TEMPERATURE": "temperature", "TEMPERATURE LOAD": "temperature", "TEMPERATURE BOTH": "temperature",
@@ -69,7 +69,7 @@ def read(deck: Deck, lines: list[tuple[int, str]]) -> Control:
     continued = False
     for line, text in lines[0 if cend is None else cend + 1:]:
         further, continued = continued, text.endswith(",")
-        if further:  # of a SET or a list of options
+        if further:  # continuation of a SET or of a list of options
             continue
         found = COMMAND.match(text.upper())
         if found is None:

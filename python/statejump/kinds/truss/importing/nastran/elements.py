@@ -13,7 +13,7 @@ SAME = 1e-6  # relative tolerance of offsets: cards have seven digits
 
 
 def element(reader: Reader, card: Card, kind: str = "") -> str:
-    """Return the name of an element. Masses may have the numbers of bars, as in decks that come with Nastran."""
+    """Return the name of an element. A mass may have the number of a bar, as in decks that come with Nastran."""
     name = reader.whole(card, 0)
     if kind + name in reader.elements:
         raise reader.deck.fail(card.line, "deck_duplicate", what_it_is="element", name=name)
@@ -23,7 +23,7 @@ def element(reader: Reader, card: Card, kind: str = "") -> str:
 
 
 def rods(reader: Reader, card: Card) -> None:
-    """CROD and CTUBE: one element, or two in COSMIC's Nastran."""
+    """Read CROD and CTUBE: one element per card, or two in COSMIC's Nastran."""
     for fields in (card.fields[:4], card.fields[4:]):
         if any(fields):
             bar(reader, Card(card.line, card.name, fields))
@@ -82,7 +82,7 @@ def conrod(reader: Reader, card: Card) -> None:
 
 
 def celas(reader: Reader, card: Card) -> None:
-    """CELAS1 and CELAS2: a spring between two components; an empty one is the ground."""
+    """Read a spring between two components (CELAS1, CELAS2); an empty component is the ground."""
     name = element(reader, card)
     if card.name == "CELAS2":
         stiffness = reader.number(card, 1, 0.0)
@@ -150,7 +150,7 @@ def _bush(reader: Reader, card: Card) -> list[float]:
 
 
 def conm2(reader: Reader, card: Card) -> None:
-    """Read a mass at a node. Its offset acts on rotations only, and is omitted."""
+    """Read a mass at a node (CONM2). Its offset acts on rotations only and is omitted."""
     element(reader, card, "mass ")
     node = reader.node(card, 1)
     mass = reader.number(card, 3, 0.0)
@@ -158,7 +158,7 @@ def conm2(reader: Reader, card: Card) -> None:
 
 
 def conm1(reader: Reader, card: Card) -> None:
-    """A matrix of masses, which must be one mass for all directions."""
+    """Read a mass matrix (CONM1), which must be one mass for all directions."""
     element(reader, card, "mass ")
     node = reader.node(card, 1)
     first, second, third = (reader.number(card, place, 0.0) for place in (3, 5, 8))
@@ -180,7 +180,7 @@ def weigh(reader: Reader, card: Card, node: str, mass: float) -> None:
 
 
 def _section(reader: Reader, line: int, of: Bar, name: str) -> Property:
-    """Return the property of a bar: that of its type of element, or the only one with the number."""
+    """Return the property of a bar: the one for its element type, or the only one with this number."""
     found = reader.properties.get(name, {})
     if of.kind in found:
         return found[of.kind]
@@ -215,7 +215,7 @@ def finish_bars(reader: Reader) -> None:
 
 
 def cmass(reader: Reader, card: Card) -> None:
-    """CMASS1 and CMASS2: a mass of one component of one node."""
+    """Read a mass of one component of one node (CMASS1, CMASS2)."""
     name = element(reader, card, "mass ")
     if card.name == "CMASS2":
         mass = reader.number(card, 1, 0.0)
@@ -240,7 +240,7 @@ def cmass(reader: Reader, card: Card) -> None:
 
 
 def take_components(reader: Reader) -> None:
-    """Give nodes the masses of their components, which must be equal in all directions that are not held."""
+    """Convert component masses to nodal masses; they must be equal in all directions that are not held."""
     for node, masses in reader.component_masses.items():
         card = reader.component_cards[node]
         axes = reader.frames[reader.displacement_frame[node]].directions(reader.deck.nodes[node])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sets of the case control, forces, gravity and temperatures."""
+"""Readers of sets of the case control, forces, gravity and temperatures."""
 from __future__ import annotations
 
 import numpy as np
@@ -31,13 +31,13 @@ def select(reader: Reader, control: Control) -> None:
 
 
 def _is_load(name: str) -> bool:
-    """Return whether LOAD = may select a card, including cards of heat transfer and unknown ones."""
+    """Return whether LOAD = can select a card; true also for cards of heat transfer and unknown cards."""
     known = CARDS.get(name)
     return known is None or known.sets == "load" or known.what in (HEAT, DYNAMIC) or name in ("LOAD", "LOADADD")
 
 
 def _only(reader: Reader, kind: str) -> str | None:
-    """Return the only set of a kind, for a deck without case control. :raises Unreadable: there are several"""
+    """Return the only set of a kind in a deck without case control. :raises Unreadable: there are several"""
     first: dict[str, Card] = {}
     if kind == "load":
         combined = [card for name in ("LOAD", "LOADADD") for card in reader.cards.get(name, [])]
@@ -58,7 +58,7 @@ def _only(reader: Reader, kind: str) -> str | None:
 
 
 def _expanded(reader: Reader, kind: str, chosen: str) -> dict[str, float]:
-    """Return the sets of a combined set with their factors."""
+    """Return the sets that a combined set (such as LOAD) refers to, with their factors."""
     found: dict[str, float] = {}
     if kind == "load":
         for name in ("LOAD", "LOADADD"):
@@ -92,7 +92,7 @@ def moment(reader: Reader, card: Card) -> None:
 
 
 def _vector(reader: Reader, card: Card) -> tuple[str, np.ndarray]:
-    """Return the node and the force or moment of a card, times the factor of its set."""
+    """Return the node of a card and its force or moment, multiplied by the factor of its set."""
     factor = reader.factor(card, "load") or 0.0
     node = reader.node(card, 1)
     if card.name in ("FORCE", "MOMENT"):
@@ -126,7 +126,7 @@ def gravity(reader: Reader, card: Card) -> None:
 
 
 def pload1(reader: Reader, card: Card) -> None:
-    """Convert a load along a bar to forces on its ends; a load across would bend it."""
+    """Convert a load along a bar (PLOAD1) to forces on its ends; a load across the bar would bend it."""
     factor, name = reader.factor(card, "load") or 0.0, reader.whole(card, 1)
     if name not in reader.bars:
         raise reader.fail(card, "deck_undefined", what_it_is="bar", name=name)
@@ -152,7 +152,7 @@ def pload1(reader: Reader, card: Card) -> None:
     else:
         span, rise = end - start, high - low
         total = span * length * (low + high) / 2
-        # The integral of the load times the fraction of the length.
+        # Integral of load times position along the bar, as a fraction of its length.
         second_share = span * length * (low * start + low * span / 2 + rise * start / 2 + rise * span / 3)
         shares = (total - second_share, second_share)
     for node, share in zip(ends, shares):
@@ -161,7 +161,7 @@ def pload1(reader: Reader, card: Card) -> None:
 
 
 def temperatures(reader: Reader) -> None:
-    """Read TEMP and TEMPD of the sets for loads and for the stress-free state."""
+    """Read TEMP and TEMPD of the load set and of the stress-free set."""
     for kind, found in (("temperature", reader.deck.temperature), ("initial", reader.deck.initial)):
         default = None
         for card in reader.cards.get("TEMP", []):

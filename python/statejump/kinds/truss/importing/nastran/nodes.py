@@ -12,12 +12,12 @@ from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.reader import Reader
 from statejump.kinds.truss.importing.supports import SAME, basis_of, held_directions
 
-# EPZERO of Nastran: a smaller fraction of the node's largest stiffness counts as zero.
+# EPZERO of Nastran: stiffness below this fraction of the largest one of the node counts as zero.
 EPZERO = 1e-8
 
 
 def read_nodes(reader: Reader) -> None:
-    """Read GRID in systems that may be defined by other GRIDs, in any order."""
+    """Read GRID cards. Their coordinate systems may refer to other GRIDs, in any order."""
     defaults = (reader.cards.get("GRDSET") or [Card(0, "GRDSET")])[0]
     reader.frames["0"] = BASIC
     grids: dict[str, Card] = {}
@@ -36,7 +36,7 @@ def read_nodes(reader: Reader) -> None:
 
 
 class _Places:
-    """Finds positions of nodes and systems, which may depend on each other in a chain without a loop."""
+    """Computes positions of nodes and systems, which may depend on each other in a chain without a loop."""
 
     def __init__(self, reader: Reader, grids: dict[str, Card], defaults: Card) -> None:
         self.reader, self.grids = reader, grids
@@ -76,7 +76,7 @@ class _Places:
                         on_way.add(needed[0])
 
     def _needed(self, kind: str, name: str) -> list[tuple[str, str]]:
-        """Return the nodes and systems whose positions are needed first."""
+        """Return the nodes and systems whose positions must be known first."""
         reader = self.reader
         if kind == "node":
             card = self.grids[name]
@@ -119,7 +119,7 @@ class _Places:
 
 
 def fix(reader: Reader, card: Card, components: str, nodes: list[str]) -> None:
-    """Hold nodes in components of their displacement systems; blanks may separate the components."""
+    """Hold nodes in components of their displacement systems; components may be separated by blanks."""
     components = "".join(components.split())
     if not set(components) <= set("0123456"):
         raise reader.fail(card, "deck_bad_value",
@@ -156,7 +156,7 @@ def spc(reader: Reader, card: Card) -> None:
 
 
 def hold_singular(reader: Reader) -> None:
-    """Hold components of displacement systems without stiffness, except at ends of beams, which are stiff in
+    """Hold components without stiffness, in displacement systems, except at ends of beams, which are stiff in
     Nastran."""
     deck = reader.deck
     stiffness: dict[str, np.ndarray] = {}
@@ -189,7 +189,7 @@ def hold_singular(reader: Reader) -> None:
 
 
 def _left_free(deck: Deck, node: str, axes: np.ndarray, tied: list[np.ndarray]) -> Iterator[np.ndarray]:
-    """Yield the directions of axes, without those that supports hold and equations couple."""
+    """Yield those axes that neither supports hold nor equations couple."""
     basis = basis_of(np.vstack([held_directions(deck, node), *tied]))
     for axis in axes:
         free = axis - basis.T @ (basis @ axis)

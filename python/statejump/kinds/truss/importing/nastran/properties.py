@@ -11,19 +11,19 @@ from statejump.kinds.truss.importing.nastran.cards import Card
 from statejump.kinds.truss.importing.nastran.reader import Material, Property, Reader
 
 STATIONS = ("YES", "YESA", "NO")
-# Elements of each property, because properties of different elements may have one number.
+# Element types of each property: properties of different types may have the same number.
 ELEMENTS = {"PROD": "CROD", "PTUBE": "CTUBE", "PBAR": "CBAR", "PBARL": "CBAR", "PBEAM": "CBEAM", "PBEAML": "CBEAM"}
 
 
 def mat1(reader: Reader, card: Card) -> None:
-    """Read a material. Two of E, G and Poisson's ratio give the third."""
+    """Read a material (MAT1). Two of E, G and Poisson's ratio determine the third."""
     modulus, shear, ratio = (reader.optional(card, at) for at in (1, 2, 3))
     if modulus is None and shear is not None:
         modulus = 2 * (1 + (ratio or 0.0)) * shear
     elif ratio is None and modulus is not None and shear:
         ratio = modulus / (2 * shear) - 1
     if ratio is not None and not -0.99 <= ratio <= 0.49:
-        # Only the DEM's joints use the ratio, and some decks have E = G.
+        # Only joints in the DEM use Poisson's ratio, and some decks have E = G.
         reader.deck.leave("MAT1", f"Poisson's ratio {ratio:g}: outside of -0.99 to 0.49", card.line)
         ratio = None
     reader.materials[reader.whole(card, 0)] = Material(
@@ -32,13 +32,13 @@ def mat1(reader: Reader, card: Card) -> None:
 
 
 def simple(reader: Reader, card: Card) -> None:
-    """PROD and PBAR: the area is a field."""
+    """Read PROD and PBAR, which give the area in a field."""
     more = reader.number(card, 5 if card.name == "PROD" else 6, 0.0)
     _add(reader, card, Property(reader.whole(card, 1), reader.optional(card, 2), "it has no area", more=more))
 
 
 def ptube(reader: Reader, card: Card) -> None:
-    """A tube of outer diameter and wall; a wall of 0 is a full rod."""
+    """Read a tube from outer diameter and wall thickness; thickness 0 means a solid rod."""
     outer, wall = reader.number(card, 2), reader.number(card, 3, 0.0)
     second = reader.number(card, 5, 0.0) or outer
     areas = [pi * ((wall or size / 2) * (size - (wall or size / 2))) for size in (outer, second)]
@@ -61,14 +61,14 @@ def pbarl(reader: Reader, card: Card) -> None:
 
 
 def _shape(reader: Reader, card: Card) -> tuple[str, str]:
-    """Return the shape, and the reason if its area is unknown."""
+    """Return the shape of a section, and the reason if its area is unknown."""
     if card[2] and card[2].upper() not in ("MSCBML0", "MSCBMLO"):  # the second spelling is a common mistake
         return "", f"group {quoted(card[2])} has sections of its own"
     return card[3].upper(), f"section {quoted(card[3])[1:-1]}: no known shape with all its dimensions"
 
 
 def pbeaml(reader: Reader, card: Card) -> None:
-    """A section by shape and dimensions at one or several stations."""
+    """Read a section by shape and dimensions at one or several stations (PBEAML)."""
     shape, why = _shape(reader, card)
     count = profiles.NASTRAN.get(shape, (0, None))[0]
     stations: list[tuple[float, float | None, float]] = []
@@ -100,7 +100,7 @@ def _number(reader: Reader, card: Card, text: str) -> float:
 
 
 def pbeam(reader: Reader, card: Card) -> None:
-    """A section by numbers at one or several stations, then lines of shear and warping."""
+    """Read a section by numbers at one or several stations, followed by lines of shear and warping (PBEAM)."""
     rows = card.rows()
     stations = [(0.0, reader.optional(card, 2), reader.number(card, 7, 0.0))]
     place = 1 if len(rows) > 1 and rows[1][0].upper() in STATIONS else 2
@@ -108,7 +108,7 @@ def pbeam(reader: Reader, card: Card) -> None:
         row = Card(card.line, card.name, rows[place])
         stations.append((reader.number(row, 1), reader.number(row, 2) if row[2] else stations[0][1],
                          reader.number(row, 7) if row[7] else stations[0][2]))
-        # Points of stress follow YES, unless the next station follows.
+        # YES announces a line of stress recovery points, unless the next line is already a station.
         place += 2 if row[0].upper() == "YES" and place + 1 < len(rows) \
             and rows[place + 1][0].upper() not in STATIONS else 1
     if any(any(row) for row in rows[place + 2:]):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shared by the readers of cards: numbers, nodes, sets, and the deck so far."""
+"""Shared code of the card readers: numbers, nodes, sets, and the deck read so far."""
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right

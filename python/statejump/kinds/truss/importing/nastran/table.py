@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every known card of the bulk data, and every known command of the case control, in exactly one class."""
+"""Table of all known bulk data cards and case control commands; each is in exactly one class."""
 from __future__ import annotations
 
 from statejump.kinds.truss.importing.contract import Card, idle, refused, table, used
@@ -149,7 +149,7 @@ CARDS: dict[str, Card] = table(
     idle("MDLPRM ITER INTS FLOATS SEQGP DEBUG CNGRNT", "how a program solves"),
 )
 
-# Names of PARAM. The influence of unlisted ones is unknown.
+# Names of PARAM. The influence of other names is unknown.
 PARAMS: dict[str, Card] = table(
     used("WTMASS", "factor of all masses"),
     used("AUTOSPC", "whether directions of nodes without stiffness are held; YES if not given"),
@@ -179,7 +179,7 @@ PARAMS: dict[str, Card] = table(
          "PRTSTIFF PRTTSET PRTUO0 PRTYS RCONDK SOLLIB SORT_MAX SPARSTOR", "output of MYSTRAN, or how it solves"),
 )
 
-# Commands of the case control. Unlisted ones select nothing that acts on a truss in statics.
+# Commands of the case control. Other commands select nothing that acts on a truss in statics.
 CONTROL: dict[str, Card] = table(
     used("AUTOSPC", "whether directions of nodes without stiffness are held"),
     used("SUBCASE", "the first one, or that of --step"),
