@@ -250,7 +250,8 @@ def _reasons_of_meshes() -> list[str]:
     lines = ["## Meshes of bores\n\nThe detail `reason` says why a mesh has one of the codes `bore_…`. Names in braces "
              "are further details; a part in brackets may be missing.\n\n| code | reason | sentence |\n|---|---|---|"]
     for fault, reason, cause, remedy in _engine.mesh_reasons():
-        sentence = f"{cause}; {remedy}" if remedy else cause
+        joint = " Then " if cause.endswith("?") else "; "
+        sentence = f"{cause}{joint}{remedy}" if remedy else cause
         lines.append(f"| `bore_{fault}` | `{reason}` | {_cell(sentence)} |")
     return [*lines, ""]
 

@@ -122,11 +122,11 @@ def test_refusals(tmp_path: Path):
 
 @pytest.mark.parametrize(("name", "content", "cause"), [
     ("bore.ply", "ply\nformat ascii 1.0\nelemen vertex 3\nproperty float x\nend_header\n",
-     failure("bore_unreadable")),
+     failure("bore_unreadable", reason="no_header_line", line=3)),
     ("bore.ply", "ply\nformat ascii 1.0\nproperty float x\nelement vertex 3\nend_header\n",
-     failure("bore_unreadable")),
+     failure("bore_unreadable", reason="property_before_element", line=3)),
     ("bore.off", "OFF\n100000000 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0",
-     failure("bore_unreadable")),
+     failure("bore_unreadable", reason="counts_beyond_file", vertices=100_000_000, faces=1)),
 ])
 def test_hostile_files(tmp_path: Path, name: str, content: str, cause: Failure):
     file = tmp_path / name
@@ -137,7 +137,7 @@ def test_hostile_files(tmp_path: Path, name: str, content: str, cause: Failure):
 def test_pipe_is_not_opened(tmp_path: Path):
     file = tmp_path / "bore.stl"
     os.mkfifo(file)
-    with failing("bore_unreadable"):
+    with failing("bore_unreadable", reason="not_a_file"):
         bore.load(file)
 
 

@@ -184,7 +184,6 @@ def test_without_calculix_one_sentence_says_so(statejump: Callable[..., Outcome]
     assert told.failure == failure("calculix_missing", program="ccx")
 
 
-
 @pytest.mark.parametrize(("case", "wanted"), [
     ("trusses/umbrella_rib", failure("fe_other_parts", key="torsion_spring")),
     ("trusses/latch_lever", failure("fe_other_parts", key="latch_hinge")),

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from conftest import REPOSITORY
-from failures import failing
+from failures import failing, failure
 from statejump import _engine, laws
 from statejump.laws import curves
 from statejump.kinds.loading import load_case

@@ -15,7 +15,6 @@ from conftest import REPOSITORY, sealed
 from failures import Failure, failing, failure
 from test_result_file import check_layout, run
 
-from statejump.core.errors import StatejumpError
 from statejump.results import layout
 from statejump.results.contents import Scalar
 from statejump.results.read import read
@@ -108,7 +107,7 @@ def test_damaged_answers_are_one_sentence(folder: Path, tmp_path: Path) -> None:
         del file["answers/node_jumps/node"]
         file["answers/node_jumps"]["node"] = ["A1"]
     sealed(path)
-    with failing("ANSWERS_CODE", file="bad.h5") as raised:
+    with failing("damaged", file="bad.h5", object="/answers/node_jumps/node") as raised:
         read(path)
     assert "\n" not in str(raised.value)
 

@@ -90,5 +90,5 @@ def test_dem_refuses_elements_by_name() -> None:
     with pytest.raises(sj.StatejumpError) as refused:
         dem.check(case.changed({f"torsion_spring.{spring.name}.bias_rad": 1.6}))
     assert refused.value.code == "dem_large_rotation"
-    assert repr(spring.name) in refused.value.what
+    assert repr(spring.name) in refused.value.cause
     dem.check(case.changed({f"torsion_spring.{spring.name}.bias_rad": -1.57}))

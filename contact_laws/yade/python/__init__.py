@@ -40,8 +40,8 @@ stable_time_step, hertz_depth = _native.stable_time_step, _native.hertz_depth
 take_failure, take_refusal = _native.take_failure, _native.take_refusal
 bore_triangles, socket_triangles, law_names = _native.bore_triangles, _native.socket_triangles, _native.law_names
 __all__ = [
-    "slot", "spring", "stable_time_step", "hertz_depth", "take_failure", "take_refusal", "bore_triangles", "socket_triangles",
-    "law_names",
+    "slot", "spring", "stable_time_step", "hertz_depth", "take_failure", "take_refusal", "bore_triangles",
+    "socket_triangles", "law_names",
     *_native.class_names(),
 ]
 for _name in _native.class_names():

@@ -8,6 +8,7 @@
 
 #include "../bindings.hpp"
 #include "statejump/geometry/bore_mesh.hpp"
+#include "statejump/geometry/mesh_failure.hpp"
 #include "statejump/kernel/require.hpp"
 
 namespace py = pybind11;
@@ -186,11 +187,11 @@ void bind_geometry(py::module_& module) {
       "mesh_reasons",
       [] {
         py::list rows;
-        for (int i = 0; i < mesh_reason_count; ++i) {
-          const auto reason = static_cast<MeshReason>(i);
-          const MeshReasonText& text = text_of(reason);
-          rows.append(
-              py::make_tuple(to_string(text.fault), text.name, cause_template(reason), text.remedy));
+        for (int i = 0; i < geometry::mesh_reason_count; ++i) {
+          const auto reason = static_cast<geometry::MeshReason>(i);
+          const geometry::MeshReasonText& text = geometry::text_of(reason);
+          rows.append(py::make_tuple(geometry::to_string(text.fault), text.name,
+                                     geometry::cause_template(reason), text.remedy));
         }
         return rows;
       },

@@ -388,11 +388,9 @@ TEST(BoreChecks, SentencesAreRenderedFromFields) {
   intersecting.emplace_back("more_pairs", std::uint64_t{2});
   EXPECT_EQ(cause(MeshReason::faces_intersect, intersecting),
             "faces 3 and 7 at (0.00464449, 0, 1e-09) m intersect, and 2 more pairs");
-  EXPECT_EQ(
-      cause(MeshReason::facets_too_coarse, {{"open_m", 1.23456}, {"allowed_m", 1e-4}})
-          .substr(0, 93),
-      "the facets are too coarse: they leave the surface between them open by 1.23 m, allowed "
-      "is 0.0001");
+  const std::string coarse =
+      cause(MeshReason::facets_too_coarse, {{"open_m", 1.23456}, {"allowed_m", 1e-4}});
+  EXPECT_NE(coarse.find(" 1.23 m, allowed is 0.0001 m,"), std::string::npos) << coarse;
   EXPECT_STREQ(MeshFailure("a.off", MeshReason::wrong_first_word,
                            {{"format", "OFF"}, {"line", 1}, {"word", "OFF"}})
                    .what(),

@@ -92,7 +92,7 @@ TEST_F(UserLawTest, WrongAnswersAndExceptionsNameTheLaw) {
     } catch (const DepthOutOfRange& refused) {
       EXPECT_EQ(refused.law(), "moody");
       EXPECT_TRUE(refused.depth() == depth || (std::isnan(refused.depth()) && std::isnan(depth)));
-      EXPECT_EQ(refused.limit(), 1e-4);
+      EXPECT_DOUBLE_EQ(refused.limit(), 1e-4);
       EXPECT_EQ(std::string(refused.what()).find("moody: penetration_depth = "), 0u);
     }
   }
