@@ -140,6 +140,8 @@ class Newton {
   const linear::SparseFactor& factor() const { return factor_; }
 
  private:
+  class Iteration;
+
   struct Violation {
     double share = 1.0;  ///< Of the way.
     int joint = -1;
