@@ -101,10 +101,7 @@ void copy_physics(const From& from, To& to) {
   to.slipMemory = from.slipMemory;
   to.slipSlope = from.slipSlope;
   to.slipMerged = from.slipMerged;
-  to.slipHeld = from.slipHeld;
-  to.slipShift = from.slipShift;
-  to.slipSums = from.slipSums;
-  to.slipLine = from.slipLine;
+  set_slip_prefix(slip_prefix(from), to);
   to.begun = from.begun;
   to.impactSpeed = from.impactSpeed;
   to.dissipationSlope = from.dissipationSlope;

@@ -54,7 +54,7 @@ bool slips_at_the_rim(const linkage::Linkage& model) {
 /// @param p at ΔT = 0
 void require_hertz(const linkage::Linkage& model, const Parameters& p) {
   const double depth = 1e-3 * model.radial_clearance();
-  const double expected = p.hertz.value * depth * std::sqrt(depth);
+  const double expected = normal_force(p, depth);
   const kernel::ElasticPair pair =
       kernel::elastic_pair(model.link_bc.young_modulus, model.link_bc.poisson_ratio,
                            model.link_ab.young_modulus, model.link_ab.poisson_ratio);

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "numerics/hertz.hpp"
 #include "statejump/joint_loop/elastic_loop.hpp"
 #include "statejump/kernel/partial_slip.hpp"
 
@@ -44,14 +45,14 @@ inline Eigen::Vector2d across(const Eigen::Vector2d& u) {
 /// Hertz's force. A negative depth gives the mirrored tension, which only serves root finding: it
 /// indicates loss of contact.
 inline double normal_force(const Parameters& p, double depth) {
-  return p.hertz.value * depth * std::sqrt(std::abs(depth));
+  return numerics::hertz_force(p.hertz.value, depth);
 }
 /// dF_N/dδ [N/m].
 inline double normal_force_slope(const Parameters& p, double depth) {
-  return 1.5 * p.hertz.value * std::sqrt(std::abs(depth));
+  return numerics::hertz_slope(p.hertz.value, depth);
 }
 inline double tangential_stiffness(const Parameters& p, double depth) {
-  return p.shear.value * std::sqrt(std::abs(depth));
+  return numerics::mindlin_stiffness(p.shear.value, depth);
 }
 
 /// Solution at one temperature.

@@ -141,6 +141,8 @@ class Newton {
   const linear::SparseFactor& factor() const { return factor_; }
 
  private:
+  class Iteration;
+
   struct Violation {
     double share = 1.0;  ///< Fraction of the step.
     int joint = -1;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 #include <unordered_map>
 #include <utility>
 
@@ -68,7 +67,7 @@ class Condensed {
     }
     return found;
   }
-  bool change(const Changes& changes, const std::set<std::size_t>&, Pivot) {
+  bool change(const Changes& changes, const PivotSearch<std::size_t>&) {
     return std::all_of(changes.begin(), changes.end(),
                        [&](const auto& one) { return change(one.first, one.second); });
   }

@@ -2,7 +2,6 @@
 #include "status_enumeration.hpp"
 
 #include <Eigen/LU>
-#include <set>
 
 #include "active_set.hpp"
 #include "newton.hpp"
@@ -200,9 +199,9 @@ class GroupPivots {
 
   const Choice& key() const { return choice_; }
   const std::vector<RequestedStatus>& violated() const { return violated_; }
-  bool change(const std::vector<RequestedStatus>& changes, const std::set<Choice>& tried, Pivot) {
+  bool change(const std::vector<RequestedStatus>& changes, const PivotSearch<Choice>& search) {
     for (const auto& [i, wanted] : changes) choice_[i] = branch_of(i, wanted);
-    if (tried.count(choice_) > 0) slide_instead(changes.front().first, tried);
+    if (search.was_tried(choice_)) slide_instead(changes.front().first, search);
     return true;
   }
   /// False if the equations are singular, or if a candidate requests a status that is not among its
@@ -229,14 +228,14 @@ class GroupPivots {
 
   /// A contact in tension while it sticks and in penetration while it is open may slip: selects
   /// such a choice if one was not tried yet.
-  void slide_instead(std::size_t candidate, const std::set<Choice>& tried) {
+  void slide_instead(std::size_t candidate, const PivotSearch<Choice>& search) {
     const std::vector<JointStatus>& branches = of_.candidates[candidate].branches;
     if (!of_.candidates[candidate].has(JointStatus::open)) return;
     for (std::size_t branch = 0; branch < branches.size(); ++branch) {
       if (!is_slip(branches[branch])) continue;
       Choice sliding = choice_;
       sliding[candidate] = branch;
-      if (tried.count(sliding) > 0) continue;
+      if (search.was_tried(sliding)) continue;
       choice_ = std::move(sliding);
       return;
     }

@@ -8,7 +8,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <random>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -41,8 +40,8 @@ class Complementarity {
     }
     return found;
   }
-  bool change(const Changes& changes, const std::set<Statuses>&, Pivot pivot) {
-    (pivot == Pivot::single ? singles : blocks) += 1;
+  bool change(const Changes& changes, const PivotSearch<Statuses>& search) {
+    (search.pivot() == Pivot::single ? singles : blocks) += 1;
     next_ = solved_;
     for (const auto& [i, status] : changes) next_[i] = status;
     return true;
@@ -115,10 +114,12 @@ TEST_P(ActiveSet, MakesNoMoreSinglePivotsThanAllowed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Blocks, ActiveSet,
-                         testing::Values(Blocks::while_fewer, Blocks::until_repeated),
+                         testing::Values(Blocks::while_fewer, Blocks::until_repeated,
+                                         Blocks::until_ever_repeated),
                          [](const auto& tested) {
-                           return tested.param == Blocks::while_fewer ? "WhileFewer"
-                                                                      : "UntilRepeated";
+                           return tested.param == Blocks::while_fewer      ? "WhileFewer"
+                                  : tested.param == Blocks::until_repeated ? "UntilRepeated"
+                                                                           : "UntilEverRepeated";
                          });
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/hertz.hpp"
+
 namespace statejump::truss::detail {
 
 /// A function of the normal force, with its derivative.
@@ -28,7 +30,7 @@ struct HertzContact {
   ByNormal depth(double normal_force) const {
     if (std::isinf(hertz_stiffness)) return {0.0, 0.0};
     const double least = least_force();
-    const double depth = std::pow(std::max(normal_force, least) / hertz_stiffness, 2.0 / 3.0);
+    const double depth = numerics::hertz_depth(hertz_stiffness, std::max(normal_force, least));
     if (normal_force < least) return {depth * (normal_force / least), depth / least};
     return {depth, 2.0 / 3.0 * depth / normal_force};
   }
@@ -38,7 +40,8 @@ struct HertzContact {
     if (std::isinf(mindlin_stiffness)) return {0.0, 0.0};
     const double least = least_force();
     const double loaded = std::max(normal_force, least);
-    const double compliance = 1.0 / (mindlin_stiffness * std::sqrt(depth(loaded).value));
+    const double compliance =
+        1.0 / numerics::mindlin_stiffness(mindlin_stiffness, depth(loaded).value);
     // k_t is proportional to the cube root of the force.
     return {compliance, normal_force > least ? -compliance / (3.0 * normal_force) : 0.0};
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/hertz.hpp"
 #include "statejump/kernel/require.hpp"
 #include "truss/joints/partial_slip.hpp"
 
@@ -39,28 +40,28 @@ JointStatus rubs(const Contact& contact, double bound) {
 }  // namespace
 
 double Contact::depth(double force) const {
-  return is_elastic() && force > 0.0 ? std::pow(force / hertz_stiffness, 2.0 / 3.0) : 0.0;
+  return is_elastic() && force > 0.0 ? numerics::hertz_depth(hertz_stiffness, force) : 0.0;
 }
 
 double Contact::force_at(double depth) const {
-  return depth > 0.0 ? hertz_stiffness * depth * std::sqrt(depth) : 0.0;
+  return depth > 0.0 ? numerics::hertz_force(hertz_stiffness, depth) : 0.0;
 }
 
 double Contact::tangential_compliance(double normal) const {
   if (tangential_stiffness < infinite) return 1.0 / tangential_stiffness;
   if (mindlin_stiffness == infinite) return 0.0;
-  return 1.0 / (mindlin_stiffness * std::sqrt(std::max(depth(normal), least_depth)));
+  return 1.0 / numerics::mindlin_stiffness(mindlin_stiffness, std::max(depth(normal), least_depth));
 }
 
 Contact::Across Contact::across(double depth, double speed, double h) const {
   // Linear below the least depth, so that iterates without contact converge.
   const double at = std::max(depth, least_depth);
-  const double stiffness = 1.5 * hertz_stiffness * std::sqrt(at);
+  const double stiffness = numerics::hertz_slope(hertz_stiffness, at);
   const double elastic = force_at(at) + stiffness * (depth - at);
   // The dashpot coefficient contains the fourth root of the depth, whose derivative is unbounded.
   // It is evaluated at the depth at the middle of the step.
   const double dashpot =
-      damping * std::sqrt(1.5 * hertz_stiffness * std::sqrt(std::max(-gap, 0.0)));
+      damping * std::sqrt(numerics::hertz_slope(hertz_stiffness, std::max(-gap, 0.0)));
   const double slope = h * stiffness + dashpot;
   return {elastic, elastic - dashpot * speed, slope, h * stiffness / slope};
 }

@@ -61,7 +61,7 @@ NeighbourhoodPivots::Changes NeighbourhoodPivots::violated() const {
   return found;
 }
 
-bool NeighbourhoodPivots::change(const Changes& changes, const std::set<std::size_t>&, Pivot) {
+bool NeighbourhoodPivots::change(const Changes& changes, const PivotSearch<std::size_t>&) {
   for (const auto& [contact, to] : changes) {
     const auto mark = [contact = contact](ContactStatus status) {
       return (4 * contact + static_cast<std::size_t>(status) + 1) * 0x9e3779b97f4a7c15ull;

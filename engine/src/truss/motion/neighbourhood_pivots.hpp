@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -40,7 +39,7 @@ class NeighbourhoodPivots {
   using Changes = std::vector<std::pair<std::size_t, ContactStatus>>;
   std::size_t key() const { return fingerprint_; }
   Changes violated() const;
-  bool change(const Changes& changes, const std::set<std::size_t>& tried, Pivot pivot);
+  bool change(const Changes& changes, const PivotSearch<std::size_t>& search);
   bool solve();
 
  private:

@@ -2,7 +2,6 @@
 #include "status_search.hpp"
 
 #include <optional>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -51,16 +50,16 @@ class StepPivots {
     return found;
   }
 
-  bool change(const Changes& changes, const std::set<ContactStatuses>& tried, Pivot pivot) {
+  bool change(const Changes& changes, const PivotSearch<ContactStatuses>& search) {
     Guess changed{solved_, false};
     for (const auto& [contact, wanted] : changes) changed.statuses[contact] = wanted;
     next_ = std::move(changed);
-    if (pivot == Pivot::single) return true;
+    if (search.pivot() == Pivot::single) return true;
     const VectorXd impulses = contacts_.impulses;
     std::optional<ContactStatuses> found = pivot_locally(changes);
     if (!found) {
       contacts_.impulses = impulses;
-    } else if (tried.count(*found) == 0) {
+    } else if (!search.was_tried(*found)) {
       next_ = {std::move(*found), true};
     }
     return true;
