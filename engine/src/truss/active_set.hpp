@@ -18,7 +18,7 @@ enum class Pivot : unsigned char { block, single };
 /// When find_active_set() stops changing all violated contacts at once.
 enum class Blocks : unsigned char {
   while_fewer,     ///< At the first block that brings no new minimum of violations.
-  until_repeated,  ///< At the first block that leads to statuses that were tried: fewest solves.
+  until_repeated,  ///< At the first block that repeats earlier statuses: needs the fewest solves.
   /// As until_repeated, but blocks that leave fewer violations do not erase the tried statuses.
   until_ever_repeated,
 };

@@ -26,7 +26,7 @@ constexpr double reaction_compliance = 1e-3;
 /// Multiplying this many columns takes about ten times as long as starting a thread.
 constexpr Eigen::Index halved_columns = 50000;
 
-/// What rates leave of the linear equations of an assembly.
+/// Residual of the linear rate equations.
 struct LeftOver {
   VectorXd residual;
   /// Backward error (W. Oettli, W. Prager, Numer. Math. 6 (1964) 405-409). It is the larger of two
@@ -83,8 +83,8 @@ LeftOver left_over(const Assembly& of, const VectorXd& rate, const VectorXd& by_
 
 }  // namespace
 
-/// Smallest share of the way at which one of the joints violates its inequality: each violates it
-/// at the end.
+/// Smallest fraction of the step at which one of the joints violates its inequality. @pre each
+/// joint violates it at the end of the step
 Newton::Violation Newton::first_violation(const std::vector<int>& joints, const VectorXd& from,
                                           const VectorXd& to, double from_time, double time,
                                           const StepStart& start, JointModel model,

@@ -23,11 +23,11 @@ using numerics::raise;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr NewtonOptions tuned;
 
-/// What is left of the equations, each kind in its own unit.
+/// Residuals of the equations, each in its own unit.
 struct Residuals {
-  double balance = 0.0;  ///< Of the nodes [N].
-  double closure = 0.0;  ///< Of joints that hold [m].
-  double force = 0.0;    ///< Of joints that slip or are open [N].
+  double balance = 0.0;  ///< Force balance of the nodes [N].
+  double closure = 0.0;  ///< Closures of stops, contacts and sticking joints [m].
+  double force = 0.0;    ///< Forces of slipping or open joints [N].
 };
 
 Residuals residuals(const Assembly& at) {
@@ -42,7 +42,7 @@ Residuals residuals(const Assembly& at) {
   return found;
 }
 
-/// Whether steps that go on shrinking as the last two did leave nothing more to do.
+/// Whether the next step will be negligible if steps continue to shrink as the last two did.
 bool is_last(const std::deque<double>& lengths, double enough) {
   if (lengths.empty()) return false;
   const double last = lengths.back();
@@ -55,7 +55,7 @@ bool is_last(const std::deque<double>& lengths, double enough) {
 /// One call of Newton::solve(): Newton's method on the statuses that find_active_set() chooses.
 class Newton::Iteration {
  public:
-  /// What is solved; see Newton::solve().
+  /// Arguments of Newton::solve().
   struct Problem {
     double time;
     const StepStart& start;
@@ -74,7 +74,7 @@ class Newton::Iteration {
     return report_;
   }
 
-  // For find_active_set().
+  // Interface for find_active_set().
   using Changes = std::vector<std::pair<int, JointStatus>>;
   using Search = PivotSearch<std::size_t>;
   std::size_t key() const { return fingerprint(next_statuses_); }
@@ -83,11 +83,11 @@ class Newton::Iteration {
   bool solve();
 
  private:
-  /// What follows an iteration.
+  /// Continuation after an iteration.
   enum class Turn : unsigned char {
-    iteration,  ///< The next one on the same statuses.
+    iteration,  ///< Another iteration on the same statuses.
     linear_step,
-    statuses,  ///< Violated inequalities request other ones.
+    statuses,  ///< Violated inequalities request other statuses.
     converged,
     failed,
   };
@@ -96,7 +96,7 @@ class Newton::Iteration {
 
   void predict();
   /// Iterates until inequalities are violated or the equations and all inequalities hold.
-  /// @returns false: gives up
+  /// @returns false if the iteration is given up
   bool iterate();
   Turn advance();
   void evaluate(bool jacobian);
@@ -104,13 +104,13 @@ class Newton::Iteration {
   bool is_too_far() const;
   bool is_astray() const;
   bool is_solved() const;
-  /// Whether closures with this largest gap [m] hold.
+  /// Whether closures with this largest residual [m] count as satisfied.
   bool closes(double largest_gap) const;
-  /// Begins the solve anew with factors of its start.
+  /// Restarts the solve with new factors at its initial state.
   Turn start_anew();
   Turn finish();
 
-  /// Finds the next step, by old factors where they pay.
+  /// Computes the next step, with old factors if that is cheaper.
   Turn linear_step();
   bool old_factors_pay() const;
   bool step_by_new_factors();
@@ -122,7 +122,7 @@ class Newton::Iteration {
   bool stalls(std::size_t steps) const;
   bool goes_on();
 
-  // Statuses.
+  // Changes of statuses.
 
   void find_violations();
   std::vector<int> violated_joints() const {
@@ -150,8 +150,8 @@ class Newton::Iteration {
   Statuses& statuses_;
   SolveReport report_;
 
-  // Laws of several pieces have other equations on each; located changes ask for states that
-  // only new factors make as exact.
+  // Piecewise laws change their equations within a solve, and located changes need the accuracy of
+  // new factors.
   const bool may_keep_;
   bool kept_;
   bool stale_ = true;  // no factors have been made yet
@@ -159,52 +159,52 @@ class Newton::Iteration {
   bool looking_;
   std::chrono::steady_clock::time_point told_ = std::chrono::steady_clock::now();
 
-  // Pivots that wander lead far away, where the equations are others: they begin anew from here.
+  // Cycling pivots lead to other linearised equations. Restarts begin from these values.
   const VectorXd first_z_;
   const Statuses first_statuses_;
-  // Where a change is to be located it is sought along the tangent at the start.
+  // Starts from the predictor unless changes are located: these are searched along the tangent.
   const bool is_foreseen_;
-  // The tension of elements that are not yet as long as their temperature makes them would turn
-  // slack ones.
+  // With slack elements the solve also starts from the predictor. At the old length, thermal
+  // strain of an element would appear as a tension that moves slack elements.
   const bool hangs_;
   const VectorXd& begun_at_;
 
-  // Every joint once on each of the other branches that it has, at most five.
+  // Every joint may change once to each of its other statuses, at most five.
   const long most_pivots_;
   long total_ = 0;
   int iterations_ = 0;
-  bool old_ = false;             // whether the next step is by old factors
+  bool old_ = false;             // whether the next step uses old factors
   bool differentiated_ = false;  // whether the Jacobian is that of z
-  double reach_ = 0.0;           // [m]
-  double rounding_ = 0.0;        // [N]
+  double reach_ = 0.0;           // length scale of the closure tolerance [m]
+  double rounding_ = 0.0;        // rounding of the forces [N]
   Residuals left_;
-  double merit_ = 0.0;          // what is left of the equations [N]
-  double merit_before_ = 0.0;   // the same at `from_`
-  double first_largest_ = 0.0;  // force where the solve begins [N]
+  double merit_ = 0.0;          // scaled residual at z [N]
+  double merit_before_ = 0.0;   // scaled residual at `from_` [N]
+  double first_largest_ = 0.0;  // largest force at the start of the solve [N]
   std::size_t pieces_ = 0;
-  // Steps on this set of branches, the last of them from `from_` by `step_`.
+  // Lengths of the steps on the present statuses [m]; the last step leads from `from_` by `step_`.
   std::deque<double> lengths_;
   VectorXd from_;
   VectorXd step_;
   VectorXd next_step_;
   double next_length_ = 0.0;
   int halvings_ = 0;
-  bool damped_ = false;   // whether the step before was halved
-  bool settled_ = false;  // whether no joint violates its inequality where z is
+  bool damped_ = false;   // whether the last step was halved
+  bool settled_ = false;  // whether no joint violates its inequality at z
 
   Changes violated_;
   Statuses wanted_;
   Statuses next_statuses_;
   Pivot pivoting_ = Pivot::block;
   bool stepped_ = false;  // whether z is at the end of a full step on the present factors
-  // The joints that pivoted since there were ever fewer violations.
+  // Joints that changed their status since the last new minimum of violations.
   std::set<int> wandering_;
   bool condensed_ = false;
-  int condensed_at_ = 0;  // idle pivots before the condensed ones
-  bool patient_ = false;  // whether joints change only where the equations of their branches hold
-  VectorXd closing_z_;    // where the last contact that was open closed
+  int condensed_at_ = 0;  // number of idle pivots at the last condensed answer
+  bool patient_ = false;  // whether statuses change only once the equations hold
+  VectorXd closing_z_;    // unknowns at which an open contact closed last
 
-  TracedSolve traced_;  // reads the others at its end
+  TracedSolve traced_;  // reads the other members when it ends
 };
 
 SolveReport Newton::solve(double time, const StepStart& start, JointModel joints, double opening,
@@ -255,7 +255,7 @@ bool Newton::Iteration::iterate() {
 Newton::Iteration::Turn Newton::Iteration::advance() {
   evaluate_iterate();
   if (is_too_far()) return Turn::failed;
-  // Steps on other pieces of the branches say nothing of those on these.
+  // Step lengths on another branch of a piecewise law are not comparable.
   if (std::exchange(pieces_, at_.pieces) != at_.pieces) {
     lengths_.clear();
     halvings_ = 0;
@@ -280,10 +280,10 @@ void Newton::Iteration::evaluate(bool jacobian) {
 }
 
 void Newton::Iteration::evaluate_iterate() {
-  // By factors that are there the residual is enough.
+  // With old factors only the residual is needed.
   old_ = kept_ && at_.pieces == 0 && halvings_ == 0 && keeps_factors();
   kept_ = may_keep_;
-  // Where the solve is likely to end, the Jacobian is wanted: for the rates.
+  // If the solve is likely to end here, the Jacobian is evaluated too: the rates need it.
   evaluate(!old_ || is_last(lengths_, closure_tolerance * system_.reach(z_)));
   reach_ = system_.reach(z_);
   rounding_ = system_.force_rounding(z_);
@@ -292,21 +292,21 @@ void Newton::Iteration::evaluate_iterate() {
   traced_.iteration(left_.balance, left_.closure, left_.force);
 }
 
-/// Farther than the truss is large no equation of its start says where to go.
+/// Beyond the size of the truss the linearised equations have no meaning.
 bool Newton::Iteration::is_too_far() const {
   return pivoted_ && system_.size() > 0.0 && length(z_ - begun_at_) > system_.size();
 }
 
-/// Branches were asked for by equations that do not hold where they led to: of many joints that
-/// change at once, forces lack half of the largest one. A shorter step changes fewer. Where
-/// changes are located none are passed together.
+/// The new statuses were requested by linearised equations that are inaccurate if the force
+/// residual exceeds half of the largest force, because many joints changed at once. A shorter step
+/// changes fewer. Located changes are never passed together.
 bool Newton::Iteration::is_astray() const {
   const double largest = std::max(at_.largest_force, first_largest_);
   return pivoted_ && is_foreseen_ && left_.balance > 0.5 * largest + rounding_;
 }
 
-/// Where rounding is larger than foreseen the iteration stands still: that is the end as well,
-/// if forces balance at all.
+/// If rounding is larger than estimated, steps stagnate. This also counts as convergence, provided
+/// that forces balance.
 bool Newton::Iteration::is_solved() const {
   const double largest = at_.largest_force;
   const bool closed = left_.balance <= tuned.force_tolerance * largest + rounding_ &&
@@ -316,8 +316,8 @@ bool Newton::Iteration::is_solved() const {
   return closed || still;
 }
 
-/// Where steps no longer shrink, what rounding of the forces bends a contact by that hardly
-/// touches is no gap.
+/// If steps no longer shrink, a closure residual within the elastic deflection that rounding of
+/// the forces causes in a lightly loaded contact is accepted.
 bool Newton::Iteration::closes(double largest_gap) const {
   if (largest_gap <= closure_tolerance * reach_) return true;
   const std::size_t n = lengths_.size();
@@ -384,7 +384,7 @@ Newton::Iteration::Turn Newton::Iteration::linear_step() {
 bool Newton::Iteration::old_factors_pay() const {
   if (lengths_.empty()) return true;
   const double enough = closure_tolerance * reach_;
-  // It stands still.
+  // The iteration stagnates.
   if (!(next_length_ > enough)) return lengths_.back() > enough;
   const double share = next_length_ / lengths_.back();
   return newton_.keeping_pays(std::log(enough / next_length_) / std::log(share));
@@ -407,7 +407,7 @@ bool Newton::Iteration::step_by_new_factors() {
 }
 
 bool Newton::Iteration::is_too_long() const {
-  // Steps may grow along directions that only dashpots hold, if equations are met the better.
+  // Steps may grow along directions held by dashpots only, if the residual at least halves.
   const bool improves = problem_.start.slack_stiffness > 0.0 && merit_ <= 0.5 * merit_before_;
   return !improves && !lengths_.empty() && next_length_ > closure_tolerance * reach_ &&
          next_length_ > *std::max_element(lengths_.begin(), lengths_.end());
@@ -430,10 +430,9 @@ bool Newton::Iteration::take_step() {
   halvings_ = 0;
   from_ = z_;
   merit_before_ = merit_;
-  // Steps to and fro between the same two places meet in the middle.
+  // Iterates that alternate between two states are replaced by their mean.
   if (stalls(tuned.swing_steps)) next_step_ *= 0.5;
-  // Where a shorter step or stiffer dashpots are the answer, one that shrinks no more is given
-  // up.
+  // If the caller can shorten the step or stiffen dashpots, a stagnating solve ends early.
   const bool gives_up = (problem_.search && pivoted_) || problem_.start.damps_contact;
   if (gives_up && stalls(2 * tuned.swing_steps)) return false;
   std::swap(step_, next_step_);
@@ -472,9 +471,9 @@ void Newton::Iteration::find_violations() {
 }
 
 Newton::Iteration::Turn Newton::Iteration::update_statuses() {
-  // Of a law with several pieces a step on the tangent of another piece says nothing: elements
-  // that slip stand at their bound at the start of a step, where their tangent is that of
-  // sticking.
+  // The first step on a piecewise law may use the tangent of another branch: elements that slip
+  // are at their limit at the start of a step, with the tangent of sticking. Statuses are not
+  // checked then.
   const bool on_piece = at_.pieces == 0 || lengths_.size() > 1;
   if (!damped_ && on_piece && !patient_ && pivoting_ != Pivot::single) {
     find_violations();
@@ -487,8 +486,8 @@ Newton::Iteration::Turn Newton::Iteration::update_statuses() {
   return goes_on() ? Turn::iteration : Turn::failed;
 }
 
-/// Looks once where on the way from the start the first of the violated joints leaves its branch.
-/// True: the solve ends there.
+/// Event detection, once per solve: finds the violated joint that changes its status first after
+/// the start of the step. True: the solve ends at this event.
 bool Newton::Iteration::leaves_ahead() {
   if (!looking_ || violated_.empty()) return false;
   const StepStart& start = problem_.start;
@@ -527,7 +526,7 @@ bool Newton::Iteration::change(const Changes& changes, Search& search) {
   if (wanders(search)) {
     if (!condensed_ && condense(search)) return true;
     if (problem_.search) {
-      // Steps that have not converged may ask for branches that the solution does not.
+      // Iterates that have not converged may request statuses that the solution does not.
       search.admit_tried();
       return !std::exchange(patient_, true);
     }
@@ -537,7 +536,7 @@ bool Newton::Iteration::change(const Changes& changes, Search& search) {
   return true;
 }
 
-/// Laws of several pieces change them without a pivot: they are not condensed.
+/// Piecewise laws change their branch without a pivot, so they are not condensed.
 bool Newton::Iteration::wanders(const Search& search) const {
   if (at_.pieces != 0 || pivoting_ != Pivot::block || !stepped_) return false;
   const int idle = search.idle() - condensed_at_;
@@ -545,8 +544,9 @@ bool Newton::Iteration::wanders(const Search& search) const {
   return idle > 0 && paid >= static_cast<double>(wandering_.size());
 }
 
-/// Takes the step from the start that pivots on its factors lead to; false: there is none. What
-/// wanders is as it was at the start, everything else on the branches that were found.
+/// Takes the Newton step from the start of the solve with statuses from the Schur-complement
+/// active set. Cycling joints begin in their first statuses, all others in the present ones.
+/// False: no solution.
 bool Newton::Iteration::condense(const Search& search) {
   condensed_ = true;
   condensed_at_ = search.idle();
@@ -568,9 +568,10 @@ bool Newton::Iteration::condense(const Search& search) {
   return true;
 }
 
-/// A contact that pulls while it sticks and closes while it is open may slide, where it closes.
+/// A contact in tension while it sticks and in penetration while it is open may slip where it
+/// closes.
 void Newton::Iteration::slide_instead(const Changes& changes, const Search& search) {
-  // Over a step that is the question of the rate problem.
+  // In a step of the path the rate problem decides this.
   if (problem_.time != problem_.start.time && !problem_.start.damps_contact) return;
   const auto& [joint, wanted] = changes.front();
   if (statuses_[index(joint)] != JointStatus::open && wanted != JointStatus::open) return;
