@@ -19,7 +19,7 @@ enum class Pivot : unsigned char { block, single };
 enum class Blocks : unsigned char {
   while_fewer,     ///< At the first block that brings no new minimum of violations.
   until_repeated,  ///< At the first block that repeats earlier statuses: needs the fewest solves.
-  /// As until_repeated, but blocks that leave fewer violations do not erase the tried statuses.
+  /// As until_repeated, but a new minimum of violations does not erase the record of statuses.
   until_ever_repeated,
 };
 
@@ -30,22 +30,22 @@ class PivotSearch {
  public:
   static constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
 
-  /// @param most_single single pivots in a row
+  /// @param most_single limit on consecutive single pivots
   explicit PivotSearch(Blocks blocks, std::size_t most_single = unlimited)
       : blocks_(blocks), most_single_(most_single) {}
 
   Pivot pivot() const { return pivot_; }
   bool was_tried(const Key& key) const { return tried_.count(key) > 0; }
-  /// Pivots since there were fewer violations than ever before.
+  /// Number of pivots since the last new minimum of violations.
   int idle() const { return idle_; }
-  /// The next statuses are taken and not recorded, even if they were tried.
+  /// Accepts the next statuses even if they were tried before, and does not record them.
   void admit_tried() { admits_tried_ = true; }
 
   /// Replaces the statuses on which inequalities are violated.
   /// @param solved key of these statuses
   /// @param violated number of these inequalities
-  /// @param propose `std::optional<Key> propose()` changes the statuses by pivot(); nothing: is
-  /// singular
+  /// @param propose `std::optional<Key> propose()` changes the statuses by pivot(); nothing if
+  /// the equations are singular
   /// @returns false if no statuses are left to be tried
   template <class Propose>
   bool advance(const Key& solved, std::size_t violated, Propose&& propose) {
@@ -66,7 +66,7 @@ class PivotSearch {
   void choose(const Key& solved, std::size_t violated) {
     ++idle_;
     if (violated < fewest_) {
-      // Statuses that block pivots have tried stay tried for until_ever_repeated.
+      // With until_ever_repeated the record of statuses tried by block pivots is kept.
       const bool keeps = blocks_ == Blocks::until_ever_repeated && pivot_ == Pivot::block;
       if (!keeps) tried_.clear();
       const bool begins = fewest_ == unlimited;
@@ -90,11 +90,11 @@ class PivotSearch {
 
 /// Finds statuses on which all inequalities hold, by block principal pivoting [1].
 ///
-/// All violated contacts change their status at once, until such blocks stop to help (Blocks).
-/// Then only the contact with the lowest number changes [2], until fewer contacts are violated than
-/// ever before. For a P-matrix the search ends after finitely many pivots. Friction that follows a
-/// normal force can make another matrix. Statuses can then recur, and the search ends without a
-/// result.
+/// All violated contacts change their status at once (block) until the rule `Blocks` ends this
+/// phase. Then only the violated contact with the lowest number changes [2], until the number of
+/// violations falls below its previous minimum. For a P-matrix the search ends after finitely many
+/// pivots. If friction depends on an unknown normal force, the matrix need not be a P-matrix.
+/// Statuses can then recur, and the search ends without a result.
 ///
 /// The caller owns the linear system, and has solved it on its statuses when the search begins:
 ///
@@ -104,10 +104,10 @@ class PivotSearch {
 ///                                         false: is singular
 ///   bool solve()                          solves on the present statuses; false: gives up
 ///
-/// Statuses that `search.was_tried()` end the search.
+/// The search ends if statuses recur that `search.was_tried()` reports.
 ///
-/// @param most_single single pivots in a row
-/// @returns whether statuses were found; if not, the system is where the search ended
+/// @param most_single limit on consecutive single pivots
+/// @returns whether statuses were found; otherwise the system keeps its last statuses
 ///
 /// [1] J. J. Júdice, F. M. Pires, Comput. Oper. Res. 21 (1994) 587-596.
 /// [2] K. G. Murty, Linear Algebra Appl. 9 (1974) 65-108.
