@@ -12,7 +12,6 @@
 #include "registered.hpp"
 #include "statejump/kernel/joint_kinematics.hpp"
 #include "statejump/kernel/laws/joint_response.hpp"
-#include "statejump/kernel/partial_slip_memory.hpp"
 #include "statejump/stepper/contact.hpp"
 
 namespace statejump::dem {
@@ -162,20 +161,6 @@ struct JointPhys : RegisteredIndexable<JointPhys, yade::FrictPhys> {
                   "Penetration depth of the last step [m], kept for the energy account"));
   }
 };
-
-// The prefix of slipMemory with named members. Saved scenes have the attributes slipHeld,
-// slipShift, slipSums and slipLine instead.
-inline kernel::PartialSlipMemory::ShiftedPrefix slip_prefix(const JointPhys& physics) {
-  const Vector3r &shift = physics.slipShift, &sums = physics.slipSums, &line = physics.slipLine;
-  return {physics.slipHeld, {shift[0], shift[1]}, {sums[0], sums[1]}, sums[2], line[0], line[1]};
-}
-inline void set_slip_prefix(const kernel::PartialSlipMemory::ShiftedPrefix& prefix,
-                            JointPhys& physics) {
-  physics.slipHeld = prefix.count;
-  physics.slipShift = {prefix.shift.a, prefix.shift.b, 0.0};
-  physics.slipSums = {prefix.force.a, prefix.force.b, prefix.twice_energy};
-  physics.slipLine = {prefix.at_centre, prefix.at_last, 0.0};
-}
 
 struct Ig2_Journal_Bearing_JointGeom
     : Registered<Ig2_Journal_Bearing_JointGeom, yade::IGeomFunctor> {

@@ -101,7 +101,10 @@ void copy_physics(const From& from, To& to) {
   to.slipMemory = from.slipMemory;
   to.slipSlope = from.slipSlope;
   to.slipMerged = from.slipMerged;
-  set_slip_prefix(slip_prefix(from), to);
+  to.slipHeld = from.slipHeld;
+  to.slipShift = from.slipShift;
+  to.slipSums = from.slipSums;
+  to.slipLine = from.slipLine;
   to.begun = from.begun;
   to.impactSpeed = from.impactSpeed;
   to.dissipationSlope = from.dissipationSlope;

@@ -6,7 +6,6 @@
 
 #include "statejump/kernel/elastic_pair.hpp"
 #include "statejump/kernel/hertz.hpp"
-#include "statejump/kernel/lane.hpp"
 #include "statejump/kernel/mindlin.hpp"
 #include "statejump/kernel/require.hpp"
 #include "statejump/kernel/vector.hpp"
@@ -65,23 +64,15 @@ inline void validate(const ContactParameters& parameters) {
 
 /// Viscous damping c = 2 zeta sqrt(m k) [N s/m] of a contact spring at its current stiffness.
 /// @param damping_ratio zeta [-], @param mass m [kg], @param stiffness k [N/m]
-/// @tparam Lane see OneLane
-template <class Lane = OneLane>
-STATEJUMP_LANE_INLINE typename Lane::Real viscous_damping(const typename Lane::Real& damping_ratio,
-                                                          const typename Lane::Real& mass,
-                                                          const typename Lane::Real& stiffness) {
-  return 2.0 * damping_ratio * Lane::root(mass * stiffness);
+inline double viscous_damping(double damping_ratio, double mass, double stiffness) {
+  return 2.0 * damping_ratio * std::sqrt(mass * stiffness);
 }
 
 /// Normal force with its viscous part [N], clipped at 0: the bodies never pull on each other.
 /// @param force F [N] without the viscous part, @param damping c [N s/m]
 /// @param approach_speed [m/s]
-/// @tparam Lane see OneLane
-template <class Lane = OneLane>
-STATEJUMP_LANE_INLINE typename Lane::Real damped_normal_force(
-    const typename Lane::Real& force, const typename Lane::Real& damping,
-    const typename Lane::Real& approach_speed) {
-  return Lane::not_negative(force + damping * approach_speed);
+inline double damped_normal_force(double force, double damping, double approach_speed) {
+  return std::max(0.0, force + damping * approach_speed);
 }
 
 /// Adds the viscous force -c v_t of a sticking spring and projects the sum onto the disc of radius
@@ -89,23 +80,14 @@ STATEJUMP_LANE_INLINE typename Lane::Real damped_normal_force(
 /// @param damping c [N s/m], @param limit mu F_N [N], @param velocity v_t [m/s]
 /// @param force in: force of the spring [N], at most `limit`; out: with the viscous part
 /// @return power dissipated by the viscous part [W], >= 0
-/// @tparam Lane see OneLane; @param counts lanes whose result is used
-template <class Lane>
-STATEJUMP_LANE_INLINE typename Lane::Real add_tangential_damping(
-    const typename Lane::Real& damping, const typename Lane::Real& limit,
-    const typename Lane::Vector& velocity, typename Lane::Vector& force,
-    const typename Lane::Mask& counts) {
-  using Real = typename Lane::Real;
-  using Vector = typename Lane::Vector;
-  const Vector spring = force;
-  force = spring - velocity * damping;
-  const Real squared = Lane::dot(force, force);
-  const typename Lane::Mask over = squared > limit * limit;
-  if (Lane::any(over & counts)) {
-    force = Lane::select(over, force * (limit / Lane::root(squared)), force);
-  }
-  return over ? Lane::not_negative(Lane::dot(spring - force, velocity))
-              : damping * Lane::dot(velocity, velocity);
+inline double add_tangential_damping(double damping, double limit, const Vector3& velocity,
+                                     Vector3& force) {
+  const Vector3 spring = force;
+  force -= damping * velocity;
+  const double squared = force.squaredNorm();
+  if (!(squared > limit * limit)) return damping * velocity.squaredNorm();
+  force *= limit / std::sqrt(squared);
+  return std::max(0.0, (spring - force).dot(velocity));
 }
 
 /// Input and output of a dissipation law in one contact_step().
@@ -175,9 +157,8 @@ ContactResponse contact_step(Laws& laws, const ContactParameters& parameters, co
       (Laws::always_spring || history.tangential_stiffness > 0.0)) {
     const double damping = viscous_damping(parameters.tangential_damping_ratio,
                                            parameters.effective_mass, tangential_stiffness);
-    damping_dissipation += add_tangential_damping<OneLane>(damping, limit, tangential_velocity,
-                                                           tangential_force, true) *
-                           time_step;
+    damping_dissipation +=
+        add_tangential_damping(damping, limit, tangential_velocity, tangential_force) * time_step;
   }
 
   return {normal_force,

@@ -3,45 +3,9 @@
 
 #include <cmath>
 
-#include "statejump/kernel/lane.hpp"
 #include "statejump/kernel/vector.hpp"
 
 namespace statejump::kernel {
-
-/// Steps of transport(). @tparam Lane see OneLane
-template <class Lane>
-struct Transport {
-  using Real = typename Lane::Real;
-  using Mask = typename Lane::Mask;
-  using Vector = typename Lane::Vector;
-
-  /// Vector after the smallest rotation, neither projected nor rescaled.
-  /// @param half h, @param half_squared |h|^2
-  STATEJUMP_LANE_INLINE static Vector turned(const Vector& tangential, const Vector& n_new,
-                                             const Vector& half, const Real& half_squared) {
-    return tangential - half * (2.0 * Lane::dot(tangential, n_new) / half_squared);
-  }
-
-  /// Projects onto the plane of n_new and rescales to the old magnitude.
-  /// @param counts lanes whose result is used
-  STATEJUMP_LANE_INLINE static Vector rescaled(const Vector& turned, const Vector& n_new,
-                                               const Real& magnitude_squared, const Mask& counts) {
-    const Vector flat = turned - n_new * Lane::dot(turned, n_new);
-    const Real ratio = Lane::dot(flat, flat) / magnitude_squared;
-    const Mask vanishes = (magnitude_squared <= 0.0) | (ratio <= 1e-30);
-    if (Lane::skips(vanishes)) return Lane::zero();
-    // 1/sqrt(ratio) = 1 + (1 - ratio)/2 + 3/8 (1 - ratio)^2: for |1 - ratio| < 1e-8 two terms are
-    // exact to rounding
-    const Real excess = 1.0 - ratio;
-    const Mask far = !(Lane::absolute(excess) < 1e-8);
-    Real factor = 1.0 + 0.5 * excess;
-    if (Lane::any(counts & far & !vanishes)) factor = far ? 1.0 / Lane::root(ratio) : factor;
-    return Lane::select(vanishes, Lane::zero(), flat * factor);
-  }
-};
-
-/// |h|^2 at which the smallest rotation counts as unique: |h| below 1e-8 is rounding.
-constexpr double smallest_half_squared = 1e-16;
 
 /// Rotates a tangential vector (the history force of a contact) from the old tangent plane to the
 /// new one. The rotation is the smallest that takes n_old to n_new, followed by a twist about
@@ -69,10 +33,17 @@ inline Vector3 transport(const Vector3& tangential, const Vector3& n_old, const 
   if (magnitude_squared <= 0.0) return Vector3::Zero();
   const Vector3 half = n_old + n_new;
   const double half_squared = half.squaredNorm();
-  const Vector3 untwisted = half_squared > smallest_half_squared
-                                ? Transport<OneLane>::turned(tangential, n_new, half, half_squared)
-                                : tangential;
-  Vector3 turned = Transport<OneLane>::rescaled(untwisted, n_new, magnitude_squared, true);
+  const double smallest = 1e-16;  // |h| < 1e-8: rounding determines the direction of h
+  Vector3 turned = tangential;
+  if (half_squared > smallest) turned -= half * (2.0 * tangential.dot(n_new) / half_squared);
+  turned -= turned.dot(n_new) * n_new;
+
+  const double ratio = turned.squaredNorm() / magnitude_squared;
+  if (ratio <= 1e-30) return Vector3::Zero();
+  // 1/sqrt(ratio) = 1 + (1 - ratio)/2 + 3/8 (1 - ratio)^2: for |1 - ratio| < 1e-8 two terms are
+  // exact to rounding
+  const double excess = 1.0 - ratio;
+  turned *= std::abs(excess) < 1e-8 ? 1.0 + 0.5 * excess : 1.0 / std::sqrt(ratio);
   if (twist_angle != 0.0) {
     turned = std::cos(twist_angle) * turned + std::sin(twist_angle) * cross(n_new, turned);
   }

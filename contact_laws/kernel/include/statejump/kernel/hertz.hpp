@@ -3,19 +3,9 @@
 
 #include <cmath>
 
-#include "statejump/kernel/lane.hpp"
 #include "statejump/kernel/require.hpp"
 
 namespace statejump::kernel {
-
-/// Formula of internal_effective_radius() for radii that are finite and checked. @param clearance
-/// R2 - R1 [m]
-template <class Lane>
-STATEJUMP_LANE_INLINE typename Lane::Real internal_effective_radius(
-    const typename Lane::Real& journal_radius, const typename Lane::Real& bearing_radius,
-    const typename Lane::Real& clearance) {
-  return journal_radius * (bearing_radius / clearance);
-}
 
 /// Effective radius of an internal contact, a pin in a hole: R = R1 R2 / (R2 - R1) [m].
 ///
@@ -33,8 +23,7 @@ inline double internal_effective_radius(double journal_radius, double bearing_ra
   require(bearing_radius > journal_radius || bearing_radius < 0.0, "bearing_radius", bearing_radius,
           "(journal_radius, inf] m or negative");
   if (std::isinf(bearing_radius)) return journal_radius;
-  return internal_effective_radius<OneLane>(journal_radius, bearing_radius,
-                                            bearing_radius - journal_radius);
+  return journal_radius * (bearing_radius / (bearing_radius - journal_radius));
 }
 
 /// Hertz stiffness K = 4/3 E* sqrt(R) [N/m^1.5] of F = K delta^1.5 (paper eq. 6; Johnson 1985,
@@ -51,28 +40,13 @@ inline double hertz_depth(double effective_young_modulus, double effective_radiu
   return std::pow(force / hertz_stiffness(effective_young_modulus, effective_radius), 2.0 / 3.0);
 }
 
-/// Elastic normal contact at one penetration depth. @tparam Lane see OneLane
-template <class Lane>
-struct HertzLanes {
-  using Real = typename Lane::Real;
-  Real force;           ///< F [N], >= 0, compressive
-  Real stiffness;       ///< dF/d(delta) [N/m], >= 0
-  Real contact_radius;  ///< a [m], >= 0
-  Real elastic_energy;  ///< integral of F over delta [J], >= 0
+/// Elastic normal contact at one penetration depth.
+struct HertzState {
+  double force;           ///< F [N], >= 0, compressive
+  double stiffness;       ///< dF/d(delta) [N/m], >= 0
+  double contact_radius;  ///< a [m], >= 0
+  double elastic_energy;  ///< integral of F over delta [J], >= 0
 };
-using HertzState = HertzLanes<OneLane>;
-
-/// hertz() for bodies that overlap. @tparam Lane see OneLane
-template <class Lane>
-STATEJUMP_LANE_INLINE HertzLanes<Lane> hertz_overlap(
-    const typename Lane::Real& effective_young_modulus, const typename Lane::Real& effective_radius,
-    const typename Lane::Real& penetration_depth) {
-  using Real = typename Lane::Real;
-  const Real contact_radius = Lane::root(effective_radius * penetration_depth);
-  const Real stiffness = 2.0 * effective_young_modulus * contact_radius;
-  const Real force = 2.0 / 3.0 * stiffness * penetration_depth;
-  return {force, stiffness, contact_radius, 0.4 * force * penetration_depth};
-}
 
 /// Hertz's point contact of two elastic bodies (Johnson 1985, eqs 4.22 and 4.23).
 ///
@@ -93,7 +67,10 @@ STATEJUMP_LANE_INLINE HertzLanes<Lane> hertz_overlap(
 inline HertzState hertz(double effective_young_modulus, double effective_radius,
                         double penetration_depth) {
   if (penetration_depth <= 0.0) return {0.0, 0.0, 0.0, 0.0};
-  return hertz_overlap<OneLane>(effective_young_modulus, effective_radius, penetration_depth);
+  const double contact_radius = std::sqrt(effective_radius * penetration_depth);
+  const double stiffness = 2.0 * effective_young_modulus * contact_radius;
+  const double force = 2.0 / 3.0 * stiffness * penetration_depth;
+  return {force, stiffness, contact_radius, 0.4 * force * penetration_depth};
 }
 
 }  // namespace statejump::kernel

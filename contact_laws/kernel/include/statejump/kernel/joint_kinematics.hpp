@@ -6,7 +6,6 @@
 
 #include "statejump/kernel/contact_law.hpp"
 #include "statejump/kernel/hertz.hpp"
-#include "statejump/kernel/lane.hpp"
 #include "statejump/kernel/vector.hpp"
 
 namespace statejump::kernel {
@@ -39,59 +38,14 @@ inline ContactKinematics contact_kinematics(const JointContact& contact, double 
           contact.relative_velocity, time_step};
 }
 
-/// Formulas of contact points, for one contact or several. @tparam Lane see OneLane
-template <class Lane>
-struct PointFormulas {
-  using Real = typename Lane::Real;
-  using Vector = typename Lane::Vector;
-
-  /// Where two bodies come closest.
-  struct Point {
-    Vector normal;      ///< unit, from body 1 into body 2
-    Real eccentricity;  ///< [m]
-    Real depth;         ///< [m]
-  };
-
-  STATEJUMP_LANE_INLINE static Vector perpendicular_part(const Vector& v, const Vector& axis) {
-    return v - axis * Lane::dot(v, axis);
-  }
-  /// Whether a round body has a gap all round. @param clearance R2 - R1 [m]
-  STATEJUMP_LANE_INLINE static typename Lane::Mask is_apart(const Real& offset_squared,
-                                                            const Real& clearance) {
-    return offset_squared <= clearance * clearance;
-  }
-  /// A round body in a round one, not concentric.
-  STATEJUMP_LANE_INLINE static Point round_point(const Vector& offset, const Real& offset_squared,
-                                                 const Real& clearance) {
-    const Real eccentricity = Lane::root(offset_squared);
-    return {offset * (1.0 / eccentricity), eccentricity, eccentricity - clearance};
-  }
-  /// A pad against a flat face, see plane_contact().
-  STATEJUMP_LANE_INLINE static Point plane_point(const Vector& centres, const Vector& face_normal,
-                                                 const Real& pad_radius,
-                                                 const Real& face_distance) {
-    const Real eccentricity = Lane::dot(centres, face_normal);
-    return {face_normal, eccentricity, pad_radius - (face_distance - eccentricity)};
-  }
-  /// Contact point minus centre of body 1 [m].
-  STATEJUMP_LANE_INLINE static Vector arm_1(const Vector& normal, const Real& radius_1,
-                                            const Real& depth) {
-    return normal * (radius_1 - 0.5 * depth);
-  }
-  STATEJUMP_LANE_INLINE static Vector material_velocity(const Vector& velocity, const Vector& spin,
-                                                        const Vector& arm) {
-    return velocity + Lane::cross(spin, arm);
-  }
-};
-
 /// Velocity [m/s] of the material of a body at centre + arm. @param arm [m]
 inline Vector3 material_velocity(const BodyMotion& body, const Vector3& arm) {
-  return PointFormulas<OneLane>::material_velocity(body.velocity, body.angular_velocity, arm);
+  return body.velocity + cross(body.angular_velocity, arm);
 }
 
 /// Component of v perpendicular to a unit axis; same unit as v.
 inline Vector3 perpendicular_part(const Vector3& v, const Vector3& axis) {
-  return PointFormulas<OneLane>::perpendicular_part(v, axis);
+  return v - v.dot(axis) * axis;
 }
 
 /// Penetration depth of journal and bearing [m], eq. (12): delta = |d| - (R2 - R1), where d is the
@@ -114,8 +68,8 @@ inline bool revolute_touches(const Vector3& journal_centre, double journal_radiu
                              const Vector3& axis) {
   const double clearance = bearing_radius - journal_radius;
   return !(clearance > 0.0) ||
-         !PointFormulas<OneLane>::is_apart(
-             perpendicular_part(journal_centre - bearing_centre, axis).squaredNorm(), clearance);
+         !(perpendicular_part(journal_centre - bearing_centre, axis).squaredNorm() <=
+           clearance * clearance);
 }
 
 namespace detail {
@@ -129,18 +83,17 @@ JointContact round_contact(const BodyMotion& inner, double inner_radius, const B
                            double outer_radius, const Vector3& centres, const Vector3& offset,
                            const Normal& concentric_normal) {
   JointContact contact;
-  using Formulas = PointFormulas<OneLane>;
-  const double clearance = outer_radius - inner_radius;
   const double offset_squared = offset.squaredNorm();
-  const bool is_concentric = offset_squared <= std::numeric_limits<double>::min();  // NaN: not
-  const Formulas::Point point = is_concentric
-                                    ? Formulas::Point{concentric_normal(), 0.0, 0.0 - clearance}
-                                    : Formulas::round_point(offset, offset_squared, clearance);
-  contact.eccentricity = point.eccentricity;
-  contact.normal = point.normal;
+  if (offset_squared <= std::numeric_limits<double>::min()) {
+    contact.eccentricity = 0.0;
+    contact.normal = concentric_normal();
+  } else {  // also for NaN, which then propagates to the depth
+    contact.eccentricity = std::sqrt(offset_squared);
+    contact.normal = offset * (1.0 / contact.eccentricity);
+  }
   contact.effective_radius = internal_effective_radius(inner_radius, outer_radius);
-  contact.penetration_depth = point.depth;
-  contact.arm_1 = Formulas::arm_1(contact.normal, inner_radius, contact.penetration_depth);
+  contact.penetration_depth = contact.eccentricity - (outer_radius - inner_radius);
+  contact.arm_1 = (inner_radius - 0.5 * contact.penetration_depth) * contact.normal;
   contact.arm_2 = centres + contact.arm_1;
   contact.relative_velocity =
       material_velocity(inner, contact.arm_1) - material_velocity(outer, contact.arm_2);
@@ -192,7 +145,7 @@ inline bool ball_touches(const Vector3& ball_centre, double ball_radius,
                          const Vector3& socket_centre, double socket_radius) {
   const double clearance = socket_radius - ball_radius;
   return !(clearance > 0.0) ||
-         !PointFormulas<OneLane>::is_apart((ball_centre - socket_centre).squaredNorm(), clearance);
+         !((ball_centre - socket_centre).squaredNorm() <= clearance * clearance);
 }
 
 /// Ball of radius R1 in a spherical socket of radius R2: the joint of revolute_contact() with the
@@ -241,8 +194,7 @@ inline BallContact outer_ball_contact(const BodyMotion& ball_1, double radius_1,
   contact.normal = centres * (-1.0 / distance);
   contact.effective_radius = internal_effective_radius(radius_1, -radius_2);
   contact.penetration_depth = (radius_1 + radius_2) - distance;
-  contact.arm_1 =
-      PointFormulas<OneLane>::arm_1(contact.normal, radius_1, contact.penetration_depth);
+  contact.arm_1 = (radius_1 - 0.5 * contact.penetration_depth) * contact.normal;
   contact.arm_2 = centres + contact.arm_1;
   contact.relative_velocity =
       material_velocity(ball_1, contact.arm_1) - material_velocity(ball_2, contact.arm_2);
@@ -265,13 +217,10 @@ inline PlaneContact plane_contact(const BodyMotion& slider, double pad_radius,
                                   double face_distance) {
   PlaneContact contact;
   const Vector3 centres = slider.position - slot.position;
-  using Formulas = PointFormulas<OneLane>;
-  const Formulas::Point point =
-      Formulas::plane_point(centres, face_normal, pad_radius, face_distance);
-  contact.eccentricity = point.eccentricity;
-  contact.penetration_depth = point.depth;
+  contact.eccentricity = centres.dot(face_normal);
+  contact.penetration_depth = pad_radius - (face_distance - contact.eccentricity);
   contact.normal = face_normal;
-  contact.arm_1 = Formulas::arm_1(face_normal, pad_radius, contact.penetration_depth);
+  contact.arm_1 = (pad_radius - 0.5 * contact.penetration_depth) * face_normal;
   contact.arm_2 = centres + contact.arm_1;
   contact.relative_velocity =
       material_velocity(slider, contact.arm_1) - material_velocity(slot, contact.arm_2);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "statejump/kernel/lane.hpp"
 #include "statejump/kernel/partial_slip.hpp"
 #include "statejump/kernel/vector.hpp"
 
@@ -29,11 +28,8 @@ inline double elastic_energy(const ContactHistory& history) {
 
 /// Mindlin's tangential stiffness k_t = 8 G* a [N/m] of a circular contact without slip (Mindlin
 /// 1949; Johnson 1985, eq. 7.44).
-/// @tparam Lane see OneLane
 /// @param effective_shear_modulus G* [Pa], see ElasticPair; @param contact_radius a [m]
-template <class Lane = OneLane>
-STATEJUMP_LANE_INLINE typename Lane::Real mindlin_stiffness(
-    const typename Lane::Real& effective_shear_modulus, const typename Lane::Real& contact_radius) {
+inline double mindlin_stiffness(double effective_shear_modulus, double contact_radius) {
   return 8.0 * effective_shear_modulus * contact_radius;
 }
 
@@ -49,66 +45,6 @@ inline void keep(const Vector3& force, double stiffness, bool slipping, ContactH
 }
 
 }  // namespace detail
-
-/// Tangential spring after a step. @tparam Lane see OneLane
-template <class Lane>
-struct MindlinSpring {
-  typename Lane::Vector force;        ///< F1, on body 1 [N]
-  typename Lane::Real force_squared;  ///< F1^2 [N^2]
-  typename Lane::Mask free;           ///< without contact or friction
-  typename Lane::Mask slipping;       ///< at Coulomb's limit; not for free
-  typename Lane::Real compliance;     ///< 1/k [m/N]
-  typename Lane::Real dissipation;    ///< friction loss of this step [J], >= 0
-};
-
-/// Spring of mindlin_step() after a step.
-/// @tparam Lane see OneLane
-/// @param old_force F0 (already in the current tangent plane) [N], @param old_stiffness k0 [N/m]
-/// @param counts lanes whose result is used
-template <class Lane>
-STATEJUMP_LANE_INLINE MindlinSpring<Lane> mindlin_spring(const typename Lane::Real& stiffness,
-                                                         const typename Lane::Real& limit,
-                                                         const typename Lane::Vector& slide,
-                                                         const typename Lane::Vector& old_force,
-                                                         const typename Lane::Real& old_stiffness,
-                                                         const typename Lane::Mask& counts) {
-  using Real = typename Lane::Real;
-  using Vector = typename Lane::Vector;
-  using Mask = typename Lane::Mask;
-  MindlinSpring<Lane> spring;
-  const Mask stored = old_stiffness > 0.0;
-  const Real old_compliance = stored ? 1.0 / old_stiffness : 0.0;
-  const Real old_squared = Lane::dot(old_force, old_force);
-  const Real old_work = Lane::dot(old_force, slide);
-  spring.free = !((stiffness > 0.0) & (limit > 0.0));
-  const Real released = Lane::not_negative(0.5 * (old_squared * old_compliance - old_work));
-  if (Lane::skips(spring.free)) {
-    return {Lane::zero(), Real{}, spring.free, Mask{}, Real{}, released};
-  }
-
-  spring.compliance = 1.0 / stiffness;
-  const Mask loading = (stiffness >= old_stiffness) & stored;
-  const Real kept = loading ? 1.0 : stiffness * old_compliance;  // F' / F0
-  Real dissipation = loading ? 0.5 * old_squared * (old_compliance - spring.compliance)
-                             : 0.5 * (1.0 - kept) * (old_squared * old_compliance - old_work);
-
-  Vector force = old_force * kept - slide * stiffness;
-  spring.force_squared = Lane::dot(force, force);
-  const Real limit_squared = limit * limit;
-  spring.slipping = (spring.force_squared > limit_squared) & !spring.free;
-  if (Lane::any(spring.slipping & counts)) {
-    const Real trial = Lane::root(spring.force_squared);
-    const Vector direction = force * (1.0 / trial);
-    const Real slip = (trial - limit) * spring.compliance;
-    const Real loss = 0.5 * (kept * Lane::dot(old_force, direction) + limit) * slip;
-    dissipation = spring.slipping ? dissipation + loss : dissipation;
-    force = Lane::select(spring.slipping, direction * limit, force);
-    spring.force_squared = spring.slipping ? limit_squared : spring.force_squared;
-  }
-  spring.force = Lane::select(spring.free, Lane::zero(), force);
-  spring.dissipation = spring.free ? released : Lane::not_negative(dissipation);
-  return spring;
-}
 
 /// Energy account of one step of the tangential spring.
 struct MindlinEnergy {
@@ -158,14 +94,40 @@ struct MindlinEnergy {
 /// keeps it and unloading scales it down.
 inline MindlinEnergy mindlin_step(double stiffness, double limit, const Vector3& slide,
                                   ContactHistory& history) {
-  const MindlinSpring<OneLane> spring = mindlin_spring<OneLane>(
-      stiffness, limit, slide, history.tangential_force, history.tangential_stiffness, true);
-  if (spring.free) {
+  const Vector3 old_force = history.tangential_force;
+  const double old_stiffness = history.tangential_stiffness;
+  const double old_compliance = old_stiffness > 0.0 ? 1.0 / old_stiffness : 0.0;
+  const double old_force_squared = old_force.squaredNorm();
+  const double old_work = old_force.dot(slide);
+
+  if (!(stiffness > 0.0) || !(limit > 0.0)) {
     detail::keep(Vector3::Zero(), std::max(stiffness, 0.0), stiffness > 0.0, history);
-    return {0.0, spring.dissipation};
+    return {0.0, std::max(0.0, 0.5 * (old_force_squared * old_compliance - old_work))};
   }
-  detail::keep(spring.force, stiffness, spring.slipping, history);
-  return {0.5 * spring.force_squared * spring.compliance, spring.dissipation};
+
+  const double compliance = 1.0 / stiffness;
+  double kept = 1.0;  // F' / F0
+  double dissipation;
+  if (stiffness >= old_stiffness && old_stiffness > 0.0) {
+    dissipation = 0.5 * old_force_squared * (old_compliance - compliance);
+  } else {
+    kept = stiffness * old_compliance;
+    dissipation = 0.5 * (1.0 - kept) * (old_force_squared * old_compliance - old_work);
+  }
+
+  Vector3 force = kept * old_force - stiffness * slide;
+  double force_squared = force.squaredNorm();
+  const bool slipping = force_squared > limit * limit;
+  if (slipping) {
+    const double trial = std::sqrt(force_squared);
+    const Vector3 direction = force * (1.0 / trial);
+    const double slip = (trial - limit) * compliance;
+    dissipation += 0.5 * (kept * old_force.dot(direction) + limit) * slip;
+    force = limit * direction;
+    force_squared = limit * limit;
+  }
+  detail::keep(force, stiffness, slipping, history);
+  return {0.5 * force_squared * compliance, std::max(0.0, dissipation)};
 }
 
 }  // namespace statejump::kernel

@@ -36,12 +36,12 @@ class PartialSlipMemory {
   };
   /// Data of the first points as long as they only move by a common shift.
   struct ShiftedPrefix {
-    int count = 0;              ///< number of points; 0: none, and no other member is read
-    Tangent shift{};            ///< common displacement since they were written [m]
-    Tangent force{};            ///< integral of U over x between them, as written [N]
-    double twice_energy = 0.0;  ///< integral of U^2 over x, as written [J]
-    double at_centre = 0.0;     ///< bound of the written |U|, linear in x^2, at x = 0 [m]
-    double at_last = 0.0;       ///< the same bound at the last point of the prefix [m]
+    int count = 0;           ///< number of points; 0: none, the other members are not used
+    Tangent shift{};         ///< displacement common to all points since they were stored [m]
+    Tangent force{};         ///< integral of U over x between them, with the stored U [N]
+    double squares = 0.0;    ///< integral of U^2 over x, with the stored U [J]
+    double at_centre = 0.0;  ///< upper bound of the stored |U|, linear in x^2: value at x = 0 [m]
+    double at_last = 0.0;    ///< value of that upper bound at the last point of the prefix [m]
   };
   /// Largest number of points. A path of straight parts with nested reversals needs two points per
   /// reversal. A smooth curve under growing load is approximated by chords, see merged().
@@ -220,7 +220,7 @@ SlipSums sums_of(const PartialSlipMemory& memory) {
     const double width = memory[first].x - memory[0].x;
     sums.force = prefix.force + width * prefix.shift;
     sums.squares =
-        prefix.twice_energy + 2.0 * prefix.shift.dot(prefix.force) + width * prefix.shift.squared();
+        prefix.squares + 2.0 * prefix.shift.dot(prefix.force) + width * prefix.shift.squared();
   }
   if (memory.size() == 0) return sums;
   PartialSlipMemory::Point last = memory[first];

@@ -56,7 +56,11 @@ struct ContactPhysics {
   std::vector<Vector3> slipMemory;  ///< per point: 8 G* r [N/m], elastic displacement [m], [m]
   double slipSlope = 0.0;           ///< [m^3/N^2]
   double slipMerged = 0.0;          ///< [N]
-  kernel::PartialSlipMemory::ShiftedPrefix slipPrefix;  ///< of slipMemory
+  // PartialSlipMemory::ShiftedPrefix of slipMemory: count, shift, force and squares, bounds.
+  int slipHeld = 0;
+  Vector3 slipShift = Vector3::Zero();  ///< [m]
+  Vector3 slipSums = Vector3::Zero();   ///< [N], [N], [J]
+  Vector3 slipLine = Vector3::Zero();   ///< [m]
   bool begun = false;
   double impactSpeed = 0.0;            ///< [m/s]
   double dissipationSlope = 0.0;       ///< [N s/m]
@@ -69,16 +73,7 @@ struct ContactPhysics {
   double previousDepth = 0.0;          ///< [m]
 };
 
-/// Access of ScopedHistory to the prefix. Physics that store it in other attributes have overloads.
-inline const kernel::PartialSlipMemory::ShiftedPrefix& slip_prefix(const ContactPhysics& physics) {
-  return physics.slipPrefix;
-}
-inline void set_slip_prefix(const kernel::PartialSlipMemory::ShiftedPrefix& prefix,
-                            ContactPhysics& physics) {
-  physics.slipPrefix = prefix;
-}
-
-/// Length at the reference temperature with its thermal expansion.
+/// Length at the reference temperature, with the current thermal strain.
 struct ThermalLength {
   double length;           ///< radius, or distance of a face [m]
   double thermal_stretch;  ///< 1 + thermal strain [-]
@@ -246,8 +241,12 @@ class ScopedHistory {
     if (physics.slipMemory.empty()) return;
     history.tangential_axis = kernel::transport(physics.slipAxis, geometry.previousNormal,
                                                 geometry.normal, geometry.twistAngle);
-    history.memory = {std::move(physics.slipMemory), physics.slipSlope, physics.slipMerged,
-                      slip_prefix(physics)};
+    const Vector3 &shift = physics.slipShift, &sums = physics.slipSums, &line = physics.slipLine;
+    history.memory = {
+        std::move(physics.slipMemory),
+        physics.slipSlope,
+        physics.slipMerged,
+        {physics.slipHeld, {shift[0], shift[1]}, {sums[0], sums[1]}, sums[2], line[0], line[1]}};
     moved_in_ = true;
   }
   ScopedHistory(const ScopedHistory&) = delete;
@@ -255,10 +254,14 @@ class ScopedHistory {
   ~ScopedHistory() {
     kernel::PartialSlipMemory& memory = history.memory;
     if (!moved_in_ && memory.size() == 0) return;
+    const kernel::PartialSlipMemory::ShiftedPrefix& prefix = memory.prefix();
     physics_.slipAxis = history.tangential_axis;
     physics_.slipSlope = memory.slope();
     physics_.slipMerged = memory.merged();
-    set_slip_prefix(memory.prefix(), physics_);
+    physics_.slipHeld = prefix.count;
+    physics_.slipShift = {prefix.shift.a, prefix.shift.b, 0.0};
+    physics_.slipSums = {prefix.force.a, prefix.force.b, prefix.squares};
+    physics_.slipLine = {prefix.at_centre, prefix.at_last, 0.0};
     physics_.slipMemory = memory.take_points();
   }
   kernel::ContactHistory history;
@@ -279,33 +282,13 @@ void store(const kernel::ContactResponse& response, const kernel::ContactHistory
   physics.shearForce = -history.tangential_force;
 }
 
-/// Formulas of account(), for one contact or several. @tparam Lane see kernel::OneLane
-template <class Lane>
-struct ThermalWork {
-  using Real = typename Lane::Real;
-
-  /// By the clearance c [J]: -F dc.
-  /// @param force, old_force elastic, in this and the last step [N]
-  STATEJUMP_LANE_INLINE static Real of_clearance(const Real& force, const Real& old_force,
-                                                 const Real& clearance, const Real& old_clearance) {
-    return -(0.5 * (force + old_force)) * (clearance - old_clearance);
-  }
-  /// By the effective radius R of Hertz's contact [J]: dV/dR = V / (2 R).
-  STATEJUMP_LANE_INLINE static Real of_radius(const Real& energy, const Real& old_energy,
-                                              const Real& radius, const Real& old_radius) {
-    const Real mean_energy = 0.5 * (energy + old_energy);
-    const Real mean_radius = 0.5 * (radius + old_radius);
-    return mean_energy / (2.0 * mean_radius) * (radius - old_radius);
-  }
-};
-
-/// Energies of one contact. Expansion does work on it through the clearance c and the radii. With
+/// Energies of one contact. Thermal expansion does work through the clearance c and the radii. With
 /// V(delta, radii) and delta = eccentricity - c, this work is the part of dV without body motion:
-/// -F dc plus the change of V by the radii at fixed depth. The trapezoidal rule is used, as for the
-/// motion.
-/// @param dissipation_force of the dissipation law [N]
-/// @param radius stored until the next step [m]
-/// @param add_radius_work adds the work of the changing radii to a number [J]
+/// -F dc plus the change of V by the radii at fixed depth. The trapezoidal rule integrates it over
+/// the step, as it does the work of the motion.
+/// @param dissipation_force force of the dissipation law [N]
+/// @param radius [m] that is stored as physics.previousRadius
+/// @param add_radius_work adds the work of the changing radii [J] to its argument
 template <class Geometry, class Physics, class AddRadiusWork>
 ContactEnergy account(const kernel::ContactResponse& response, double dissipation_force,
                       double radius, const AddRadiusWork& add_radius_work, double time_step,
@@ -313,9 +296,8 @@ ContactEnergy account(const kernel::ContactResponse& response, double dissipatio
   const double clearance = geometry.eccentricity - geometry.penetrationDepth;
   double thermal_work = 0;
   if (physics.previousRadius > 0) {
-    thermal_work = ThermalWork<kernel::OneLane>::of_clearance(
-                       response.elastic_normal_force, physics.previousElasticForce, clearance,
-                       physics.previousClearance) -
+    const double force = 0.5 * (response.elastic_normal_force + physics.previousElasticForce);
+    thermal_work = -force * (clearance - physics.previousClearance) -
                    dissipation_force * geometry.clearanceRate * time_step;
     add_radius_work(thermal_work);
   }
@@ -368,10 +350,11 @@ bool hertz_mindlin_step(const Geometry& geometry, Physics& physics, Host&& host)
   if (host.tracks_energy()) {
     host.add(account(
         response, 0, geometry.effectiveRadius,
-        [&](double& work) {
-          work += ThermalWork<kernel::OneLane>::of_radius(
-              response.normal_elastic_energy, physics.previousElasticEnergy,
-              geometry.effectiveRadius, physics.previousRadius);
+        [&](double& work) {  // dV/dR = V / (2 R)
+          const double energy =
+              0.5 * (response.normal_elastic_energy + physics.previousElasticEnergy);
+          const double radius = 0.5 * (geometry.effectiveRadius + physics.previousRadius);
+          work += energy / (2 * radius) * (geometry.effectiveRadius - physics.previousRadius);
         },
         host.time_step(), geometry, physics));
   }

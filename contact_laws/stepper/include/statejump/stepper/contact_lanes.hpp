@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hertz and Mindlin for four contacts at once: the formulas of the kernel on packs, in the order of
-// find_revolute(), find_ball(), find_plane() and hertz_mindlin_step() and without branches. The
-// bodies do not rotate, and each contact stays open or stays in contact. Any other case is detected
-// and left unchanged for those functions.
+// Hertz–Mindlin contact of four contacts at once: the operations of find_revolute(), find_ball(),
+// find_plane() and hertz_mindlin_step(), in the same order and without branches. It applies if the
+// bodies do not rotate and each contact stays open or stays in contact. Lanes with any other case
+// are marked as deferred and left to those functions.
 #pragma once
 
 #include <array>
@@ -94,25 +94,30 @@ namespace detail {
   return stiffness < largest;
 }
 
-using PackPoints = kernel::PointFormulas<PackLanes>;
-
-/// kernel::transport() without twist. @param left gains the lanes with opposite normals
+/// kernel::transport() without twist. @param deferred gains the lanes with opposite normals
 [[gnu::always_inline]] inline Pack3 transport(const Pack3& tangential, const Pack3& n_old,
                                               const Pack3& n_new, const Mask& real,
                                               Mask& deferred) {
-  using Formulas = kernel::Transport<PackLanes>;
+  const Pack magnitude_squared = dot(tangential, tangential);
   const Pack3 half = n_old + n_new;
   const Pack half_squared = dot(half, half);
-  deferred |= real & ~(half_squared > kernel::smallest_half_squared);
-  return Formulas::rescaled(Formulas::turned(tangential, n_new, half, half_squared), n_new,
-                            dot(tangential, tangential), real);
+  deferred |= real & ~(half_squared > 1e-16);
+  Pack3 turned = tangential - half * (2.0 * dot(tangential, n_new) / half_squared);
+  turned = turned - n_new * dot(turned, n_new);
+  const Pack ratio = dot(turned, turned) / magnitude_squared;
+  const Mask vanishes = (magnitude_squared <= 0.0) | (ratio <= 1e-30);
+  const Pack excess = 1.0 - ratio;
+  const Mask far = ~(absolute(excess) < 1e-8);
+  Pack factor = 1.0 + 0.5 * excess;
+  if (any(real & far & ~vanishes)) factor = far ? 1.0 / root(ratio) : factor;
+  return select(vanishes, Pack3{}, turned * factor);
 }
 
 /// Geometry of four contacts.
 struct LanesGeometry {
   Pack3 centres;  ///< from body 2 to body 1 [m]
-  PackPoints::Point point;
-  Pack radius;  ///< effective [m]
+  Pack3 normal;
+  Pack eccentricity, depth, radius;  ///< [m]
 };
 
 /// As find_revolute(), find_ball(), find_plane(). @param deferred gains contacts that begin or fail
@@ -122,21 +127,25 @@ struct LanesGeometry {
   LanesGeometry found;
   found.centres = centres;
   if (at.joint == Joint::plane) {
-    found.point = PackPoints::plane_point(centres, at.axis, length_1, length_2);
+    found.normal = at.axis;
+    found.eccentricity = dot(centres, found.normal);
+    found.depth = length_1 - (length_2 - found.eccentricity);
     found.radius = length_1;
-    deferred = ~at.real & ~(found.point.depth <= 0.0);
+    deferred = ~at.real & ~(found.depth <= 0.0);
     return found;
   }
   Pack3 offset = centres;
-  if (at.joint == Joint::revolute) offset = PackPoints::perpendicular_part(centres, at.axis);
+  if (at.joint == Joint::revolute) offset = centres - at.axis * dot(centres, at.axis);
   const Pack squared = dot(offset, offset);
   const Pack gap = length_2 - length_1;
-  const Mask open = PackPoints::is_apart(squared, gap);
+  const Mask open = squared <= gap * gap;
   deferred = ~((length_1 > 0.0) & (length_2 > length_1) &
                (length_2 < std::numeric_limits<double>::infinity())) |
              (~at.real & ~open) | (at.real & ~(squared > std::numeric_limits<double>::min()));
-  found.point = PackPoints::round_point(offset, squared, gap);
-  found.radius = kernel::internal_effective_radius<PackLanes>(length_1, length_2, gap);
+  found.eccentricity = root(squared);
+  found.normal = offset * (1.0 / found.eccentricity);
+  found.depth = found.eccentricity - gap;
+  found.radius = length_1 * (length_2 / gap);
   return found;
 }
 
@@ -147,18 +156,17 @@ struct LanesGeometry {
                                                       const LanesGeometry& geometry,
                                                       const Pack& length_1) {
   if (!at.spins) return one.velocity - two.velocity;
-  const Pack3 arm_1 = PackPoints::arm_1(geometry.point.normal, length_1, geometry.point.depth);
+  const Pack3 arm_1 = geometry.normal * (length_1 - 0.5 * geometry.depth);
   const Pack3 arm_2 = geometry.centres + arm_1;
-  return PackPoints::material_velocity(one.velocity, at.spin_1, arm_1) -
-         PackPoints::material_velocity(two.velocity, at.spin_2, arm_2);
+  return (one.velocity + cross(at.spin_1, arm_1)) - (two.velocity + cross(at.spin_2, arm_2));
 }
 
 /// Normal forces of four contacts.
 struct LanesNormal {
-  kernel::HertzLanes<PackLanes> elastic;
-  Pack force;           ///< [N]
-  Pack approach_speed;  ///< [m/s]
-  Pack damping_power;   ///< [W]
+  Pack contact_radius;        ///< a [m]
+  Pack elastic_force, force;  ///< [N]
+  Pack approach_speed;        ///< [m/s]
+  Pack damping_power;         ///< [W]
 };
 
 /// As hertz() and the normal part of contact_step(). @param deferred gains unstable contacts
@@ -166,22 +174,21 @@ struct LanesNormal {
                                                        const LanesGeometry& geometry,
                                                        const Pack3& velocity, Mask& deferred) {
   LanesNormal normal;
-  normal.elastic =
-      kernel::hertz_overlap<PackLanes>(at.young, geometry.radius, geometry.point.depth);
-  const Pack& stiffness = normal.elastic.stiffness;
+  normal.contact_radius = root(geometry.radius * geometry.depth);
+  const Pack stiffness = 2.0 * at.young * normal.contact_radius;
   // The root is not positive without overlap. A stable stiffness implies both moduli > 0.
-  deferred |= at.real &
-              ~((normal.elastic.contact_radius > 0.0) & are_below(stiffness, at.stable_stiffness));
-  normal.approach_speed = dot(velocity, geometry.point.normal);
-  normal.force = normal.elastic.force;
+  deferred |=
+      at.real & ~((normal.contact_radius > 0.0) & are_below(stiffness, at.stable_stiffness));
+  normal.elastic_force = 2.0 / 3.0 * stiffness * geometry.depth;
+  normal.approach_speed = dot(velocity, geometry.normal);
+  normal.force = normal.elastic_force;
   normal.damping_power = Pack{};
   if (at.damps_normal) {
-    const Pack damping = kernel::viscous_damping<PackLanes>(at.normal_damping, at.mass, stiffness);
+    const Pack damping = 2.0 * at.normal_damping * root(at.mass * stiffness);
     const Mask damped = at.normal_damping > 0.0;
-    normal.force = damped ? kernel::damped_normal_force<PackLanes>(normal.elastic.force, damping,
-                                                                   normal.approach_speed)
+    normal.force = damped ? not_negative(normal.elastic_force + damping * normal.approach_speed)
                           : normal.force;
-    normal.damping_power = (normal.force - normal.elastic.force) * normal.approach_speed;
+    normal.damping_power = (normal.force - normal.elastic_force) * normal.approach_speed;
   }
   return normal;
 }
@@ -206,17 +213,44 @@ template <bool tracks_energy>
                                                            LanesStep& step) {
   LanesFriction friction;
   const Pack3 old_force = transport(at.tangential_force, at.normal, normal, at.real, step.deferred);
-  friction.stiffness =
-      kernel::mindlin_stiffness<PackLanes>(at.shear, pressed.elastic.contact_radius);
+  friction.stiffness = 8.0 * at.shear * pressed.contact_radius;
   friction.limit = at.friction * pressed.force;
   friction.velocity = velocity - normal * pressed.approach_speed;
-  const kernel::MindlinSpring<PackLanes> spring = kernel::mindlin_spring<PackLanes>(
-      friction.stiffness, friction.limit, friction.velocity * time_step, old_force, at.stiffness,
-      at.real);
-  friction.force = spring.force;
-  friction.free = spring.free;
-  friction.slipping = spring.slipping | spring.free;
-  if constexpr (tracks_energy) step.friction = spring.dissipation;
+  const Pack& limit = friction.limit;
+  const Pack3 slide = friction.velocity * time_step;
+  const Mask stored = at.stiffness > 0.0;
+  const Pack old_compliance = stored ? 1.0 / at.stiffness : 0.0;
+  friction.free = ~(limit > 0.0);
+  const Mask loading = (friction.stiffness >= at.stiffness) & stored;
+  const Pack kept = loading ? 1.0 : friction.stiffness * old_compliance;
+  Pack3 force = old_force * kept - slide * friction.stiffness;
+  const Pack force_squared = dot(force, force);
+  friction.slipping = force_squared > limit * limit;
+  const bool slips = any(friction.slipping & at.real & ~friction.free);
+  Pack compliance, old_squared, old_work;
+  if constexpr (tracks_energy) {
+    compliance = 1.0 / friction.stiffness;
+    old_squared = dot(old_force, old_force);
+    old_work = dot(old_force, slide);
+    step.friction = loading ? 0.5 * old_squared * (old_compliance - compliance)
+                            : 0.5 * (1.0 - kept) * (old_squared * old_compliance - old_work);
+  }
+  if (slips) {
+    const Pack trial = root(force_squared);
+    const Pack3 direction = force * (1.0 / trial);
+    if constexpr (tracks_energy) {
+      const Pack slip = (trial - limit) * compliance;
+      const Pack loss = 0.5 * (kept * dot(old_force, direction) + limit) * slip;
+      step.friction = friction.slipping ? step.friction + loss : step.friction;
+    }
+    force = select(friction.slipping, direction * limit, force);
+  }
+  friction.force = select(friction.free, Pack3{}, force);
+  friction.slipping |= friction.free;
+  if constexpr (tracks_energy) {
+    const Pack released = 0.5 * (old_squared * old_compliance - old_work);
+    step.friction = not_negative(friction.free ? released : step.friction);
+  }
   return friction;
 }
 
@@ -228,12 +262,16 @@ template <bool tracks_energy>
                                                Pack& damping_loss) {
   if (!at.damps_tangential) return friction.force;
   const Mask damped = (at.tangential_damping > 0.0) & ~friction.free & ~friction.slipping;
-  const Pack damping =
-      kernel::viscous_damping<PackLanes>(at.tangential_damping, at.mass, friction.stiffness);
-  Pack3 sum = friction.force;
-  const Pack power = kernel::add_tangential_damping<PackLanes>(damping, friction.limit,
-                                                               friction.velocity, sum, damped);
-  if constexpr (tracks_energy) damping_loss = damped ? power * time_step : 0.0;
+  const Pack damping = 2.0 * at.tangential_damping * root(at.mass * friction.stiffness);
+  Pack3 sum = friction.force - friction.velocity * damping;
+  const Pack squared = dot(sum, sum);
+  const Mask over = squared > friction.limit * friction.limit;
+  if (any(over & damped)) sum = select(over, sum * (friction.limit / root(squared)), sum);
+  if constexpr (tracks_energy) {
+    const Pack power = over ? not_negative(dot(friction.force - sum, friction.velocity))
+                            : damping * dot(friction.velocity, friction.velocity);
+    damping_loss = damped ? power * time_step : 0.0;
+  }
   return select(damped, sum, friction.force);
 }
 
@@ -242,14 +280,13 @@ template <bool tracks_energy>
                                                  const LanesNormal& normal, double time_step,
                                                  LanesStep& step) {
   step.damping = normal.damping_power * time_step + step.damping;
-  using Work = ThermalWork<PackLanes>;
-  const Pack& force = normal.elastic.force;
-  const Pack& energy = normal.elastic.elastic_energy;
-  const Pack clearance = geometry.point.eccentricity - geometry.point.depth;
-  Pack work = Work::of_clearance(force, at.elastic_force, clearance, at.clearance);
-  work += Work::of_radius(energy, at.elastic_energy, geometry.radius, at.radius);
+  const Pack energy = 0.4 * normal.elastic_force * geometry.depth;
+  const Pack clearance = geometry.eccentricity - geometry.depth;
+  Pack work = -(0.5 * (normal.elastic_force + at.elastic_force)) * (clearance - at.clearance);
+  work += 0.5 * (energy + at.elastic_energy) / (2.0 * (0.5 * (geometry.radius + at.radius))) *
+          (geometry.radius - at.radius);
   step.thermal_work = at.radius > 0.0 ? work : 0.0;
-  at.elastic_force = step.touches ? force : at.elastic_force;
+  at.elastic_force = step.touches ? normal.elastic_force : at.elastic_force;
   at.elastic_energy = step.touches ? energy : at.elastic_energy;
   at.clearance = step.touches ? clearance : at.clearance;
   at.radius = step.touches ? geometry.radius : at.radius;
@@ -273,15 +310,15 @@ template <bool tracks_energy>
   }
   const Pack3 velocity = detail::relative_velocity(at, one, two, geometry, length_1);
   const detail::LanesNormal normal = detail::normal_lanes(at, geometry, velocity, step.deferred);
-  const detail::LanesFriction friction = detail::friction_lanes<tracks_energy>(
-      at, geometry.point.normal, normal, velocity, time_step, step);
+  const detail::LanesFriction friction =
+      detail::friction_lanes<tracks_energy>(at, geometry.normal, normal, velocity, time_step, step);
   const Pack3 tangential_force =
       detail::damp_lanes<tracks_energy>(at, friction, time_step, step.damping);
-  step.force = tangential_force - geometry.point.normal * normal.force;
+  step.force = tangential_force - geometry.normal * normal.force;
   step.deferred &= at.used;
   step.touches = at.real & at.used & ~step.deferred;
   if constexpr (tracks_energy) detail::account_lanes(at, geometry, normal, time_step, step);
-  at.normal = select(step.touches, geometry.point.normal, at.normal);
+  at.normal = select(step.touches, geometry.normal, at.normal);
   at.tangential_force = select(step.touches, friction.force, at.tangential_force);
   at.stiffness = step.touches ? friction.stiffness : at.stiffness;
   at.slipping = step.touches ? friction.slipping : at.slipping;

@@ -12,7 +12,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "statejump/kernel/lane.hpp"
 #include "statejump/kernel/vector.hpp"
 
 namespace statejump::stepper {
@@ -94,30 +93,5 @@ struct Pack3 {
 [[gnu::always_inline]] inline bool any(const Mask& mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
 }
-
-/// Numbers of four contacts in the formulas of the kernel, see kernel::OneLane.
-struct PackLanes {
-  using Real = Pack;
-  using Mask = stepper::Mask;
-  using Vector = Pack3;
-
-  [[gnu::always_inline]] static bool skips(const Mask&) { return false; }
-  [[gnu::always_inline]] static bool any(const Mask& mask) { return stepper::any(mask); }
-  [[gnu::always_inline]] static Pack root(const Pack& a) { return stepper::root(a); }
-  [[gnu::always_inline]] static Pack absolute(const Pack& a) { return stepper::absolute(a); }
-  [[gnu::always_inline]] static Pack not_negative(const Pack& a) {
-    return stepper::not_negative(a);
-  }
-  [[gnu::always_inline]] static Pack dot(const Pack3& a, const Pack3& b) {
-    return stepper::dot(a, b);
-  }
-  [[gnu::always_inline]] static Pack3 cross(const Pack3& a, const Pack3& b) {
-    return stepper::cross(a, b);
-  }
-  [[gnu::always_inline]] static Pack3 zero() { return Pack3{}; }
-  [[gnu::always_inline]] static Pack3 select(const Mask& which, const Pack3& a, const Pack3& b) {
-    return stepper::select(which, a, b);
-  }
-};
 
 }  // namespace statejump::stepper
