@@ -24,7 +24,8 @@ struct Axial {
 inline Axial axial(const Bar& bar, double elongation_from_drawn, double drawn_length,
                    double change) {
   const double l0 = bar.stress_free_length;
-  // Computed from differences, because the rounding of a length would be E A times 1e-16.
+  // The tension is computed from differences of lengths, because the rounding of a length would
+  // cause a force error of 1e-16 E A.
   const double stretch =
       elongation_from_drawn + (drawn_length - l0) - l0 * bar.thermal_expansion * change;
   const double stiffness = bar.axial_stiffness / thermal::length(l0, bar.thermal_expansion, change);
@@ -35,7 +36,7 @@ inline Lengths lengths(const std::array<int, 2>& nodes, const ElementState& stat
   return lengths(state.drawn_between(nodes[0], nodes[1]), state.moved_between(nodes[0], nodes[1]));
 }
 
-/// Adds forces and derivatives of an element with a tension along its direction.
+/// Adds the forces and derivatives of an element whose only force is a tension along its direction.
 inline void write_axial(const std::array<int, 2>& nodes, const Lengths& length, const Axial& axial,
                         ElementWriter& writer) {
   const int first = nodes[0];
@@ -45,7 +46,8 @@ inline void write_axial(const std::array<int, 2>& nodes, const Lengths& length, 
   writer.force(second, axial.tension * direction);
   writer.carries(axial.tension);
   if (writer.residual_only()) return;
-  // Stiffness along the element, and geometric stiffness of its tension across it.
+  // The block combines the stiffness along the element and the geometric stiffness across it, which
+  // its tension causes.
   const double across = axial.tension / length.now;
   const double more = axial.stiffness - across;
   const auto own = [&](int node, const Vector3d& along) {

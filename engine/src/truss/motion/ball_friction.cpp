@@ -31,7 +31,8 @@ void BallFriction::measure(const Trial& at) {
     point(moved.axis);
     return;
   }
-  // The direction is still unknown: that of the last step, or an arbitrary one.
+  // The direction of friction is still unknown. The search starts with that of the last step, or
+  // with an arbitrary direction.
   const Vector3d before = along;
   along = now.normal.isZero(0.0) ? Vector3d::Zero() : now.normal.unitOrthogonal();
   point(before);
