@@ -47,8 +47,8 @@ Sparse block(const Sparse& jacobian, const Groups& of, bool contact_rows, bool c
   return made;
 }
 
-/// Whether the stiffness matrix is stable: all displacements are resisted. Constraint rows are
-/// scaled to the stiffness of the stiffest element.
+/// Whether the truss without contact forces is stable: every displacement has a stiffness.
+/// Constraint rows count as springs as stiff as the stiffest element.
 bool is_stable(const Sparse& structure, int displacements, double scale, double proximal) {
   const int rows = static_cast<int>(structure.rows()) - displacements;
   const Sparse full = structure.block(0, 0, displacements, displacements);

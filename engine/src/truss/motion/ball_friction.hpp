@@ -23,7 +23,7 @@ struct BallFriction {
   bool slips_in_part() const { return joint->partial_slip != 0; }
 
   // Memory.
-  /// State at the last update of friction: positions, directions, elastic friction.
+  /// Positions, directions and elastic friction at the last update of friction.
   BallMemory memory{none(), none(), none(), none(), none(), 0.0, 0.0, 0.0, 0.0};
 
   // Values at the middle of the current step.

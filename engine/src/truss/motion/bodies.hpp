@@ -36,8 +36,8 @@ class Bodies {
   /// The entries of the damping matrix, always in the same order. Several entries at one position
   /// are summed.
   std::vector<Eigen::Triplet<double>> damping_entries(const VectorXd& q) const;
-  /// Magnitudes of the negative geometric stiffness of all links in compression, at positions q and
-  /// a time.
+  /// Entries of the geometric stiffness of all links in compression, at positions q and a time,
+  /// with opposite sign.
   std::vector<Eigen::Triplet<double>> compression_entries(const VectorXd& q, double time) const;
   /// Heat of the dashpots in a step, and the work that the temperature does on them [J].
   struct Work {

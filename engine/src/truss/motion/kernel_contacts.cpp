@@ -313,8 +313,8 @@ VectorXd KernelContacts::start_way(const State& start, StartFriction friction) c
     const double rubs = output(model, start, contact.joint, "slider_force_N")[0] -
                         std::get<Slider>(model.joints[index(contact.joint)]).soft_stop_force(there);
     const double share = std::min(std::abs(rubs) / contact.pressed, 1.0);
-    // Slide divided by its limit: of Cattaneo's contact under a constant normal force, or of a
-    // spring.
+    // Slide times stiffness, divided by the friction limit: of Cattaneo's contact under a constant
+    // normal force, or of a spring.
     const double gives = rim_slips ? 1.5 * (1.0 - std::cbrt((1.0 - share) * (1.0 - share))) : share;
     slide = std::copysign(gives * contact.pressed / contact.held, rubs);
   }

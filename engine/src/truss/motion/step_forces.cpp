@@ -9,7 +9,8 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Momentum and forces balance to this fraction of the largest of either.
+/// Momentum must balance to this fraction of the largest momentum, and forces to this fraction of
+/// the largest force.
 constexpr double balance = 1e-10;
 
 }  // namespace
