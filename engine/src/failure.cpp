@@ -38,8 +38,7 @@ std::string at_instant(const FailureFields& fields) {
   return text.str();
 }
 
-/// Lists the nodes that move in each mode: "node 'B' mostly along x, node 'C' mostly along y; node
-/// …". Semicolons separate modes.
+/// Lists the moving nodes of each mode: "node 'B' mostly along x, node 'C' mostly along y; node …".
 std::string movers(const std::vector<FailureMode>& modes) {
   std::string text;
   for (const FailureMode& mode : modes) {

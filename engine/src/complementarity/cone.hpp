@@ -30,12 +30,10 @@ inline Block natural_map(const Block& r, const Block& u, double mu) {
   modified[0] += mu * u.tail<2>().norm();
   const Block x = r - modified;
   const double size = x.tail<2>().norm();
-  // Without friction the cone is a ray. A point behind its tip is projected to the tip, so its
-  // tangential part is zero too.
+  // Without friction the cone is a ray. The projection of a point behind its tip is zero.
   if (x[0] >= 0.0 && size <= mu * x[0]) return modified;
   if (mu * size <= -x[0]) return r;
-  // Projection onto the boundary of the cone. size > 0 here, because for size = 0 an earlier branch
-  // has returned.
+  // Projection onto the boundary of the cone. Here size > 0.
   Block edge(1.0, mu * x[1] / size, mu * x[2] / size);
   edge /= std::sqrt(1.0 + mu * mu);
   return r - edge * edge.dot(r) + edge * edge.dot(modified);

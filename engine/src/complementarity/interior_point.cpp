@@ -189,8 +189,7 @@ double InteriorPoint::advance() {
   if (!solve_for(targets, direction)) return 0.0;
   double step = std::min(1.0, boundary_fraction * longest_step(direction));
   if (step < short_step) {
-    // Some contacts are too close to the boundary of the cone, so this step only recentres, without
-    // second-order terms.
+    // Some contacts are too close to the cone's boundary: recentre without second-order terms.
     for (std::size_t i = 0; i < count; ++i) {
       targets[i] = -at.squares[i];
       targets[i][0] += centring_after_short_step * at.gap;

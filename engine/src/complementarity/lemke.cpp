@@ -74,8 +74,7 @@ class Table {
   }
 
   /// Row of the variable that leaves the basis when `entering` grows from zero. It has the
-  /// lexicographically smallest ratio; among equal ratios the artificial variable comes first. -1:
-  /// ray, no variable leaves.
+  /// lexicographically smallest ratio; the artificial variable takes precedence. -1: ray.
   Index leaving(Index entering) const {
     Index best = -1;
     for (Index i = 0; i < size_; ++i) {

@@ -46,8 +46,7 @@ double slip_rate(const Sliding& sliding) {
     high *= 8.0;
   }
   double lambda = low > 0.0 ? std::sqrt(low * high) : 0.5 * high;
-  // Bisection alone would need about 1100 halvings, because it halves the exponent range of lambda;
-  // Newton's method needs five iterations.
+  // Bisection alone would need about 1100 halvings; Newton's method needs five iterations.
   for (int k = 0; k < 200 && low < high; ++k) {
     const auto [value, rate] = sliding.excess(lambda);
     if (value == 0.0) break;

@@ -31,9 +31,8 @@ constexpr int newton_systems = 30;
 constexpr int interior_factors = 300;
 /// The interior point stops if this many steps do not halve its merit.
 constexpr int steps_without_progress = 100;
-/// Limits for Lemke's method: number of contacts up to which it is cheaper than the interior point;
-/// number up to which it is tried at all (it then takes seconds); largest number of pivots per
-/// contact (ten are already many).
+/// Limits for Lemke's method: contacts up to which it is cheaper than the interior point; contacts
+/// up to which it is tried (seconds); pivots per contact.
 constexpr Eigen::Index few_contacts = 40;
 constexpr Eigen::Index many_contacts = 250;
 constexpr int pivots_per_contact = 50;
@@ -168,8 +167,8 @@ class Driver {
     }
   }
 
-  /// Tolerance of the scaled merit. The factor 0.1 is a margin, because the natural map in the
-  /// caller's units must be within the tolerance too.
+  /// Tolerance of the scaled merit. The factor 0.1 is a margin for the natural map in the caller's
+  /// units.
   double scaled_tolerance() const { return 0.1 * options_.tolerance; }
 
   void judge(Iterate iterate, Method method) {

@@ -87,8 +87,8 @@ Equilibrium start(const linkage::Linkage& model, const Equations& equations, dou
   model.validate();
   validate_laws(model);
   const int side = loaded_side(model, contact_angle);
-  // The position of rigid bodies is computed first. Moments about A then give the force (f, 0), and
-  // each elastic part deflects under it.
+  // First the position of rigid bodies; moments about A then give (f, 0), which deflects each
+  // spring.
   const JointPoint rigid = joint_point(model, 0.0, side, contact_angle);
   Equilibrium at;
   at.p = parameters(model, 0.0);
@@ -110,8 +110,8 @@ Equilibrium start(const linkage::Linkage& model, const Equations& equations, dou
 }
 
 /// Finds the root of a function that is < 0 at `before` and >= 0 at `after` by false position
-/// (Illinois method). `value(x, y)` computes y at x and returns whether this was possible. The
-/// result is a point with value >= 0, or NaN.
+/// (Illinois method). `value(x, y)` returns whether it could compute y. The result has value >= 0,
+/// or is NaN.
 template <class Value>
 double root(double before, double value_before, double after, double value_after, Value&& value) {
   double low = std::min(value_before, 0.0);

@@ -66,9 +66,8 @@ struct Equilibrium {
 };
 
 /// Slide of journal relative to bearing, ∫ (R2 − R1 + δ) dψ + (R1 − δ/2) dθ4 − (R2 + δ/2) dθ2, with
-/// its derivatives at the end. The part of this integral with the radii at ΔT = 0 is a function of
-/// the state, so it accumulates no rounding. The remaining part is small and is computed by the
-/// trapezoidal rule.
+/// its derivatives at the end. The part with the radii at ΔT = 0 is a function of the state and
+/// accumulates no rounding. The small remainder uses the trapezoidal rule.
 class Slide {
  public:
   explicit Slide(const linkage::Linkage& model)
@@ -147,8 +146,8 @@ class Equations {
  public:
   explicit Equations(const linkage::Linkage& model);
 
-  /// Whether the contact force exceeds rounding. At this limit, a hundred times the rounding of the
-  /// spring's force, the direction of the contact force has an error of one percent.
+  /// Whether the contact force exceeds rounding. At a hundred times that rounding, its direction
+  /// has an error of one percent.
   bool touches(const Equilibrium& at) const { return at.normal() > 100.0 * force_rounding_; }
 
   const Slide& slide() const { return slide_; }

@@ -51,8 +51,8 @@ class PathFollower {
     return rolling_arc(model_, joint_point(model_, temperature_change, side_, angle));
   }
 
-  /// Angle φ in the friction cone at which rolling_arc() has its constant value. The root is unique
-  /// because the arc grows with φ.
+  /// Angle φ in the friction cone at which rolling_arc() has its constant value. The arc grows with
+  /// φ.
   double rolling_angle(double temperature_change) const {
     if (arc_at(temperature_change, limit_) <= arc_) return limit_;
     if (arc_at(temperature_change, -limit_) >= arc_) return -limit_;
@@ -91,8 +91,7 @@ JointPoint joint_point(const linkage::Linkage& model, double temperature_change,
   const Vector2d d(c * std::cos(contact_angle), c * std::sin(contact_angle));
   const Vector2d w = Vector2d(model.frame_length, 0.0) - d;
   const double length = w.norm();
-  // Position x along w of the foot of the height from B, and the height. They avoid an arc cosine,
-  // which is inaccurate near ±1.
+  // Foot of the perpendicular from B on w, and its height. An arc cosine is inaccurate near ±1.
   const double x = (length * length + (l1 - l2) * (l1 + l2)) / (2.0 * length);
   const double y = std::sqrt((l1 - x) * (l1 + x));
   const Vector2d along = w / length;
@@ -157,8 +156,7 @@ RigidLoop rigid_loop(const linkage::Linkage& model, const thermal::Program& prog
   bool first = true;
   const auto event = [&loop](const JointPoint& point) { loop.events.push_back(point); };
   for (const thermal::Branch& branch : thermal::monotone_branches(program)) {
-    // The joint rolls again after every corner of the program, because a reversal brings φ back
-    // into the friction cone.
+    // The joint rolls again after a corner: a reversal brings φ back into the friction cone.
     bool fresh = true;
     for (int i = 1; i <= samples; ++i) {
       const double from = follower.now().temperature_change;

@@ -26,8 +26,7 @@ using Matrix = Eigen::Ref<const Eigen::SparseMatrix<double>>;
 /// well.
 constexpr double exceeded_fill = 2.0;
 /// A new pattern also gets the positions of the last one, if its positions divided by its nonzero
-/// entries do not exceed this ratio. Iterates with different zeros then share an order; more
-/// positions would fill the factors too much.
+/// entries do not exceed this ratio. Iterates with different zeros then share an order.
 constexpr double widest = 1.5;
 /// Columns that a thread takes at once.
 constexpr std::size_t columns_at_once = 20000;
@@ -131,8 +130,8 @@ struct SparseFactor::Factors {
     return growth <= most && has_pivots(matrix, growth * growth);
   }
 
-  /// The largest entry of L, or NaN if any entry is NaN. It is read from KLU's storage, in which
-  /// the row indices of a column precede its entries, because klu_extract() would copy all of L.
+  /// The largest entry of L, or NaN if any entry is NaN. It is read from KLU's storage (rows of a
+  /// column, then entries), because klu_extract() would copy L.
   double largest_of_lower() const {
     double largest = 0.0;
     for (int block = 0; block < now.order->symbolic->nblocks; ++block) {
@@ -241,9 +240,8 @@ struct SparseFactor::Factors {
     }
   };
 
-  /// An order, together with the last factors that use it. Several are kept, because some entries
-  /// of a truss's matrix are zero at some iterates. The pattern then alternates, often between the
-  /// first and the later iterations of each solve.
+  /// An order, with the last factors that use it. Entries that are zero at some iterates make the
+  /// pattern alternate, often between the first and the later iterations of a solve.
   struct Kept {
     std::shared_ptr<const Order> order;    ///< Shared and only read.
     std::shared_ptr<const Order> settled;  ///< Order that COLAMD did not improve.
@@ -302,8 +300,7 @@ struct SparseFactor::Factors {
     if (others.size() > most_others) others.pop_back();
   }
 
-  /// Largest number of orders of a small matrix that are kept with their factors, in addition to
-  /// the current one.
+  /// Largest number of further orders of a small matrix that are kept with their factors.
   static constexpr std::size_t most_others = 4;
 
   klu_common common{};
@@ -362,8 +359,7 @@ double SparseFactor::solutions_per_factorization() const {
 int SparseFactor::determinant_sign() const {
   Factors& f = *factors_;
   if (f.size == 0) return 1;
-  // KLU divides rows by positive numbers, which keep the sign of the determinant. Both permutations
-  // make the matrix block triangular.
+  // Rows are divided by positive numbers, so only both permutations change the determinant's sign.
   if (!f.now.odd_permutation) {
     f.now.odd_permutation =
         odd(f.now.numeric->Pnum, f.size) != odd(f.now.order->symbolic->Q, f.size);

@@ -17,8 +17,8 @@ namespace statejump::linear {
 
 namespace {
 
-/// The separator has at most one column for this many columns of the matrix. It must be small,
-/// because its columns are long and their factorization waits for both halves.
+/// Columns of the matrix per column of the separator, at least. The separator's long columns wait
+/// for both halves.
 constexpr int columns_of_one = 1000;
 
 std::size_t index(int i) {
@@ -136,8 +136,7 @@ bool HalvedFactors::refactor(const int* columns, const int* rows, const double* 
   const std::size_t length = index(n);
   row_size_.assign(length, 0.0);
   work_.assign(length, 0.0);
-  // One thread finds the largest entry of each row in the first half of the columns, another one in
-  // the second half.
+  // Largest entry of each row: one thread per half of the columns.
   in_parallel(2, [&](std::size_t half) {
     double* largest = half == 0 ? row_size_.data() : work_.data();
     const int middle = columns[n / 2];

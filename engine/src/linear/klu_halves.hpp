@@ -18,8 +18,8 @@ struct HalvedOrder {
 
   bool is_cut() const { return separator > 0; }
 
-  /// Matrices with fewer columns are not divided, because their factorization takes less than about
-  /// ten times as long as the start of a thread.
+  /// Matrices with fewer columns are not divided: factors take less than ten times the start of a
+  /// thread.
   static constexpr int least_columns = 10000;
 };
 
@@ -48,8 +48,8 @@ struct FactorColumn {
 /// identical results, bit for bit.
 class HalvedFactors {
  public:
-  /// Examines factors computed by klu_factor(). If a pivot lies outside its half, or if the order
-  /// has no halves, further factorizations use KLU only.
+  /// Examines factors computed by klu_factor(). If a pivot leaves its half, or the order has no
+  /// halves, only KLU is used from then on.
   void begin(klu_numeric& numeric, const klu_symbolic& symbolic, const HalvedOrder& order);
   void end() { order_ = {}; }
   bool are_halved() const { return order_.is_cut(); }

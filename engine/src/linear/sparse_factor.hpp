@@ -47,8 +47,8 @@ class SparseFactor {
   /// "KLU" or "SparseLU".
   static const char* library();
 
-  /// Ratio of a pivot to the largest entry of its column at which the matrix counts as singular
-  /// [-]. If a column depends on others, elimination leaves a few roundings of 1.1e-16.
+  /// Ratio of pivot to largest entry of its column up to which the matrix is singular [-]. A
+  /// dependent column leaves a few roundings of 1.1e-16.
   static constexpr double singular_pivot = 4.5e-16;
   /// The growth that KLU itself allows.
   static constexpr double stable_growth = 1e3;

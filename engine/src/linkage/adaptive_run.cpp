@@ -19,9 +19,8 @@ namespace {
 namespace odeint = boost::numeric::odeint;
 using Vector = AllTerms::Vector;
 
-/// Scales of the state's components, so that all share one relative tolerance: the play for
-/// positions, the play times the angular frequency of the stiffer link for speeds, E A times the
-/// play for energies.
+/// Scales of all components for one tolerance: the play for positions, the play times the stiffer
+/// link's angular frequency for speeds, E A times the play for energies.
 Vector scales(const Constants& k, double clearance, double angular_frequency) {
   Vector result;
   result.fill(k.ab.rigidity * clearance);

@@ -17,8 +17,8 @@
 
 namespace statejump::linkage::detail {
 
-/// Positions in the state vector of the components after the tips' coordinates. Indices 0 to 3 are
-/// tip positions (AB 0 and 1, BC 2 and 3), indices 4 to 7 their velocities.
+/// Indices in the state vector after the tips' positions (AB 0 and 1, BC 2 and 3) and their
+/// velocities (4 to 7).
 enum Component : std::size_t {
   thermal_work = 8,
   axial_heat = 9,
@@ -236,9 +236,8 @@ LinkForces link_forces(const LinkConstants& k, double x, double y, double vx, do
   return {ux, uy, inverse, -pull * ux, -pull * uy};
 }
 
-/// Derivative ∂V/∂ΔT [J/K] of the normal law's energy at fixed depth, caused by the expansion of
-/// the radii. It is a central difference over a hundredth of a kelvin. Its error, 1e-9 of V per
-/// kelvin, affects only the energy balance.
+/// ∂V/∂ΔT [J/K] of the normal law at fixed depth due to expanding radii, as central difference over
+/// 0.01 K. Its error, 1e-9 of V per kelvin, affects only the energy balance.
 double radii_energy_rate(const Constants& k, double depth, double temperature_change);
 
 /// Forces and couples of the contact on the two links.
@@ -247,8 +246,8 @@ struct ContactEffect {
   double couple_ab = 0.0, couple_bc = 0.0;  ///< [N m]
 };
 
-/// Returns the effect of the contact on the links, and adds its part to the energy rates. It is
-/// separate from rates(), so that rates() is short for an open joint.
+/// Contact forces on the links; adds to the energy rates. Separate, so that rates() is short for an
+/// open joint.
 template <class Terms>
 [[gnu::noinline]] ContactEffect contact_effect(const Constants& k, const typename Terms::Vector& y,
                                                const Temperature& heat, const State& memory,

@@ -36,8 +36,7 @@ typename Terms::Vector step(const Constants& k, const Trajectory& trajectory, do
   return stage;
 }
 
-/// Finds the instant at which |d| = c within a step that starts without contact, by bisection on
-/// the length of the step.
+/// Finds |d| = c within a step that starts without contact, by bisection on the step length.
 template <class Terms>
 FirstContact locate(const Constants& k, const Trajectory& trajectory, double t, double h,
                     const typename Terms::Vector& y) {

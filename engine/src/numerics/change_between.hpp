@@ -9,15 +9,14 @@
 
 namespace statejump::numerics {
 
-/// Interval in which a condition changes from false to true: the last point found at which it is
-/// false, and the first at which it is true.
+/// Interval in which a condition changes: the last point found false, and the first found true.
 struct Change {
   double before;
   double after;
 };
 
-/// Length of an interval after sixty halvings, relative to its initial length. It is below the
-/// rounding of a quantity measured over the interval.
+/// Sixty halvings reduce an interval to this fraction, below the rounding of quantities measured
+/// over it.
 constexpr double fine = 0x1p-60;
 
 /// Bisects between `before`, where a condition is false, and `after`, where it is true. It ends

@@ -21,8 +21,8 @@ inline void add_up(RestSet& set) {
   }
 }
 
-/// Builds a RestStudy from the sets of all forces, their union and their intersection. `describe`
-/// converts a set into a RestSet.
+/// RestStudy of all sets, their union and their intersection. `describe` converts a set into a
+/// RestSet.
 template <class Set, class Describe, class Unite, class Intersect>
 RestStudy study_of(const std::vector<Set>& sets, Describe&& describe, Unite&& unite,
                    Intersect&& intersect) {

@@ -109,7 +109,7 @@ double can_diameter(const CanSet& set, double c, double b, std::array<Vector3d, 
 }
 
 RestSet can(const CanSet& set, double c, double b) {
-  // The nodes of the graph are the arcs of the band, the low rim and the high rim, in this order.
+  // Nodes of the graph: arcs of band, low rim and high rim, in this order.
   const std::array<const Intervals*, 3> rows = {&set.band, &set.low_rim, &set.high_rim};
   std::vector<std::pair<int, Interval>> nodes;
   for (int row = 0; row < 3; ++row) {

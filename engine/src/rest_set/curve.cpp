@@ -255,8 +255,7 @@ struct CurveGrid {
   std::map<GridEdge, std::vector<GridEdge>> neighbours() const;
 };
 
-/// Each cell connects the roots on its sides in pairs. A root belongs to at most two cells, so it
-/// has at most two neighbours.
+/// Each cell connects the roots on its sides in pairs. So every root has at most two neighbours.
 std::map<GridEdge, std::vector<GridEdge>> CurveGrid::neighbours() const {
   std::map<GridEdge, std::vector<GridEdge>> result;
   for (int j = 0; j < ny; ++j) {
@@ -271,8 +270,8 @@ std::map<GridEdge, std::vector<GridEdge>> CurveGrid::neighbours() const {
       }
       if (crossed.size() == 4 &&
           (surface.value(0.5 * (node(i, j) + node(i + 1, j + 1))) < 0.0) == corner[0]) {
-        // The centre of the cell belongs to corners 0 and 2, so corners 1 and 3 are separated,
-        // which the listed order of roots does. Otherwise the list is rotated.
+        // If the cell's centre belongs to corners 0 and 2, the listed order separates corners 1 and
+        // 3. Otherwise rotate the list.
       } else if (crossed.size() == 4) {
         crossed = {3, 0, 1, 2};
       }

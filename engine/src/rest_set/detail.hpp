@@ -138,8 +138,8 @@ class Intervals {
   std::vector<Interval> list_;
 };
 
-/// Finds the exact farthest pair of points. Points are skipped if their distance from the centre of
-/// the bounding box excludes them.
+/// Exact farthest pair of points. Distances from the centre of the bounding box exclude most of
+/// them.
 template <class Points>
 double farthest_pair(const Points& points, std::size_t& first, std::size_t& second) {
   first = second = 0;

@@ -60,8 +60,8 @@ class Region {
     return n_[0] + p.x() * (n_[1] - n_[0]) + p.y() * (n_[2] - n_[0]);
   }
 
-  /// Finds the point where the normal is parallel to the cone's axis. Returns false if there is no
-  /// such point, or more than one.
+  /// Finds the point whose normal is parallel to the cone's axis. False if it does not exist or is
+  /// not unique.
   bool axis_point(Plane& point) const;
 
   /// @param spans of the sides 0-1, 1-2, 2-0

@@ -177,8 +177,8 @@ RestSet Caps::any() const {
       if (angle <= largest) continue;
       largest = angle;
       result.diameter = 2.0 * c_ * std::sin(0.5 * angle);
-      // The farthest points lie on the great circle through both axes, on the outer sides of the
-      // caps. If their angle would exceed pi, they are opposite points.
+      // Farthest points are on the great circle through both axes, on the outer sides, or opposite
+      // each other.
       const CapCircle& a = circles_[i];
       const double psi = i == j ? 0.0 : a.angle_of(-circles_[j].axis);
       const Vector3d first = a.at(psi);
@@ -222,8 +222,7 @@ RestSet Caps::all() const {
     middle += circles_[arcs[k].circle].at(0.5 * (arcs[k].psi.a + arcs[k].psi.b));
   }
   part.area = c_ * c_ * std::max(0.0, area);
-  // Each point of a farthest pair is a corner, or it lies on an arc such that the arc's centre is
-  // between it and the other point.
+  // Each farthest point is a corner, or lies on an arc whose centre is between both points.
   const std::size_t corners = candidates.size();
   for (std::size_t i = 0; i < n; ++i) {
     const auto add = [&](double psi) {

@@ -207,7 +207,7 @@ class Cutter {
     }
   }
 
-  /// Builds a rest set from connected pieces. The nodes of the graph are pairs (triangle, sort).
+  /// Connects pieces to a rest set. Graph nodes are pairs (triangle, sort).
   /// @param sort_of returns the sort of a piece from its mask of forces; −1: not in the set
   /// @param linked returns whether pieces of sort k are connected through an edge with the given
   /// forces

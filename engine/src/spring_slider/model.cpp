@@ -36,8 +36,8 @@ void SpringSlider::validate() const {
 
 namespace {
 
-/// Position [m] at ΔT = 0 in which friction balances a load [N]. If the block would pass a stop, it
-/// is the position at the stop.
+/// Position [m] at ΔT = 0 in which friction balances a load [N]. If a stop is in its way, the
+/// position is there.
 double rest_under(const SpringSlider& model, double load) {
   const double stiffness = link_stiffness(model, 0.0) + model.preload_stiffness;
   const double excess = -model.preload_force - load;

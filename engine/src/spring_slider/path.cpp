@@ -52,8 +52,7 @@ class PathFollower {
     const int heating = sign(branch.end - branch.start);
     if (heating != heating_) close();
     heating_ = heating;
-    // The sign follows the unloaded length of the link: while it grows, the link pushes the block
-    // towards +x.
+    // While its unloaded length grows, the link pushes the block towards +x.
     drive_ = heating * sign(model_.thermal_expansion);
     branch_ = &branch;
     if (drive_ != 0) {
@@ -73,8 +72,8 @@ class PathFollower {
     ++open_.cycle;
   }
 
-  /// Ends the path. Usually the start of the next segment records the force at the end of the last
-  /// one; after the last segment this function does.
+  /// Ends the path: records the force at the end of the last segment, which no next segment
+  /// records.
   void end() {
     const Segment& last = path_.segments.back();
     note_force(last, last.end_time);
@@ -201,8 +200,8 @@ class PathFollower {
     open_.region = open_.region == 0 ? side : 0;
   }
 
-  /// ΔT at which a block at x starts to slide in `direction`. At a stop it is the ΔT at which the
-  /// force on the stop vanishes.
+  /// ΔT at which a block at x starts to slide in `direction`. At a stop: ΔT at which the stop force
+  /// vanishes.
   double onset_from(double x, int direction) const {
     return sliding_temperature(in_region(model_, open_.region), x, direction);
   }
@@ -223,8 +222,8 @@ class PathFollower {
     return last_slide_ * force >= 0.0 ? Stage::S3 : Stage::S4;
   }
 
-  /// Whether an event at ΔT occurs in the current branch: ΔT is before the end of the branch, or
-  /// already passed. NaN means that the event does not exist; the result is then false.
+  /// Whether an event at ΔT occurs before the end of the branch. False for NaN, which means no
+  /// event.
   bool is_due(double temperature_change) const {
     return heating_ * (branch_->end - temperature_change) > 0.0;
   }
@@ -238,9 +237,8 @@ class PathFollower {
     }
   }
 
-  /// Processes the next event of the branch. Returns false if there is no further event. Within one
-  /// branch the motion passes only through loaded stop → stick → play → stick → slide → stop, so
-  /// the number of events is finite.
+  /// Processes the next event of the branch. Returns false if there is none. A branch only passes
+  /// through loaded stop → stick → play → stick → slide → stop, so events end.
   bool pass_next_event() {
     if (open_.motion == BlockMotion::stop) return pass_end_of_stop();
     return open_.moves() ? pass_end_of_motion() : pass_end_of_stick();
@@ -292,8 +290,8 @@ class PathFollower {
     const double x = open_.end_displacement;
     // A play opens when friction reaches zero.
     const int limit = has_play() && held_ != drive_ ? 0 : drive_;
-    // Without friction every force moves the block. The onset is therefore not computed, whose
-    // rounding would cause a tiny stick segment.
+    // Without friction every force moves the block. A rounded onset would cause a tiny stick
+    // segment.
     const double onset =
         model_.friction_force == 0.0 ? open_.end_temperature_change : onset_from(x, limit);
     const double zero = force_zero();
@@ -384,8 +382,8 @@ void follow(const SpringSlider& model, const thermal::Program& program,
   path.largest_compression = path.largest_compression_temperature_change = 0.0;
   path.largest_axial_force = path.largest_compression_time = 0.0;
   path.reported.reset();
-  // A cycle in which the block touches both stops has 12 events, or 16 with a play. Only program
-  // tables with many reversals have more events per cycle.
+  // A cycle that touches both stops has 12 events, with a play 16. Only tables with many reversals
+  // have more.
   path.segments.reserve(16 * kept.size());
   path.events.reserve(16 * kept.size());
   path.cycle_end_displacements.reserve(static_cast<std::size_t>(program.cycles));
@@ -450,8 +448,8 @@ PathPoint point_at(const SpringSlider& model, const thermal::Program& program,
       std::minmax(segment.start_temperature_change, segment.end_temperature_change);
   const double change = std::clamp(program.temperature_change(time), lowest, highest);
   const double x = displacement(model, segment, change);
-  // While the block slides, friction is exactly at its limit, so the axial force follows from
-  // equilibrium. The difference of x and x_T would be less accurate.
+  // In a slide, equilibrium with friction at its limit gives the force. The difference of x and x_T
+  // is less accurate.
   if (segment.moves()) {
     const SpringSlider pressed = in_region(model, segment.region);
     return {change, x,

@@ -194,8 +194,7 @@ VectorXd System::slide_rates(const VectorXd& z, double time, const StepStart& st
     JointWriter to_heated(of_heated);
     to_moving.places = to_heated.places = places;
     to_moving.first_force = to_heated.first_force = forces_from;
-    // Evaluates the slide row of the joint as if its contact stuck. The rate of this row is the
-    // slip rate.
+    // Evaluates the slide row as if the contact stuck: its rate is the slip rate.
     Trial at = trial(i, z, time, start, JointModel::friction, 1.0);
     at.unslipped = true;
     const double warming =

@@ -74,13 +74,13 @@ SolveReport PathFollower::continue_from_event(double target, VectorXd& to, Statu
   const bool undecided =
       answer.count == Continuation::none || answer.count == Continuation::several;
   // A contact that opens may leave a mechanism or jump across its play. The next step detects this
-  // itself, so the step is accepted.
+  // itself.
   if (undecided && answer.opens) return first;
   if (undecided && !answer.singular.empty()) {
     refuse_mechanism(target, answer.singular, JointModel::friction);
   }
-  // If constraints are dependent, the sign of the index is wrong for all sets of statuses. A
-  // solution near the last state is still valid.
+  // Dependent constraints make the signs of all sets wrong. A solution near the last state is still
+  // valid.
   const double moved = converged ? length_of(to - z, system.displacements())
                                  : std::numeric_limits<double>::infinity();
   const bool near = moved <= jump_share * system.size();
@@ -187,8 +187,8 @@ bool PathFollower::passes_instability(const Statuses& statuses) {
 }
 
 /// Whether the rates at both ends of a step without events explain the displacement. If the path
-/// jumps from a limit point to another equilibrium, the displacement is larger. A step of large
-/// curvature may have such a displacement too; it is too long for a decision.
+/// jumps from a limit point to another equilibrium, the displacement is larger. A step with equally
+/// large curvature is too long to decide.
 bool PathFollower::follows_its_rates(const Ends& ends) const {
   if (ends.start.statuses != ends.statuses) return true;
   const Eigen::Index n = system.displacements();

@@ -105,8 +105,7 @@ std::optional<Stall> PathFollower::follow_loads() {
   return Stall{1.0, last, origin.statuses, z};
 }
 
-/// Throws a failure with the reason why the load increase stalled: buckling, or joints that slip at
-/// the point of the stall or beyond it.
+/// Throws a failure with the reason of the stall: buckling, or joints that slip at or beyond it.
 void PathFollower::refuse_overload(const Stall& at) {
   std::set<int> exhausted(at.report.joints.begin(), at.report.joints.end());
   Statuses beyond = at.statuses;

@@ -14,12 +14,11 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-/// Ratio of the smallest stiffness of the truss without its contacts to the stiffness of the
-/// stiffest element. Below this ratio the truss counts as a mechanism. W contains the inverse
-/// stiffness, so the ratio bounds the error of W.
+/// If the truss without its contacts is softer than this fraction of the stiffest element, it
+/// counts as a mechanism. W contains the inverse stiffness, so this bounds its error.
 constexpr double soft_share = 1e-9;
-/// Initial stiffness of the proximal term divided by that of the stiffest element. The softest
-/// trusses of the generators have a ratio of 1e-4.
+/// Initial proximal stiffness over that of the stiffest element. The softest generated trusses have
+/// 1e-4.
 constexpr double proximal_share = 1e-3;
 
 /// The unknowns in two groups: contacts, and all others (the structure).
@@ -47,8 +46,8 @@ Sparse block(const Sparse& jacobian, const Groups& of, bool contact_rows, bool c
   return made;
 }
 
-/// Whether the truss without contact forces is stable: every displacement has a stiffness.
-/// Constraint rows count as springs as stiff as the stiffest element.
+/// Whether every displacement has a positive stiffness. Constraint rows count as springs as stiff
+/// as the stiffest element.
 bool is_stable(const Sparse& structure, int displacements, double scale, double proximal) {
   const int rows = static_cast<int>(structure.rows()) - displacements;
   const Sparse full = structure.block(0, 0, displacements, displacements);
@@ -121,8 +120,8 @@ LocalProblem local_problem(const System& system, const VectorXd& z, double time,
     compliance.col(j) += rows * factor.solve(VectorXd(columns.col(j)));
   }
 
-  // Each contact has a block of two rows, normal and friction. If the normal force is given, the
-  // normal row is an artificial gap that this force closes.
+  // Each contact has a normal and a friction row. A given normal force has an artificial gap that
+  // it closes.
   const auto count = static_cast<Eigen::Index>(contacts.size());
   std::vector<Eigen::Index> row_of;
   for (Eigen::Index k = 0; k < count; ++k) {

@@ -15,8 +15,8 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// A mode counts as free if its stiffness divided by that of the stiffest element is below this.
-/// For comparison, rounding gives 1e-16, and the softest mode of a ring of 100 000 bays has 1e-12.
+/// A mode softer than this fraction of the stiffest element counts as free. Rounding is 1e-16 of
+/// that stiffness; the softest mode of a ring of 100 000 bays has 1e-12.
 constexpr double free_share = 1e-13;
 constexpr int most_modes = 6;
 
@@ -127,8 +127,8 @@ FoundModes mechanism(const System& system, const VectorXd& z, double time, const
   if (system.displacements() == 0) return {};
   const auto [found, pushed] = free_modes(system, z, time, statuses, joints);
   if (found || !pushed || !z.isZero()) return found;
-  // Stresses in the reference configuration may push a mechanism along its free mode, which then
-  // has a stiffness. Without these stresses the mode is free.
+  // Stresses in the reference configuration may give the free mode of a mechanism a stiffness.
+  // Without them it is free.
   Model unstressed = system.model();
   scale_misfits(unstressed, 0.0);
   return free_modes(System(unstressed), z, time, statuses, joints).first;

@@ -13,13 +13,13 @@ struct NewtonOptions {
   /// fifteen entries. The condition number of a large structure increases this by two to three
   /// decades.
   double force_tolerance = 1e-12;
-  /// Number of earlier steps with which the non-monotone line search of Grippo, Lampariello and
-  /// Lucidi [2] compares the residual (their M = 10).
+  /// Number of earlier steps in the non-monotone line search: M = 10 of Grippo, Lampariello and
+  /// Lucidi [2].
   std::size_t remembered_steps = 10;
   /// Newton's method counts as oscillating if this many steps have not halved the step length.
   std::size_t swing_steps = 4;
-  /// Largest number of halvings of a step in the line search. After ten halvings the step is below
-  /// a thousandth, and the direction counts as no descent direction.
+  /// Largest number of halvings in the line search. Ten reduce a step below a thousandth: no
+  /// descent.
   int most_halvings = 10;
   /// Number of bisections for the fraction of a step at which a joint changes its status. The
   /// fraction is accurate to 2^-50.

@@ -189,8 +189,7 @@ Path solve(const Model& model, const Options& options) {
       };
       double stride = std::min(balanced(), convergent);
       bool locating = false;
-      // Number of consecutive attempts from the same state that found a change within the step, if
-      // the predictions of its time did not converge.
+      // Consecutive attempts from one state whose predictions of a change did not converge.
       int foreseen_from_here = 0;
       double short_by_before = 1.0;  // fraction of the last step beyond the predicted change
       int steps = 0;                 // since the last change
@@ -249,9 +248,9 @@ Path solve(const Model& model, const Options& options) {
         } else if (end == StepEnd::imprecise) {
           stride = std::max(balanced(), tolerance);
         } else {
-          // The next step ends half a tolerance before the predicted change. If predictions from
-          // this state do not converge, it covers half the distance to the change; without a
-          // prediction, it is an eighth of the failed step.
+          // The next step ends half a tolerance before the predicted change. If predictions do not
+          // converge, it covers half of the distance; without a prediction, an eighth of the failed
+          // step.
           const bool foreseen = end == StepEnd::event_inside && follower.event_share < 1.0;
           const double tried = goal - from;
           // If the change is real, every attempt more than halves the part of the step beyond it.

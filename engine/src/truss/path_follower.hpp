@@ -54,7 +54,7 @@ struct Stall {
 };
 
 /// Ratio of the largest displacement of any node to the motion within the play of a joint that
-/// causes it. The estimate is the size of the structure divided by the length of its shortest bar.
+/// causes it. Estimate: size of the structure over length of its shortest bar.
 double lever_of(const Model& model, double size);
 
 /// State of a path while solve() follows it.

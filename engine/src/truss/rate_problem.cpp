@@ -119,8 +119,8 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
         {joint, {start.statuses[index(joint)]}, system_->force_row(joint), rows, 0});
     return candidates.back();
   };
-  // Adds a possible status to a candidate and returns whether it is new. The first status, used as
-  // base, must be a closed one, because an open joint has no normal.
+  // Adds a status to a candidate; returns whether it is new. The base (first status) must be
+  // closed: an open joint has no normal.
   const auto add = [](Candidate& to, JointStatus status) {
     if (to.has(status)) return false;
     to.branches.push_back(status);
@@ -224,9 +224,8 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
       const auto count = std::count_if(motions.begin(), motions.end(),
                                        [](const Motion& one) { return one.index >= 0; });
       if (count == 0 && !all[g].examined) examined = false;
-      // The sum of the indices of all solutions is one (the degree of the equations). If no
-      // solution is unstable and no set of statuses leaves a mechanism, several stable solutions
-      // are therefore the same one up to rounding.
+      // The indices of all solutions sum to one (degree of the equations). Without unstable
+      // solutions and mechanisms, several stable solutions are therefore equal up to rounding.
       const bool is_one =
           count == 1 || (count > 1 && count == std::ssize(motions) && !all[g].singular);
       if (is_one) {

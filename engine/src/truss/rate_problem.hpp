@@ -28,7 +28,7 @@ struct RateAnswer {
 /// are linear, each such joint takes one of its statuses. Let S be the set of statuses that the
 /// joints take. J(S) dz = −r(S) gives the step dz for S, and S is admissible if all inequalities
 /// hold. All sets share the factors of one J, because J(S) differs only in the rows of these
-/// joints. Each set then needs one dense system with these rows (the Delassus matrix of the rates).
+/// joints. Each set needs one dense system with these rows (the Delassus matrix of the rates).
 ///
 /// **Solution.** With stick and slip alone this is a linear complementarity problem. If the
 /// symmetric part of its matrix is positive definite, it has exactly one solution for any
@@ -40,10 +40,9 @@ struct RateAnswer {
 /// state moves away from such solutions.
 ///
 /// A solution is a jump, not a continuation, if its displacement exceeds √s times the size of the
-/// truss. To compute s, consider the step in which joints keep their statuses. s is the larger of
-/// two ratios of this step: displacement to the size of the truss, and force change to the largest
-/// joint force. [1] R. W. Cottle, J.-S. Pang, R. E. Stone, The Linear Complementarity Problem, SIAM
-/// 2009, ch. 3.
+/// truss. s is the larger of two ratios in the step with unchanged statuses: displacement to the
+/// size of the truss, and force change to the largest joint force. [1] R. W. Cottle, J.-S. Pang, R.
+/// E. Stone, The Linear Complementarity Problem, SIAM 2009, ch. 3.
 class RateProblem {
  public:
   explicit RateProblem(const System& system) : system_(&system), at_(0) {}

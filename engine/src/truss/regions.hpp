@@ -10,8 +10,7 @@
 
 namespace statejump::truss::detail {
 
-/// Elements and joints of a part of the truss, as lists of their indices in the model. Each list is
-/// in ascending order.
+/// Part of a truss: indices of its elements and joints in the model, in ascending order.
 struct Region {
   std::vector<int> loaded;                               ///< Nodes with a load.
   std::array<std::vector<int>, element_types> elements;  ///< Of each type.

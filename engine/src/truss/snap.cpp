@@ -18,12 +18,11 @@ constexpr int most_snap_steps = 200;
 /// Increase of the dashpot level after a step without solution. With stiffer dashpots, steps
 /// converge even if the truss has a negative stiffness.
 constexpr double stiffer = 0.5;
-/// Dashpot levels. At the initial level dashpots are as stiff as the stiffest element; at the
-/// highest level motion is negligible.
+/// Initial dashpot level, as stiff as the stiffest element, and highest level, with negligible
+/// motion.
 constexpr double first_level = 4.0;
 constexpr double stiffest = 6.0;
-/// A snap has ended if the motion in a step is less than this fraction of the motion since its
-/// start.
+/// A snap has ended if a step adds less than this fraction of its motion.
 constexpr double at_rest = 1e-6;
 /// After this many failed steps, the softest dashpots with which steps converged are not softened
 /// further.
@@ -118,9 +117,8 @@ bool PathFollower::come_to_rest(const std::function<std::optional<double>(double
 /// Follows unstable slip within the play of the joints until it comes to rest.
 ///
 /// A journal that slips from an unstable position snaps to a stable position within its play.
-/// Statics does not describe this motion. Dashpots in the joints with play describe it, as for
-/// slack elements, at a nearly constant temperature. An instability with a motion larger than the
-/// play remains a failure.
+/// Statics does not describe this motion. Dashpots in joints with play describe it at a nearly
+/// constant temperature. An instability that exceeds the play remains a failure.
 /// @param until time before which the snap must end [s]
 /// @returns false if dashpots do not stabilise the slip, or if no joint has play; the state is then
 /// unchanged

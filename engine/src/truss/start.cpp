@@ -165,9 +165,8 @@ bool PathFollower::stiffen_slack(const Statuses& statuses) {
   return true;
 }
 
-/// Used if elements are slack and steps have no solution: adds dashpots to all joints with play, or
-/// makes them stiffer. Returns false if no element is slack, or if the level is already the
-/// highest.
+/// If elements are slack and steps have no solution: adds dashpots to all joints with play, or
+/// stiffens them. Returns false if no element is slack or the level is highest.
 bool PathFollower::damp() {
   if (!has_slack() || slack_level >= System::stiffest_level) return false;
   softest_level = slack_level + 2.0 * softer;
@@ -193,9 +192,8 @@ void PathFollower::open_clearances() {
   const VectorXd pinned_z = z;
   const Statuses pinned = origin.statuses;
   SolveReport last;
-  // In the first attempt, journals move without friction to positions in which their contact forces
-  // balance. If many lightly loaded journals have no such position nearby, friction holds the
-  // journals in the second attempt where their pin forces push them.
+  // First, journals move without friction until contact forces balance. If many lightly loaded
+  // journals have no such position nearby, friction then holds them where pin forces push them.
   for (const JointModel contact : {JointModel::frictionless, JointModel::friction}) {
     z = pinned_z;
     origin = system.begin(z, 0.0, pinned, 1.0);
@@ -316,8 +314,7 @@ bool PathFollower::come_to_rest_at(double opening, JointModel contact,
   return false;
 }
 
-/// Moves journals that are in contact in the direction of their forces, by the amount by which the
-/// clearances open.
+/// Moves journals in contact along their forces by as much as the clearances open.
 void PathFollower::seat_at(double opened, double opening, const std::vector<int>& with_play,
                            VectorXd& there) const {
   for (const int i : with_play) {

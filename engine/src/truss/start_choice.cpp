@@ -57,8 +57,8 @@ Model without_friction(const Model& model) {
   return loose;
 }
 
-/// Status with which friction begins. A slipping joint sticks; all other statuses, such as a stop,
-/// do not change. Joints with play keep every status.
+/// Status with which friction begins. A slipping joint without play sticks; no other status
+/// changes.
 JointStatus begins(const Joint& joint, JointStatus status) {
   if (status == JointStatus::open) return status;
   if (std::visit([](const auto& one) { return one.has_play(); }, joint)) return status;
@@ -77,9 +77,8 @@ void begin(const IwanJoint& joint, const Trial& trial, JointStatus, double* now)
   std::fill_n(now, joint.history(), joint.axis.dot(trial.moved[0] - trial.moved[1]));
 }
 
-/// Memory of another type of joint in which friction begins at zero force. The memory is the
-/// accumulated slip, which equals the whole slide at zero force. For a joint with play, it is the
-/// usual start of its type.
+/// Memory of other joints: the accumulated slip, which is the whole slide at zero force. A joint
+/// with play starts as usual.
 template <class Type>
 void begin(const Type& joint, const Trial& trial, JointStatus status, double* now) {
   joint.begin(trial, status, now);

@@ -50,8 +50,8 @@ struct Branches {
 /// Largest displacement [m].
 double length_of(const VectorXd& step, int displacements);
 
-/// Factors the equations of the base, in which every candidate has its first status, and evaluates
-/// all other statuses. Empty if the base is singular.
+/// Factors the base (first status of every candidate) and evaluates the other statuses. Empty if
+/// the base is singular.
 std::optional<Branches> prepare(const System& system, const VectorXd& z, double target,
                                 const StepStart& start, std::vector<Candidate> candidates,
                                 Assembly& at, linear::SparseFactor& factor);
@@ -118,8 +118,7 @@ class Asking {
   double near_;
 };
 
-/// Index of a candidate, and a status that it requests and that is not yet among its possible
-/// statuses.
+/// Index of a candidate, and a requested status that is not yet among its statuses.
 using RequestedStatus = std::pair<std::size_t, JointStatus>;
 
 /// Admissible motions of a group; equal motions are listed once.

@@ -53,10 +53,9 @@ double PathFollower::first_edge(double target, const VectorXd& to, const StepSta
 }
 
 /// Whether the energy balance of a step is accurate enough. If a shorter step did not halve the
-/// error, the error is rounding, and the step is accepted as well. Half of the allowed error is
-/// distributed over time. Each step may use a small fraction of the other half, so that single
-/// events do not need short steps. Work that the dashpots of slack joints absorb does not count as
-/// error.
+/// error, it is rounding, and the step is accepted. Half of the allowed error is distributed over
+/// time. Each step may use a small fraction of the other half, so that single events do not need
+/// short steps. Work absorbed by dashpots of slack joints is no error.
 bool PathFollower::balances(const State& next, const VectorXd& to, double step, double taken) {
   const double duration = model.programs.front().duration();
   const double heat = next.joint_dissipation.sum();
@@ -64,9 +63,9 @@ bool PathFollower::balances(const State& next, const VectorXd& to, double step, 
   const double unbalanced = work - (next.elastic_energy - state.elastic_energy) -
                             (next.load_potential - state.load_potential) -
                             (heat - state.joint_dissipation.sum());
-  // Dashpot forces jump to zero at the start of a step. The trapezoidal rule for the work of the
-  // bars may therefore assign energy to the dashpots: at most the mean dashpot force of this step
-  // and the previous one, times the motion.
+  // Dashpot forces jump to zero at the start of a step. The trapezoidal rule for the bars thus
+  // assigns to the dashpots at most their mean force in this and the previous step times the
+  // motion.
   const double by_dashpots = 0.5 * (taken + std::sqrt(taken * slack_work));
   const double gained = std::min(0.0, unbalanced) + std::max(0.0, unbalanced - by_dashpots);
   largest_work = std::max(largest_work, std::abs(next.thermal_work));
@@ -209,8 +208,8 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
              trial_statuses[index(i)] != JointStatus::open;
     });
     if (options.locate_events && looks_at_start && closes < 0 && !report.leaving) {
-      // All changes seem to occur at the start of the step. A short step cannot show which joints
-      // change, because rounding hides this, so these statuses are stored.
+      // All changes seem to occur at the start. Their statuses are stored, because rounding hides
+      // them in a short step.
       changed_at_start = trial_statuses;
       event_share = 0.0;
     }
@@ -292,8 +291,8 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
   const std::optional<System::Halves> halves = system.halves_of(way, begin, trial_statuses);
   system.note_slides(way, halves, begin, after);
   if (halves && begin.last_step == 0.0 && !after.lost.isZero(0.0)) {
-    // In the first step of a smooth part, the quadrature error was not yet predicted. The step is
-    // repeated with the error found now.
+    // The first step of a smooth part had no predicted quadrature error. It is repeated with the
+    // error found.
     ++path.solves;
     origin.lost = after.lost;
     origin.last_step = way.step();
@@ -337,8 +336,8 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
   return StepEnd::done;
 }
 
-/// Takes a step. If it has no solution, it is repeated with stiffer dashpots in slack or opening
-/// joints. If this fails too, the motion is followed as a snap.
+/// Takes a step. Without a solution, dashpots of slack or opening joints are stiffened; finally a
+/// snap is followed.
 /// @param until time of the next corner of the programs, before which a snap must end [s]
 StepEnd PathFollower::step_with_slack(double target, double until, double tolerance) {
   const Statuses before = origin.statuses;

@@ -73,8 +73,8 @@ struct StepStart {
   }
 };
 
-/// Tolerance of closures divided by System::reach(); it is some hundred roundings. If a value is
-/// closer than this to the bound of an inequality, the distance counts as zero.
+/// Tolerance of closures divided by System::reach(); it is some hundred roundings. A smaller
+/// distance from the bound of an inequality counts as zero.
 constexpr double closure_tolerance = 1e-13;
 
 /// Tolerances of lengths [m] and forces [N] for inequalities.
@@ -89,8 +89,8 @@ ElementFrames frames_of_elements(const Model& model);
 /// Equations of a truss: layout of the unknowns, residual, Jacobian, inequalities. Elements and
 /// joints contribute through their interfaces; this class does not depend on their types.
 ///
-/// The unknowns z are the free displacements of the nodes [m], followed by the forces of the joints
-/// [N]. The rows of the equations have the same order.
+/// Unknowns z: free displacements of the nodes [m], then joint forces [N]. Rows have the same
+/// order.
 class System {
  public:
   /// The model must outlive the system and be valid.
@@ -259,8 +259,8 @@ class System {
   }
 
   /// Symmetric stiffness of the elements at z plus penalty stiffness of the closed joints, to
-  /// search for mechanisms and instability. Only the lower triangle for the free displacements is
-  /// stored. Open joints and slipping directions have no penalty stiffness.
+  /// search for mechanisms and instability. Lower triangle for free displacements only. Open joints
+  /// and slipping directions have no penalty stiffness.
   /// @param held penalty stiffness of a constrained direction, divided by the stiffness of the
   /// stiffest element
   /// @param slack stiffness of an open joint [N/m]
@@ -274,27 +274,25 @@ class System {
   /// displacements must not loosen the tolerances.
   double reach(const VectorXd& z) const;
   /// Displacement expected from the model before a solution is known [m]. It is the larger of two
-  /// values. The first is the largest thermal strain of a program times the size of the truss. The
-  /// second is the largest force of a load, a spring or a misfit, divided by the stiffness of the
-  /// stiffest element.
+  /// values. They are the largest thermal strain times the size of the truss, and the largest force
+  /// of a load, spring or misfit over the largest element stiffness.
   double path_scale() const { return path_scale_; }
   /// Stiffness, as springs, of the dashpots that resist the motion of an open joint in a step
   /// [N/m].
   ///
   /// If statics does not determine the position of an element with an open joint, the element is
-  /// slack. Dashpots in the joints then select a position. In a step of length Δt, a dashpot with
-  /// coefficient c acts as a spring c/Δt on the motion since the start of the step. As c goes to
-  /// zero, dashpot forces vanish, and the element moves to the admissible position nearest to its
-  /// last one. This is a proximal point step (R. T. Rockafellar, SIAM J. Control Optim. 14 (1976)
-  /// 877-898). Level 0, with 1e-8 of the stiffness of the stiffest element, approximates this limit
-  /// in floating point. A motion by the play then causes 1e-8 of the force that it would cause in
-  /// the stiffest element. Rounding of the forces moves a slack element by less than 1e-6 of the
-  /// largest displacement.
+  /// slack. Dashpots in the joints then select a position. Over a step Δt a dashpot c acts as a
+  /// spring c/Δt on the motion since its start. As c goes to zero, dashpot forces vanish, and the
+  /// element moves to the admissible position nearest to its last one: a proximal point step (R. T.
+  /// Rockafellar, SIAM J. Control Optim. 14 (1976) 877-898). Level 0, with 1e-8 of the stiffness of
+  /// the stiffest element, approximates this limit in floating point. A motion by the play then
+  /// causes 1e-8 of the force that it would cause in the stiffest element. Rounding of the forces
+  /// moves a slack element by less than 1e-6 of the largest displacement.
   ///
   /// Each level is a hundred times as stiff as the previous level, up to a hundredth of the
-  /// stiffest element at most_slack_level. Higher levels are used for elements that compression
-  /// moves away from their last position, and for chains so long that rounding determines their
-  /// motion. The energy balance includes the work of the dashpots.
+  /// stiffest element at most_slack_level. Higher levels serve elements that compression moves away
+  /// from their last position, and chains so long that rounding decides. The energy balance
+  /// includes the work of the dashpots.
   double slack_stiffness(double level) const {
     return 1e-8 * std::pow(100.0, level) * stiffness_scale_;
   }
@@ -338,9 +336,9 @@ class System {
                     const Statuses& statuses) const {
     return std::max(start.dashpot_force, dashpot_force(z, time, start, statuses));
   }
-  /// Whether the force of a joint with play is at most `force` at both ends of a step. If this
-  /// holds with `force` = idle_force(), the time at which the joint changes its status is
-  /// irrelevant, because its force would vanish without dashpots.
+  /// Whether the force of a joint with play is at most `force` at both ends of a step. With `force`
+  /// = idle_force() the time of a status change is then irrelevant: without dashpots the joint
+  /// force would vanish.
   bool is_idle(int joint, const VectorXd& from, const VectorXd& to, double force) const;
   /// Whether a joint has partial slip.
   bool slips_smoothly() const { return slips_smoothly_; }

@@ -92,9 +92,9 @@ linkage::State loaded_state(const linkage::Linkage& model, double contact_angle 
 /// further iteration removes rounding. A step without convergence is halved.
 ///
 /// With partial slip, each increment is one step of kernel::partial_slip_step(), with difference
-/// quotients as derivatives. The path starts from a contact loaded at a constant ratio of
-/// tangential to normal force. The law decides between stick and slip at the end of an increment,
-/// so changes are reported at samples. The path is second-order accurate.
+/// quotients as derivatives. The path starts from a contact loaded at a constant force ratio. The
+/// law decides stick and slip at the end of an increment, so events are samples. The path is
+/// second-order accurate.
 ///
 /// Without partial slip, slip starts when |F_t| reaches μ F_N. It ends when the slip rate, from the
 /// derivative of the equations with respect to ΔT, changes sign. Both events are roots within a

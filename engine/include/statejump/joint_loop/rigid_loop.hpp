@@ -47,17 +47,16 @@ struct RigidLoop {
 
 /// Equilibrium with the contact at φ; motion is set to `roll`.
 ///
-/// The links are rigid with length l_T, and the journal is off-centre by d with |d| = c. The
-/// spring's couples +M on AB and −M on BC, M = K_M (α − α0), are balanced by the force (f, 0) on
-/// the bearing. Moments about A and about C differ by AC × F = 0, so F is parallel to AC, with the
-/// sign σ of M. With the contact normal n = σ (cos φ, sin φ) the tangential force is tan φ times
-/// the normal force. Then
+/// The links are rigid with length l_T; the journal's offset d has |d| = c. The spring's couples +M
+/// on AB and −M on BC, M = K_M (α − α0), are balanced by the force (f, 0) on the bearing. Moments
+/// about A and about C differ by AC × F = 0, so F is parallel to AC, with the sign σ of M. With the
+/// contact normal n = σ (cos φ, sin φ) the tangential force is tan φ times the normal force. Then
 ///
 ///     w = l1 u2 − l2 u4 = AC − d = (a − σ c cos φ, −σ c sin φ),
 ///
 /// and |w| gives the flare angle by the law of cosines; the direction of w gives the orientation.
-/// The force vanishes at α = α0. If both links expand equally and α0 is the flare angle of the
-/// ideal position, this occurs at hypot(a + c cos φ, c sin φ) = a (1 + α ΔT), σ = −1.
+/// The force vanishes at α = α0. For equal links and α0 of the ideal position, this occurs at
+/// hypot(a + c cos φ, c sin φ) = a (1 + α ΔT), σ = −1.
 /// @param side σ, +1 or −1. No argument is checked
 JointPoint joint_point(const linkage::Linkage& model, double temperature_change, int side,
                        double contact_angle);

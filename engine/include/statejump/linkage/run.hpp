@@ -86,11 +86,11 @@ struct AdaptiveRunOptions {
 /// any dissipation.
 ///
 /// The error of a step is kept below relative_tolerance times a scale: the play for positions, the
-/// play times the links' angular frequency for speeds, E A times the play for energies. The times
-/// at which contact begins are located on the dense output, which is fourth-order accurate. No step
-/// is longer than half a radian of the stiffer link, so that no contact is missed. Corners of the
-/// program end a step. Throws as simulate(), and std::invalid_argument for a friction law with
-/// memory, because at its limit the force has a corner, at which the error control fails.
+/// play times the links' angular frequency for speeds, E A times the play for energies. Starts of
+/// contact are located on the dense output, of fourth order. No step is longer than half a radian
+/// of the stiffer link, so that no contact is missed. Corners of the program end a step. Throws as
+/// simulate(), and std::invalid_argument for a friction law with memory, because at its limit the
+/// force has a corner, at which the error control fails.
 Run simulate_adaptive(const Linkage& model, const thermal::Program& program, const State& start,
                       const AdaptiveRunOptions& options = {});
 

@@ -36,7 +36,7 @@ using PlaneGradient = std::function<Eigen::Vector2d(const Eigen::Vector2d&)>;
 /// points between them are found by Newton's method along the gradient. N = −∇Γ/|∇Γ|. Features
 /// smaller than a cell are missed.
 /// @param low,high corners of the box [m]
-/// @param cells number of cells along the longer side of the box, 4 to 4000
+/// @param cells number along the longer side, 4 to 4000
 /// Throws std::invalid_argument for an invalid box, a value of Γ that is not finite, a vanishing
 /// gradient on the curve, or no curve.
 std::vector<Curve> implicit_curves(const PlaneFunction& gamma, const PlaneGradient& gradient,

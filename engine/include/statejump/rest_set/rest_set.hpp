@@ -16,8 +16,7 @@ struct RestComponent {
   /// For a circular clearance, the angle of the arc [rad]; for a spherical one, the largest angle
   /// between two directions. NaN if the clearance has no centre.
   double angle = std::numeric_limits<double>::quiet_NaN();
-  /// A typical position: the middle of an arc or segment, or a position on a surface whose normal
-  /// is well inside the friction cone.
+  /// Middle of an arc or segment; on a surface, a position well inside the friction cone.
   Eigen::Vector3d representative = Eigen::Vector3d::Zero();
   /// Positions along a one-dimensional component, from end to end. An isolated component has one
   /// point.
@@ -26,7 +25,7 @@ struct RestComponent {
   std::vector<std::vector<Eigen::Vector3d>> rims;
 };
 
-/// Positions at which a machine part I can rest in contact with a part II.
+/// Positions at which a part I can rest on a part II.
 ///
 /// The centre of I is at x on the configuration surface S, the set of all centres at which I
 /// touches II. The force F [N] loads I, and one reaction R = −F supports it. Let N be the unit
@@ -87,17 +86,17 @@ RestStudy rest_in_socket(double clearance, const std::vector<Eigen::Vector3d>& f
 /// of radius c and height 2 b. The cylinder does not tilt.
 ///
 /// Wall: let F_r be the component of F across the axis, t = F_z/F_r, and φ the angle from F_r. The
-/// friction cone requires sin²φ + t² <= μ² cos²φ. The rest set on the wall is an arc of half-angle
-/// atan2(√(μ² − t²), √(1 + t²)) over the whole height, or empty if |F_z| > μ F_r.
+/// friction cone requires sin²φ + t² <= μ² cos²φ. The rest set is an arc of half-angle atan2(√(μ² −
+/// t²), √(1 + t²)) over the whole height, or empty if |F_z| > μ F_r.
 ///
-/// Shoulder at z = ±b: its rest set is the whole disc if F_r <= μ |F_z| and F_z points to the
-/// shoulder; otherwise it is empty.
+/// Shoulder at z = ±b: the rest set is the whole disc if F_r <= μ |F_z| and F_z points to the
+/// shoulder.
 ///
 /// Rim: wall and shoulder both push, so F must be in the sum of two friction cones with axes e and
 /// ±z. A vector y is in the dual of that sum if its angles to both axes are at most π/2 − atan μ. F
-/// is in the sum if F·y >= 0 for all such y. On the unit sphere these y form a lens, so its corners
-/// and the two nearest points on its sides decide. Bisection finds the arc. For μ >= 1 wall and
-/// shoulder can clamp the cylinder under any force, and the whole rim is included.
+/// is in the sum if F·y >= 0 for all such y. The unit vectors y form a lens, whose corners and two
+/// nearest points decide. Bisection finds the arc. For μ >= 1 wall and shoulder can clamp the
+/// cylinder under any force, and the whole rim is included.
 /// @param clearance c [m], > 0
 /// @param axial_play b, distance from the middle to either shoulder [m], > 0
 RestStudy rest_in_bore(double clearance, double axial_play,

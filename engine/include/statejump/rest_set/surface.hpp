@@ -14,9 +14,8 @@ namespace statejump::rest_set {
 struct Mesh {
   std::vector<Eigen::Vector3d> vertices;      ///< positions of the component's centre [m]
   std::vector<std::array<int, 3>> triangles;  ///< indices of vertices
-  /// Vectors along N at the vertices, of any length, from the fixed part towards free positions. If
-  /// empty, N is the mean of the right-hand normals of the triangles, weighted by their angles at
-  /// the vertex.
+  /// Vectors along N at the vertices, towards free positions, of any length. If empty, N is the
+  /// mean of the triangles' right-hand normals, weighted by their angles.
   std::vector<Eigen::Vector3d> normals;
   /// Optional functions for the smooth surface that the mesh approximates: `project` returns the
   /// surface point nearest to x, `normal` returns N there. The ends of rest intervals on edges are
@@ -42,16 +41,16 @@ struct SurfaceStudy {
 using SpaceFunction = std::function<double(const Eigen::Vector3d&)>;
 using SpaceGradient = std::function<Eigen::Vector3d(const Eigen::Vector3d&)>;
 
-/// Merges coincident vertices and removes triangles without area. Use it for triangles that do not
-/// share vertices.
+/// Merges coincident vertices and removes triangles without area. For triangles that share no
+/// vertices.
 /// @param tolerance [m], >= 0: largest distance of coincident vertices
 Mesh welded(const Mesh& mesh, double tolerance);
 
-/// Mesh of the surface Γ(x, y, z) = 0 in a box; Γ < 0 where the centre can move freely. Marching
-/// tetrahedra give the triangles, bisection the roots on edges, and −∇Γ the normals. Triangles are
-/// flat, so areas have an error of second order in the cell size.
+/// Mesh of Γ(x, y, z) = 0 in a box, with Γ < 0 at free positions. Marching tetrahedra give the
+/// triangles, bisection the roots on edges, −∇Γ the normals. Triangles are flat, so the error of
+/// areas is of second order.
 /// @param low,high corners of the box [m]
-/// @param cells number of cells along the longest side of the box, 2 to 400
+/// @param cells number along the longest side, 2 to 400
 Mesh implicit_surface(const SpaceFunction& gamma, const SpaceGradient& gradient,
                       const Eigen::Vector3d& low, const Eigen::Vector3d& high, int cells = 40);
 
@@ -64,14 +63,13 @@ Mesh clearance_sphere(double clearance, int level);
 ///
 /// With f = −F/|F| the conditions are G(n) = μ² (f·n)² − |n − (f·n) f|² >= 0 and f·n >= 0, a convex
 /// cone of normals n. As n is linear in the position, the rest set in a triangle is a convex region
-/// with a conic boundary. The points where this boundary meets an edge are roots of a quadratic,
-/// common to both adjacent triangles. Further points of the conic are also roots of quadratics; 8
-/// chords per triangle connect the points. Components are connected through edges. If the mesh
-/// approximates a smooth surface and has exact vertex normals, the error is of second order in the
-/// edge length. For μ = 0 a friction coefficient of 1e-6 is used; components smaller than 1e-4 of
-/// the mesh are then reported as isolated points, and slivers as lines. diameter_error is an
-/// estimate: twice the sagitta of the longest edge on a sphere as large as the mesh's bounding box.
-/// At most 256 forces.
+/// with a conic boundary. This boundary meets edges at roots of a quadratic, common to both
+/// adjacent triangles. Further points of the conic are computed alike; 8 chords per triangle
+/// connect them. Components are connected through edges. For smooth surfaces with exact vertex
+/// normals, the error is of second order in the edge length. For μ = 0 a friction coefficient of
+/// 1e-6 is used; components smaller than 1e-4 of the mesh are then reported as isolated points, and
+/// slivers as lines. diameter_error is an estimate: twice the sagitta of the longest edge on a
+/// sphere as large as the mesh's bounding box. At most 256 forces.
 SurfaceStudy rest_on_mesh(const Mesh& mesh, const std::vector<Eigen::Vector3d>& forces, double mu);
 
 }  // namespace statejump::rest_set

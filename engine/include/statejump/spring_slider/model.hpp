@@ -8,9 +8,8 @@
 
 namespace statejump::spring_slider {
 
-/// A heated link that pushes a block with dry friction between two stops. It is the paper's reduced
-/// model of a one-dimensional clearance joint (section 3, Figs 4 and 5; numbers in parentheses are
-/// its equations).
+/// A heated link that pushes a block with dry friction between two stops. This is the paper's
+/// reduced model of a one-dimensional clearance joint (section 3, Figs 4 and 5).
 ///
 /// The link is a massless spring between the fixed frame and the block. Its unloaded length is l_T
 /// = l0 (1 + α ΔT), so its thermal displacement is x_T = l_T − l0 (2). With the block at x
@@ -102,8 +101,7 @@ struct SpringSlider {
 /// Unloaded length l_T [m] at ΔT [K], eq. (2).
 double free_length(const SpringSlider& model, double temperature_change);
 
-/// Thermal displacement x_T = l0 α ΔT [m]. It is computed without the difference l_T − l0, which
-/// would lose digits.
+/// Thermal displacement x_T = l0 α ΔT [m]. The difference l_T − l0 would lose digits.
 double thermal_displacement(const SpringSlider& model, double temperature_change);
 
 /// Stiffness k_T = E A/l_T of the link [N/m], eq. (4).
@@ -113,8 +111,7 @@ double link_stiffness(const SpringSlider& model, double temperature_change);
 double axial_force(const SpringSlider& model, double temperature_change, double displacement);
 
 /// The model while the block touches its soft stop on side `region` (+1 or −1): the stop's spring
-/// is added to the preload spring, and the stops are removed. With `region` = 0 it returns the
-/// model unchanged.
+/// is added to the preload spring, and the stops are removed. 0: the model is unchanged.
 SpringSlider in_region(const SpringSlider& model, int region);
 
 /// Side (+1 or −1) of the soft stop that a block at x [m] touches; 0 if it touches none.
@@ -139,10 +136,9 @@ double start_displacement(const SpringSlider& model);
 /// its play (`direction` = 0). Stops are ignored.
 double sliding_displacement(const SpringSlider& model, double temperature_change, int direction);
 
-/// ΔT [K] at which D = direction·f (0: D = 0) with the block at x [m]. It is the inverse of
-/// sliding_displacement(). A block that sticks at x starts to slide at this ΔT, and a sliding block
-/// arrives at x at this ΔT. NaN if there is no such temperature (α = 0, or P + k_p x + direction·f
-/// >= E A).
+/// ΔT [K] at which D = direction·f (0: D = 0) with the block at x [m]. Inverse of
+/// sliding_displacement(). At this ΔT a stuck block starts to slide from x, and a sliding block
+/// arrives at x. NaN if there is none (α = 0, or P + k_p x + direction·f >= E A).
 double sliding_temperature(const SpringSlider& model, double displacement, int direction);
 
 /// Displacement (D0 − s f)/(k + k_p) [m] after one closed cycle that ends sliding in direction s =

@@ -51,8 +51,7 @@ const char* to_string(BlockMotion motion);
 /// "first_slip", "slip", "stop_reached", …: the enumerator's name.
 const char* to_string(EventKind kind);
 
-/// One event of a path. The stages before and after it are equal if the event is only the end of a
-/// cycle.
+/// One event of a path. Its two stages are equal if it is only the end of a cycle.
 struct Event {
   EventKind kind;
   Stage stage_before;
@@ -141,13 +140,13 @@ Path solve(const SpringSlider& model, const thermal::Program& program,
            const Eigen::Ref<const Eigen::VectorXd>& times);
 
 /// Replaces the temperature changes in events, samples and warnings by those of the program
-/// `reported` at the same times. If the link's expansion coefficient depends on temperature, the
-/// solved program is the thermal strain divided by a constant coefficient, and `reported` is the
-/// temperature. Segments keep the solved values.
+/// `reported` at the same times. If the expansion coefficient depends on temperature, the solved
+/// program is thermal strain over a constant coefficient, and `reported` the temperature. Segments
+/// keep the solved values.
 void report_temperatures_of(thermal::Program reported, Path& path);
 
-/// Position x [m] of the block at ΔT [K], which must be within the segment. x is constant in a
-/// stick and at a stop; otherwise it is sliding_displacement().
+/// Position x [m] at ΔT [K] within the segment. It is constant in a stick and at a stop; otherwise
+/// it is sliding_displacement().
 double displacement(const SpringSlider& model, const Segment& segment, double temperature_change);
 
 /// The path at one time.

@@ -48,8 +48,7 @@ constexpr void for_each_element_type(Use&& use) {
   (std::make_index_sequence<element_types>());
 }
 
-/// Type of the tuple with one list of frames for each type of element. The function is only
-/// declared, for use in decltype.
+/// Type of the tuple with one list of frames for each type of element. Only declared, for decltype.
 template <class... Lists>
 std::tuple<std::vector<typename std::decay_t<Lists>::value_type::Frame>...> frames_of(
     const std::tuple<Lists...>& lists);

@@ -77,8 +77,8 @@ struct Model : Elements {
   static constexpr double same_time = 1e-9;
 
   /// Throws std::invalid_argument whose message names the element or joint, its value and the
-  /// range. It rejects indices and numbers out of range, links without length at some time of their
-  /// program, joints whose parts do not fit, and directions that both a joint and constraints
+  /// range. Rejected are indices and numbers out of range, links without length at some time of
+  /// their program, joints whose parts do not fit, and directions that a joint and constraints both
   /// determine.
   void validate() const;
 

@@ -27,9 +27,8 @@ struct Inertia {
   /// tangent stiffness k, in parallel with the elastic normal and tangential laws. Rigid laws have
   /// no dashpots.
   Eigen::VectorXd joint_damping = {};
-  /// Centre of mass of each link, as two fractions of the vector from its first to its second node.
-  /// The first is measured along this vector, the second to the left of it; for spatial trusses the
-  /// second is 0. Empty: (1/2, 0).
+  /// Centre of mass of each link, as fractions of the vector from its first to its second node:
+  /// along it, and to its left (0 in space). Empty: (1/2, 0).
   Eigen::Matrix2Xd link_centre = {};
   /// Moment of inertia of each link about its centre of mass [kg m²], >= 0. Empty: rods, m l0²/12.
   Eigen::VectorXd link_moment = {};
@@ -40,9 +39,9 @@ inline double inertia_of(const Eigen::VectorXd& list, std::size_t i) {
   return list.size() == 0 ? 0.0 : list[static_cast<Eigen::Index>(i)];
 }
 
-/// A link with prescribed rotation. Its angular velocity about z is linear between the rows of a
-/// table, and constant before the first row and after the last. The link starts at its angle in the
-/// reference configuration. A couple on its two nodes enforces the rotation.
+/// A link with prescribed rotation. Its angular velocity about z is linear between rows and
+/// constant outside. It starts at the angle of the reference configuration. A couple on its two
+/// nodes rotates it.
 struct Drive {
   std::string name;  ///< For messages.
   int link = 0;
@@ -137,8 +136,8 @@ struct Motion {
 ///   M (v1 − v0) = h (θ f1 + (1 − θ) f0) + H r, q1 = q0 + h (θ v1 + (1 − θ) v0)
 ///
 /// Newton's method solves the step with M + h θ C + (h θ)² K at the middle of the step; H is
-/// evaluated there too. Contacts first keep the statuses of the previous step, and then change them
-/// where inequalities are violated. Each change costs one sparse system; smaller systems around the
+/// evaluated there too. Contacts first keep the statuses of the previous step, and change them if
+/// inequalities are violated. Each change costs one sparse system; smaller systems around the
 /// changing contacts predict further changes. If the statuses are not found, the step is solved as
 /// a local frictional contact problem (complementarity/) with the dense matrix W = Hᵀ (M + …)⁻¹ H.
 /// The scheme is second-order accurate while no contact changes, and first-order accurate across

@@ -25,14 +25,14 @@ struct Options {
   /// Interval [1/branch] within which changes are located.
   double event_tolerance = 1e-9;
   /// Allowed error of the energy balance if events are located, as a fraction of the largest
-  /// possible thermal work (that of a program which does work at its largest rate all the time). An
-  /// increment with a larger error is divided into at most 64 steps. Increments are not divided if
-  /// a joint slips gradually, because its law consists of chords.
+  /// possible thermal work (at the largest rate all the time). An increment with a larger error is
+  /// divided into at most 64 steps. Laws with gradual slip consist of chords; their increments are
+  /// not divided.
   double energy_tolerance = 2.5e-11;
   /// Store only the states at the ends of the cycles.
   bool cycle_ends_only = false;
-  /// Times, in ascending order, at which the frictional contact problem is stored [s]. For each
-  /// time, it is the problem of the first step that ends then or later.
+  /// Times, in ascending order, at which the frictional contact problem is stored [s]. It is that
+  /// of the first step that ends then or later.
   std::vector<double> problem_times;
   /// Largest number of Newton iterations after the last change of a status. The limit also ends an
   /// iteration whose statuses cycle.
@@ -92,8 +92,8 @@ struct Note {
   double value = 0.0;                ///< See NoteKind.
 };
 
-/// Values of the outputs of all elements of one type at a state: one row per output, in the order
-/// of outputs(), and one column per element.
+/// Outputs of all elements of one type at a state: one row per output in outputs(), one column per
+/// element.
 template <Element Type>
 Eigen::Map<const Eigen::MatrixXd> element_output(const Model& model, const State& state) {
   const double* begin = state.element_output.data();
@@ -162,10 +162,9 @@ struct Path {
 ///
 /// **Reversals within a step.** The tangent of the last solve gives the rates of all unknowns at
 /// both ends of a step. States and rates define a cubic interpolation. A joint reverses within the
-/// step if the cubic shows that it slips backwards for a while, or that it leaves its status and
-/// returns to it by the end. The step then ends at the reversal. The work of the temperature is
-/// integrated along the same cubic. Its error is of fourth order in the increment while no status
-/// changes.
+/// step if on the cubic it slips backwards for a while, or leaves its status and returns. The step
+/// then ends at the reversal. The work of the temperature is integrated along the same cubic. Its
+/// error is of fourth order in the increment while no status changes.
 ///
 /// **Where a path ends.** If a status changes within the shortest step, the rates of all joints at
 /// a limit are decided together (truss/rate_problem.hpp). If no slow continuation exists, slip is
@@ -177,9 +176,9 @@ struct Path {
 /// **Start.** The reference configuration need not be in equilibrium. It is first relaxed at ΔT = 0
 /// with bilateral pins in place of clearance joints. The pin forces determine where each journal
 /// touches. Then the clearances are opened with frictionless contacts, so that friction starts at
-/// zero. If this fails, they are opened with contacts that hold by friction. A journal starts open
-/// if it has no pin force, or if its contact force vanishes while clearances open. Springs, loads
-/// and bars then determine its position, or its elements are slack.
+/// zero. If this fails, they are opened with contacts that hold by friction. A journal without pin
+/// force, or whose contact force vanishes meanwhile, starts open. Springs, loads and bars then
+/// determine its position, or its elements are slack.
 ///
 /// If the solve under the full load fails, moves the truss far, or ends unstable, the load is
 /// increased from zero in small steps (truss/loading.cpp). If the start moves the truss by more
@@ -192,8 +191,8 @@ struct Path {
 ///
 /// **Friction at the start.** With StartFriction::stuck, joints without clearance stick in the
 /// reference configuration within their friction limits. With StartFriction::frictionless, the path
-/// starts in the equilibrium of the truss without friction; slides are counted from that state, so
-/// friction starts at zero.
+/// starts from the equilibrium without friction. Slides are counted from there, so friction starts
+/// at zero.
 ///
 /// Throws std::invalid_argument for a model or option out of range. Throws std::runtime_error whose
 /// message names the joint or the nodes and the temperature. Reasons:

@@ -24,8 +24,7 @@ struct Axial {
 inline Axial axial(const Bar& bar, double elongation_from_drawn, double drawn_length,
                    double change) {
   const double l0 = bar.stress_free_length;
-  // The tension is computed from differences of lengths, because the rounding of a length would
-  // cause a force error of 1e-16 E A.
+  // Differences avoid the force error 1e-16 E A that the rounding of a length would cause.
   const double stretch =
       elongation_from_drawn + (drawn_length - l0) - l0 * bar.thermal_expansion * change;
   const double stiffness = bar.axial_stiffness / thermal::length(l0, bar.thermal_expansion, change);
@@ -46,8 +45,7 @@ inline void write_axial(const std::array<int, 2>& nodes, const Lengths& length, 
   writer.force(second, axial.tension * direction);
   writer.carries(axial.tension);
   if (writer.residual_only()) return;
-  // The block combines the stiffness along the element and the geometric stiffness across it, which
-  // its tension causes.
+  // Stiffness along the element, plus the geometric stiffness across it due to its tension.
   const double across = axial.tension / length.now;
   const double more = axial.stiffness - across;
   const auto own = [&](int node, const Vector3d& along) {

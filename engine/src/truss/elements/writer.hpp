@@ -26,7 +26,7 @@ class ElementWriter {
     }
   }
   /// Adds the derivative of one node's force with respect to another node's displacement. `value(i,
-  /// j)` returns it for direction i of the force and direction j of the displacement.
+  /// j)`: direction i of the force, direction j of the displacement.
   template <class Value>
   void block(int row_node, int column_node, Value&& value) {
     to_->block(at(row_node), at(column_node), value);

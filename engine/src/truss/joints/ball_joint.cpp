@@ -116,9 +116,9 @@ kernel::PartialSlipResponse rub(const BallJoint& joint, const Trial& trial, bool
                                    {by.along_first, by.along_second}, memory);
 }
 
-/// Residual of the tangential law, zero if the joint satisfies its status [m]. In stick it is the
-/// slide minus the elastic deflection. In slip it is the excess of friction over its limit, times
-/// the compliance. It is a vector in the tangent plane.
+/// Residual of the tangential law, zero if the joint satisfies its status [m]. In stick it is slide
+/// minus elastic deflection; in slip, friction in excess of its limit, times the compliance. The
+/// vector lies in the tangent plane.
 Vector<Dual> tangential_row(const BallJoint& joint, const Trial& trial, const BallState<Dual>& now,
                             JointStatus status) {
   const BallMemory start = BallMemory::of(trial.history);
@@ -145,8 +145,7 @@ Response respond(const BallJoint& joint, const Trial& trial, JointStatus status)
   made.force[socket] = -now.force;
   const bool open = status == JointStatus::open;
   if (open || trial.model == JointModel::pins) {
-    // An open joint has no force. This case must not use the normal, because a ball exactly in the
-    // middle has none.
+    // An open joint has no force. The normal is not used: a ball exactly in the middle has none.
     for (int k = 0; k < 3; ++k) {
       const Vector<Dual> along = Vector3d(trial.frame.axes.col(k)).cast<Dual>();
       made.is_balance[index(k)] = open || !trial.frame.holds[index(k)];

@@ -53,9 +53,8 @@ struct HertzContact {
 };
 
 /// Heat of micro-slip at the rim of a sticking contact [J]: work of friction minus the change of
-/// stored energy. In the step the force changes from F at compliance C to F' at C'. If the normal
-/// load increases, the slide is ΔF (C + C')/2 and the heat (F² + F'²) (C − C')/4. If it decreases,
-/// the slide is F' C' − F C and the heat F·F' (C' − C)/2.
+/// stored energy. The force changes from F at compliance C to F' at C'. Loading: slide ΔF (C +
+/// C')/2, heat (F² + F'²) (C − C')/4. Unloading: slide F' C' − F C, heat F·F' (C' − C)/2.
 /// @param before_squared, product, squared F², F·F', F'² [N²]
 inline double rim_slip(double before_squared, double compliance_before, double product,
                        double squared, double compliance) {

@@ -26,8 +26,7 @@ void for_each_element(const IwanJoint& joint, Use&& use) {
   const double whole = joint.spacing > 1.0 ? std::pow(joint.spacing, joint.elements) - 1.0
                                            : static_cast<double>(joint.elements);
   double length = (joint.spacing > 1.0 ? joint.spacing - 1.0 : 1.0) / whole;
-  // Start of the interval as a fraction of φm, and the fractions of the stiffness ∫ρ and of the
-  // force ∫φ ρ before it.
+  // Start of the interval over φm; fractions of stiffness ∫ρ and force ∫φ ρ before it.
   double from = 0.0;
   double stiffness_before = 0.0;
   double force_before = 0.0;
@@ -129,8 +128,7 @@ std::span<const Parameter<IwanJoint>> IwanJoint::parameters() {
 }
 
 std::span<const Output> IwanJoint::outputs() {
-  // The outputs are the slide from the reference configuration, and the force on the first node
-  // against the axis.
+  // Outputs: slide from the reference configuration; force on the first node, against the axis.
   static const Output table[] = {{"iwan_slide_m", 1}, {"iwan_force_N", 1}};
   return table;
 }
@@ -187,8 +185,8 @@ JointStatus IwanJoint::decide(const Trial& trial, JointStatus status) const {
 }
 
 void IwanJoint::begin(const Trial& trial, JointStatus, double* now) const {
-  // The memory at the start follows from a single loading from the reference configuration, in
-  // which all sliders are at zero.
+  // Memory at the start: one loading from the reference configuration, where all sliders are at
+  // zero.
   const std::vector<double> drawn(static_cast<std::size_t>(history()), 0.0);
   respond(*this, slide_of(*this, trial), drawn.data(), now);
 }

@@ -100,8 +100,8 @@ std::span<const Parameter<LatchHinge>> LatchHinge::parameters() {
 }
 
 std::span<const Output> LatchHinge::outputs() {
-  // The outputs are the rotation from the reference configuration, and the moment against it (the
-  // sum of preload, stiffness and friction).
+  // Outputs: rotation from the reference configuration; moment against it (preload, stiffness and
+  // friction).
   static const Output table[] = {{"hinge_rotation_rad", 1}, {"hinge_moment_N_m", 1}};
   return table;
 }

@@ -12,9 +12,8 @@
 
 namespace statejump::truss::detail {
 
-/// Count of numbers that a joint stores for a contact with one or two sliding directions. The
-/// numbers are the slope of the bound, the force of merged points, the number of points, and x and
-/// U of each point.
+/// Count of numbers stored for a contact with one or two sliding directions: slope of the bound,
+/// force of merged points, number of points, x and U of each point.
 constexpr int partial_slip_history(int directions) {
   return 3 + (1 + directions) * kernel::PartialSlipMemory::capacity;
 }

@@ -205,9 +205,8 @@ kernel::PartialSlipResponse rub(const ClearanceRevolute& joint, const Trial& tri
                                    memory);
 }
 
-/// Derivatives with respect to displacements along the two directions of the joint's plane:
-/// gradients of the slide and of the virtual work of normal force and friction, and second
-/// derivatives of the work.
+/// Derivatives with respect to in-plane displacements: gradients of the slide and of the virtual
+/// work of both forces, and second derivatives of this work.
 struct Gradients {
   std::array<Vector2d, 4> normal;
   std::array<Vector2d, 4> friction;  ///< Virtual work of friction.
@@ -343,8 +342,8 @@ std::span<const Parameter<ClearanceRevolute>> ClearanceRevolute::parameters() {
 }
 
 std::span<const Output> ClearanceRevolute::outputs() {
-  // The outputs are the vector from the bearing's centre to the journal's, the normal force, and
-  // the friction on the journal against the slide.
+  // Outputs: vector from bearing centre to journal centre; normal force; friction on the journal,
+  // against the slide.
   static const Output table[] = {
       {"eccentricity_m", 3}, {"normal_force_N", 1}, {"friction_force_N", 1}};
   return table;
@@ -413,8 +412,8 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
   Gradients of;
   Vector2d slack = Vector2d::Zero(), slack_by_normal = Vector2d::Zero();
   if (status == JointStatus::open) {
-    // An open joint has no contact forces. This case must not use the normal, because a journal
-    // exactly in the middle has none.
+    // An open joint has no contact forces. The normal is not used: a journal exactly in the middle
+    // has none.
     slack = hold_slack(trial, trial.slack_stiffness, g.eccentricity, of);
     writer.balance(0, normal);
     writer.balance(1, friction);

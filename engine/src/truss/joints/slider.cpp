@@ -37,8 +37,8 @@ double slide_of(const Slider& slider, const Trial& trial) {
   return slider.axis.dot(trial.moved[0] - trial.moved[1]);
 }
 
-/// Reads the memory with partial slip: history() contains the slide at the start of the step, then
-/// the memory of the contact.
+/// With partial slip, history() holds the slide at the start of the step, then the contact's
+/// memory.
 kernel::PartialSlipMemory memory_of(const double* history) {
   return detail::read_partial_slip(history + 1);
 }
@@ -162,8 +162,8 @@ JointStatus after_stop(const Slider& slider, const Trial& trial, const Sense& wa
     const bool leaves = pushed < way.sign * rubs - trial.force_rounding;
     return leaves ? JointStatus::stick : way.stop;
   }
-  // If the slider was at the stop at the start of the step, friction helps to hold it there. If it
-  // reached the stop in this step, friction acts away from the stop.
+  // Friction helps to hold a slider that was at the stop before the step. If it arrived in this
+  // step, friction acts away from the stop.
   if (trial.before == way.stop) {
     return pushed < -(f + trial.force_rounding) ? way.other_slip : way.stop;
   }
@@ -208,8 +208,8 @@ std::span<const Parameter<Slider>> Slider::parameters() {
 }
 
 std::span<const Output> Slider::outputs() {
-  // The outputs are the slide from the reference configuration, and the sum of friction and stop
-  // force on the slider, against its axis.
+  // Outputs: slide from the reference configuration; friction plus stop force on the slider,
+  // against its axis.
   static const Output table[] = {{"slide_m", 1}, {"slider_force_N", 1}};
   return table;
 }
@@ -380,8 +380,8 @@ void Slider::describe(const Trial& trial, double* outputs) const {
   outputs[0] = s;
   outputs[1] = trial.force[0];
   if (play > 0.0) {
-    // While the play is open, the force is exactly zero. The difference of friction and spring
-    // force would have a rounding error.
+    // While the play is open, the force is exactly zero. A difference of two forces would be
+    // rounded.
     const double bend = s - trial.history[0];
     const double inside = played(*this, bend);
     outputs[1] = inside == bend ? 0.0 : trial.force[0] - tangential_stiffness * inside;

@@ -114,8 +114,8 @@ class AssemblyStrand {
       to.begin_.push_back(to.runs_.size());
     }
   }
-  /// Merges the force scale and the active branches of the strand into the assembly. Call it for
-  /// all strands in ascending order.
+  /// Merges force scale and active branches into the assembly. Call it for strands in ascending
+  /// order.
   void end() {
     to_->largest_force = std::max(to_->largest_force, largest_force_);
     to_->pieces = to_->pieces * hash_factor_ + pieces_;
@@ -165,8 +165,8 @@ class AssemblyStrand {
     }
     slot_ += columns;
   }
-  /// Adds a block for the free directions of two nodes. `value(i, j)` returns the entry for
-  /// direction i of the row node and direction j of the column node.
+  /// Adds a block for the free directions of two nodes. `value(i, j)`: direction i of the row node,
+  /// j of the column node.
   template <class Value>
   void block(const NodeDofs& rows, const NodeDofs& columns, Value&& value) {
     if (rows.sums == nullptr && columns.sums == nullptr) {

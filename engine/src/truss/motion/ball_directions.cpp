@@ -11,9 +11,8 @@ namespace {
 /// Largest number of iterations for the friction directions in a step. Directions change little,
 /// and the iteration converges quadratically.
 constexpr int most_rotations = 50;
-/// Tolerated transverse component of friction, divided by the friction limit. It causes a relative
-/// error of the magnitude of half its square, which is below the tolerance at which a contact
-/// counts as slipping.
+/// Tolerated transverse component of friction, divided by the friction limit. Half its square is
+/// the relative error of the magnitude, which is below the tolerance for slip.
 constexpr double aside = 1e-4;
 /// Tolerated change of transverse friction if the stiffness of a sticking contact is updated,
 /// divided by the friction limit.

@@ -31,8 +31,7 @@ void BallFriction::measure(const Trial& at) {
     point(moved.axis);
     return;
   }
-  // The direction of friction is still unknown. The search starts with that of the last step, or
-  // with an arbitrary direction.
+  // The friction direction is still unknown: start with that of the last step, or an arbitrary one.
   const Vector3d before = along;
   along = now.normal.isZero(0.0) ? Vector3d::Zero() : now.normal.unitOrthogonal();
   point(before);

@@ -27,9 +27,8 @@ class Bodies {
     std::vector<double> growth_rate = {};  ///< Of every dashpot's stress-free length [m/s].
   };
   Step step(double from, double to) const;
-  /// Forces of the dashpots on the independent displacements [N]. The stress-free lengths of links
-  /// are taken to grow at their mean rate over the step, because the actual rate jumps at a corner
-  /// of a program.
+  /// Forces of the dashpots on the independent displacements [N]. Stress-free lengths grow at the
+  /// mean rate of the step, because the actual rate jumps at corners of a program.
   VectorXd force(const VectorXd& q, const VectorXd& v, const Step& step) const;
   /// −∂force/∂v at q.
   Eigen::SparseMatrix<double> damping(const VectorXd& q) const;

@@ -40,8 +40,8 @@ class ContactProblem {
   double largest_merit_ = 0.0;
 };
 
-/// Index of the contact of a planar problem that violates its law most, or −1 if there are no
-/// contacts. The violation is the error of the contact's impulses times W_nn [m/s].
+/// Contact of a planar problem that violates its law most; −1 without contacts. The violation is
+/// the impulse error times W_nn [m/s].
 Eigen::Index worst_contact(const complementarity::Problem& problem, const VectorXd& impulses);
 
 }  // namespace statejump::truss::detail

@@ -9,8 +9,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Stores the friction at the end of a step, for a contact with a spring and Coulomb's limit, and
-/// its energies.
+/// Commits the step for a contact whose friction is a spring with Coulomb's limit.
 /// @param along mean slip rates of the contacts in the step [m/s]
 void commit_friction(const TimeStep& step, const StepContacts& contacts, Index i,
                      const VectorXd& along, EnergyAccount& account) {
@@ -42,8 +41,7 @@ void commit_friction(const TimeStep& step, const StepContacts& contacts, Index i
   account.negative += std::min(heat, 0.0);
 }
 
-/// Stores the friction at the end of a step, for a contact with partial slip and its transverse
-/// contact, and its energies.
+/// Commits the step for a contact with partial slip and its transverse contact.
 /// @param speeds of the contacts at the end of the step [m/s]
 void commit_partial_slip(const TimeStep& step, const StepContacts& contacts, Index owner,
                          const VectorXd& speeds, const VectorXd& along, EnergyAccount& account) {

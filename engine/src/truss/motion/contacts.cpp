@@ -11,8 +11,7 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// A contact counts as slipping if its friction is at least this fraction of Coulomb's limit. The
-/// contact problem is solved to 1e-10.
+/// A contact slips from this fraction of Coulomb's limit. The contact problem is solved to 1e-10.
 constexpr double at_bound = 1.0 - 1e-8;
 
 /// Journal minus bearing centre across the joint's axis [m].
@@ -98,8 +97,7 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
   for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
     const JointFrame frame =
         std::visit([&](const auto& one) { return one.frame(model); }, model.joints[index(i)]);
-    // The forces of a ball joint are bilateral constraints only while the start replaces it by a
-    // pin, so they are not counted here.
+    // A ball joint has bilateral constraints only while the start replaces it by a pin.
     const bool is_ball = std::holds_alternative<BallJoint>(model.joints[index(i)]);
     const auto held =
         is_ball ? 0 : static_cast<int>(std::count(frame.holds.begin(), frame.holds.end(), true));
@@ -109,8 +107,7 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
   }
   slip_in_part_ = std::any_of(all_.begin(), all_.end(),
                               [](const Contact& contact) { return contact.slips_in_part; });
-  // The transverse contact of a ball joint is skipped, because it sticks rigidly only if the first
-  // contact does.
+  // A ball's transverse contact sticks rigidly only if its first contact does.
   hold_rigidly_ = std::any_of(all_.begin(), all_.end(), [](const Contact& contact) {
     return contact.is_rigid() || (contact.sticks_rigidly() && !contact.beside);
   });

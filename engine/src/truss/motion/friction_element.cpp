@@ -50,8 +50,8 @@ double FrictionElement::shortfall(double slide, double speed, double rise) const
 }
 
 void SlipTrajectory::add(double time, double slide, double speed) {
-  // Updates Newton's divided differences. Every point occurs twice, because value and rate are
-  // given. Only the last diagonal is stored.
+  // Newton's divided differences. Points occur twice, with value and rate; only the last diagonal
+  // is stored.
   for (const bool again : {false, true}) {
     const std::size_t k = time_.size();
     time_.push_back(time);
@@ -87,8 +87,8 @@ std::optional<double> end_of_status(const FrictionElement& element, const SlipTr
   const auto margin = [&](double time) {
     return element.margin(way.slide_at(time), way.speed_at(time), h);
   };
-  // Number of points at which a trajectory is searched for reversals. A reversal between two such
-  // points is smaller than the error of a step, because the trajectory is smooth.
+  // Number of points checked for reversals. Between them, the reversal of a smooth trajectory is
+  // smaller than the error of a step.
   constexpr int places = 32;
   double before = 0.0;
   for (int k = 1; k <= places; ++k) {

@@ -42,21 +42,20 @@ struct FrictionElement {
   /// λ [N]
   double force(double slide, double speed) const;
   /// Force margin of the present status [N]: if it is negative, the status has ended. For a slip
-  /// with the spring at its limit, the margin is the force by which the spring would unload in a
-  /// step of length h at this slip rate if the contact stuck.
+  /// with the spring at its limit, it is the force by which the spring would unload if the contact
+  /// stuck for a step of length h at this slip rate.
   double margin(double slide, double speed, double h) const;
   /// Rate of margin() at the end of a status [N/s]. For a slip that reverses, it is the rate of the
   /// slip rate [m/s²].
   /// @param rise rate of the slip rate [m/s²]
   double margin_rate(double slide, double speed, double rise) const;
-  /// @param level the status has ended if the margin is below this level: 0, or the margin at the
-  /// start of the step if that is negative. It can be negative because positions within a step are
-  /// known only to the step's error
+  /// @param level margin below which the status has ended: 0, or the margin at the start of the
+  /// step if that is negative (positions have the error of the step)
   bool has_ended(double slide, double speed, double h, double level) const {
     return margin(slide, speed, h) < level - allowance * bound;
   }
-  /// Force that must still change until the status ends [N]. For a slip about to reverse, it is the
-  /// force by which the spring would unload until the reversal if the contact stuck.
+  /// Change of force until the status ends [N]. For a slip about to reverse, it is the force by
+  /// which the spring would unload until then if the contact stuck.
   /// @param rise rate of the slip rate [m/s²]
   double shortfall(double slide, double speed, double rise) const;
   /// Switches to the status that follows.
@@ -65,8 +64,7 @@ struct FrictionElement {
   static constexpr double allowance = 1e-9;
 };
 
-/// The slide as a function of time in a step: a polynomial through the values and rates at the
-/// start and at the stages.
+/// The slide in a step: a polynomial through its values and rates at the start and the stages.
 class SlipTrajectory {
  public:
   /// Adds a point [s; m; m/s].

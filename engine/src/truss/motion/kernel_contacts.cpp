@@ -115,8 +115,7 @@ KernelContact KernelContacts::round(const KernelContact& parts, double hertz, do
   made.second_far = frame.nodes[3];
   made.program = frame.program;
   made.temperature_fraction = frame.temperature_fraction;
-  // Moduli E* and G* for which the kernel's laws have the joint's stiffnesses K = 4/3 E* √R and 8
-  // G* √R.
+  // Moduli that give the joint's stiffnesses K = 4/3 E* √R and 8 G* √R.
   const double root =
       std::sqrt(kernel::internal_effective_radius(made.first_radius, made.second_radius));
   made.parameters.elastic = {0.75 * hertz / root, 0.125 * mindlin / root};

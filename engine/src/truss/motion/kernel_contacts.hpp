@@ -73,8 +73,8 @@ class KernelContacts {
     const VectorXd& v;
     double time;   ///< [s]
     double since;  ///< Since the end of the last step [s], > 0.
-    /// Three numbers for every contact since the last step: both components of its slide [m], and
-    /// its rotation about the normal [rad].
+    /// Slide components [m], [m] and rotation about the normal [rad] of every contact since the
+    /// last step.
     const VectorXd& way;
   };
   Eigen::Index numbers() const { return 3 * static_cast<Eigen::Index>(all_.size()); }
@@ -110,7 +110,7 @@ class KernelContacts {
   static KernelContact round(const KernelContact& parts, double hertz, double mindlin,
                              double friction_coefficient, double damping, const JointFrame& frame);
   struct Place;
-  /// @param history on input the memory at the start of the step, on output that in the stage
+  /// @param history on input at the start of the step, on output in the stage
   kernel::ContactResponse answer(const KernelContact& contact, const Stage& stage,
                                  const double* way, kernel::ContactHistory& history,
                                  VectorXd& force, double* rates, Place& place) const;
@@ -123,7 +123,7 @@ class KernelContacts {
   Vector3d at(int node, const VectorXd& free) const;
   void push(int node, const Vector3d& by, VectorXd& force) const;
   double mobility(int node, const VectorXd& inverse_mass) const;
-  /// Adds a force on a part to its node, and a torque to the link that rotates the part.
+  /// Adds a force on a part, and a torque on the link that rotates it.
   void push(int node, int far, const Vector3d& by, const Vector3d& torque, const VectorXd& q,
             VectorXd& force) const;
   kernel::BodyMotion motion(int node, int far, const Stage& stage) const;

@@ -48,8 +48,7 @@ class NeighbourhoodPivots {
     return contacts_.requested(step_, static_cast<Index>(contact), statuses_[contact]);
   }
   void begin(std::size_t contact);
-  /// Adds the given number of layers around the bodies `from`, and all contacts of the bodies that
-  /// are then inside.
+  /// Adds layers around the bodies `from`, and all contacts of the bodies then inside.
   void grow(std::vector<int> from, int layers);
   void take_in(int unknown, std::vector<int>& fresh);
   template <class Visit>

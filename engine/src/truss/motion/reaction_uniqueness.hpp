@@ -11,11 +11,10 @@ namespace statejump::truss::detail {
 
 /// Records the first step in which reactions are not unique.
 ///
-/// If the equations of the statuses are regular, reactions are unique. But a contact satisfies a
-/// second status if it neither pushes nor opens, or if its friction is at the limit and it does not
-/// slide. The check therefore uses the admissible statuses with the most constraints. If their
-/// system is singular, a null vector of the constrained rows of W names the joints that share a
-/// reaction.
+/// If the equations of the statuses are regular, reactions are unique. A contact that neither
+/// pushes nor opens, or has friction at the limit without slide, satisfies a second status. The
+/// check therefore uses the admissible statuses with the most constraints. If their system is
+/// singular, a null vector of the constrained rows of W names the joints that share a reaction.
 class ReactionUniqueness {
  public:
   ReactionUniqueness(const StepForces& forces, StepMatrix& matrix)

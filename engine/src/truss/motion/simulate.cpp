@@ -20,8 +20,8 @@ namespace {
 using detail::index;
 using Eigen::VectorXd;
 
-/// Smallest step divided by the duration. For shorter steps, the rounding of times would exceed
-/// 1e-6 of the step length, the tolerance at which two lengths count as equal and share factors.
+/// Smallest step divided by the duration. Below it, the rounding of times exceeds 1e-6 of the step,
+/// up to which steps count as equal and share factors.
 constexpr double shortest = 1e6 * std::numeric_limits<double>::epsilon();
 /// Largest number of halvings between two samples if the statuses are not found; ten give a
 /// thousandth of a step. If reactions are self-equilibrated, statuses are not found at any step
@@ -33,8 +33,8 @@ constexpr int most_halvings = 16;
 /// Substeps of one length before a longer one is attempted.
 constexpr int before_longer = 8;
 
-/// Limit of the number of steps and substeps, divided by the number of requested steps. It is never
-/// less than the substeps of one step. With more substeps, shorter equal steps would be cheaper.
+/// Limit of steps and substeps over requested steps; at least the substeps of one step are allowed.
+/// Shorter equal steps are cheaper than more substeps.
 constexpr long most_parts = 10;
 
 /// After this many consecutive attempts without progress, a step counts as unsolvable. Each attempt
@@ -93,8 +93,7 @@ class Run {
   /// @param level on input the number of halvings for the first step, on output that for the next
   /// span
   void make_span(long first, long count, int& level);
-  /// Attempts a step of the present size. Takes it if its error is small enough; otherwise shortens
-  /// it.
+  /// Takes a step of the present size if its error is small enough; otherwise shortens it.
   /// @param to time at the end of the step [s]
   /// @param span length of the whole span [s]
   /// @param unsettled number of attempts in the span that had no solution
@@ -107,8 +106,7 @@ class Run {
   /// @param length length of the last substep [s]
   void check_parts(double length) const;
 
-  /// Calls `take`, which commits a step, and records the heat and the status changes of joints in
-  /// this step.
+  /// Calls `take`, which commits a step, and records its heat and status changes.
   /// @param length length of the step [s]
   template <class Stepper, class Take>
   void note(const Stepper& stepper, double length, const Take& take);
@@ -119,8 +117,8 @@ class Run {
   /// @param time [s]
   /// @return whether to continue
   bool go_on(double time);
-  /// Time after this many steps of the length set in the options [s]. It is a fraction of the
-  /// duration, because a sum of step lengths would not end exactly at the end.
+  /// Time after this many steps of the options [s]. It is a fraction of the duration: a sum of
+  /// lengths would not end exactly there.
   double time_of(double steps) const {
     return duration_ * (steps / static_cast<double>(options_.steps));
   }
@@ -211,8 +209,8 @@ void Run::make_equal_step(long number, int& level) {
   const int most =
       std::clamp(static_cast<int>(std::log2(whole / (shortest * duration_))), 0, most_halvings);
   detail::DyadicStepSize step_size(level, most);
-  // Without numerical damping, an oscillation with a period shorter than the step persists, and the
-  // step may then have no solution. Implicit Euler damps the oscillation.
+  // Without numerical damping, oscillations faster than the step persist, and steps may have no
+  // solution. Implicit Euler damps them.
   bool damps = level > 0;
   int unsettled = 0;
   while (!step_size.done()) {
@@ -279,9 +277,8 @@ bool Run::try_step(double to, double span, detail::DyadicStepSize& step_size, in
   const bool too_far = off > options_.displacement_tolerance;
   if (too_far && !step_size.is_shortest()) {
     ++motion_.rejected_steps;
-    // A force that starts to act within the step causes an error of second order, which determines
-    // the halvings. A jump of the velocity causes an error of first order, which needs a further
-    // attempt.
+    // A force that starts within the step causes an error of second order. A velocity jump causes
+    // one of first order and needs a further attempt.
     const double halvings = 0.5 * std::log2(off / options_.displacement_tolerance);
     step_size.shorten(std::isfinite(off) ? std::max(static_cast<int>(std::ceil(halvings)), 1) : 1);
     return false;
@@ -338,8 +335,7 @@ void Run::make_smooth_steps() {
       change.reset();
       continue;
     }
-    // A change that differs from the end of the step only by rounding counts as a change at the
-    // end.
+    // A change within rounding of the step's end counts as a change at the end.
     if (change && *change < to - 1e-6 * tried) {
       ++motion_.rejected_steps;
       continue;

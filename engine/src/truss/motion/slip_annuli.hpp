@@ -34,9 +34,8 @@ struct SlipAnnuli {
     double dashpot = 0.0;       ///< c_t [N s/m]
   };
   /// Friction at the end of a step [N], opposite to the slide, with derivatives. The sum of spring
-  /// and dashpot force is within Coulomb's limit. (In contrast, the kernel omits the dashpot if all
-  /// annuli slip. The law would then jump if a decreasing normal force makes them slip against the
-  /// direction of the slide.)
+  /// and dashpot force is within Coulomb's limit. (The kernel omits the dashpot if all annuli slip.
+  /// The law would then jump if a decreasing normal force makes them slip against the slide.)
   struct Law {
     Eigen::Vector2d friction = Eigen::Vector2d::Zero();
     Eigen::Matrix2d by_slide = Eigen::Matrix2d::Zero();   ///< [N/m]
@@ -53,8 +52,8 @@ struct SlipAnnuli {
   Eigen::Vector2d kink(const Pressed& by) const;
   /// Sets the point of the tangent to an iterate, or to the kink if the previous point was on the
   /// other side of the kink. Tangents at the kink or at too short a slide underestimate the slide,
-  /// so the iteration converges from one side. A tangent at a point on the other side of the kink
-  /// may overshoot in every iteration.
+  /// so the iteration converges from one side. A tangent beyond the kink may overshoot in every
+  /// iteration.
   /// @param begins true if there is no iterate yet
   /// @param slid part of the slide that does not depend on the slip rate [m]
   void place_tangent(bool begins, const Pressed& by, const Eigen::Vector2d& speed,

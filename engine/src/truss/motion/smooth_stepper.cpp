@@ -10,22 +10,22 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Largest number of contacts for SmoothStepper. Every change of status ends a step of the whole
-/// truss, so the cost grows with the square of the number of contacts. For more contacts, steps
-/// that include many changes are cheaper.
+/// Largest number of contacts for SmoothStepper. Every status change ends a step of the whole
+/// truss, so the cost grows with their square. For more contacts, steps with many changes are
+/// cheaper.
 constexpr std::size_t most_contacts = 200;
 constexpr int most_iterations = 8;
 /// New tangents are computed if a correction exceeds this fraction of the previous correction.
 constexpr double falls_to = 0.3;
-/// Tolerated iteration error of the stages, divided by the displacement tolerance. It must be small
-/// relative to the error of the step, which is computed as a difference of stages.
+/// Tolerated iteration error of the stages, divided by the displacement tolerance. It is small
+/// relative to the error of the step, a difference of stages.
 constexpr double share_of_iteration = 1e-3;
 /// Safety factor for the measured convergence rate, and number of steps until the rate is measured
 /// again.
 constexpr double caution = 10.0;
 constexpr int most_trusted = 10;
-/// Status changes count as simultaneous if their times differ by less than this fraction of a step.
-/// The changes of equal contacts differ by rounding.
+/// Status changes closer than this fraction of a step are simultaneous. Those of equal contacts
+/// differ by rounding.
 constexpr double at_once = 1e-6;
 /// A status may change early if the missing force divided by Coulomb's limit is at most this. The
 /// error of the force is then as large, and lasts until the force has grown by the missing amount.
@@ -321,8 +321,8 @@ void SmoothStepper::book() {
         account_.damping += weight(i) * one.damping * std::pow(one.seen(stage_v_.col(i)), 2);
       }
     } else {
-      // Before the spring force reaches the limit, the spring still deflects, and the dashpot
-      // dissipates the work of the difference to the limit.
+      // The spring deflects until its force is at the limit; the dashpot dissipates the difference
+      // to the limit.
       const double slid = slide(k, stage_q_.col(stages - 1));
       const double elastic = one.spring(slid);
       const double bent = (elastic - one.elastic) / one.stiffness;

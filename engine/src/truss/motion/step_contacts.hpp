@@ -15,9 +15,9 @@ struct Delassus {
   Eigen::MatrixXd matrix;     ///< W = Hᵀ A⁻¹ H; empty: not computed.
 };
 
-/// One row of a contact's law, as a linear equation in its speed u, the speed u' along the other
-/// tangent, its impulse r and the normal impulse r_n: by_speed u + by_beside u' + offset +
-/// compliance r + by_normal r_n = 0.
+/// One row of a contact's law, linear in its speed u, the speed u' along the other tangent, its
+/// impulse r and the normal impulse r_n: by_speed u + by_beside u' + offset + compliance r +
+/// by_normal r_n = 0.
 struct ContactRow {
   double offset = 0.0;      ///< [m/s]
   double compliance = 0.0;  ///< [1/kg]
@@ -88,13 +88,12 @@ class StepContacts {
                                                             : i + 1;
   }
 
-  // Contacts with partial slip, in partial_slip_contacts.cpp. The owner is the contact that has the
-  // normal force; a transverse contact belongs to it.
+  // Contacts with partial slip, in partial_slip_contacts.cpp. The owner of a transverse contact has
+  // the normal force.
   /// Speeds of the contacts with partial slip [m/s]; 0 for all other contacts.
   VectorXd partial_slip_speeds(const TimeStep& step) const;
-  /// Points at which tangents of the laws are taken. `kinks`: the kinks of the laws. `iterate`: the
-  /// present iterate. `next`: the present iterate, but the kink for contacts whose slip has
-  /// reversed.
+  /// Points of the tangents: the kinks of the laws; an iterate; or (`next`) an iterate, but the
+  /// kink for contacts whose slip has reversed.
   enum class TangentAt : unsigned char { kinks, iterate, next };
   /// @param speeds of the contacts [m/s]
   void place_tangents(const TimeStep& step, const VectorXd& speeds, TangentAt at);

@@ -9,8 +9,7 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Momentum must balance to this fraction of the largest momentum, and forces to this fraction of
-/// the largest force.
+/// Momentum and forces must balance to this fraction of their largest values.
 constexpr double balance = 1e-10;
 
 }  // namespace

@@ -13,11 +13,10 @@ namespace statejump::truss::detail {
 
 /// Forces f(q, v) of a truss in a step, and the residual of its momentum balance.
 ///
-/// f contains the forces of elements, loads, springs of joints and dashpots. It does not contain
-/// contact forces, because the impulses r of contacts are unknowns. At an iterate v the residual is
-/// M (v − v_from) − h (θ f + (1 − θ) f0) − H r + B λ, with the impulses λ of the velocity
-/// constraints. The step is solved if the residual vanishes to rounding and every contact satisfies
-/// its law.
+/// f contains the forces of elements, loads, springs of joints and dashpots. The impulses r of
+/// contacts are unknowns instead. At an iterate v the residual is M (v − v_from) − h (θ f + (1 − θ)
+/// f0) − H r + B λ, with the impulses λ of the velocity constraints. The step is solved if the
+/// residual vanishes to rounding and every contact satisfies its law.
 class StepForces {
  public:
   /// @pre The arguments outlive this object.

@@ -24,12 +24,12 @@ struct StatusFactors {
 
 /// The linear system of a step, and its factors.
 ///
-/// A correction of v changes f by its derivatives, and q by h θ times the correction. The matrix of
-/// the bodies is therefore M + h θ C + (h θ)² K, evaluated at the middle of the step. The velocity
-/// constraints B add rows and columns to it. Every active contact adds two rows. Depending on its
-/// status, a row is its ContactRow, r = 0 or r_t = ∓ μ r_n. The impulses of a contact are unknowns
-/// for every status, so the pattern does not depend on statuses. Entries that do not depend on
-/// contacts are filled once per step.
+/// A correction of v changes f by its derivatives, and q by h θ times the correction. The bodies'
+/// matrix is therefore M + h θ C + (h θ)² K at the middle of the step, bordered by the velocity
+/// constraints B. Every active contact adds two rows. Depending on its status, a row is its
+/// ContactRow, r = 0 or r_t = ∓ μ r_n. The impulses of a contact are unknowns for every status, so
+/// the pattern does not depend on statuses. Entries that do not depend on contacts are filled once
+/// per step.
 ///
 /// If the statuses are not found, the matrix of the bodies alone is factored, to compute the
 /// Delassus matrix of the contact problem.

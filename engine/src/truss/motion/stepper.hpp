@@ -40,9 +40,8 @@ class Stepper {
   /// the step.
   /// @throws Failure if no solution is found
   bool advance(double to);
-  /// Takes a step like advance(), but by implicit Euler with a positive definite matrix. It is used
-  /// if advance() has no solution. If `give_up` is set, it also returns false if the statuses are
-  /// not found.
+  /// Like advance(), by implicit Euler with a positive definite matrix, for steps without another
+  /// solution. With `give_up`, it also returns false if the statuses are not found.
   bool advance_damped(double to, bool give_up);
   /// Attempts a step of backward differentiation without committing it. Returns the error of the
   /// displacements [m]. The step is second-order accurate if the last step was of this type too. If
@@ -80,9 +79,8 @@ class Stepper {
   /// Solves a step and returns its contacts; empty if `give_up` is set and the statuses are not
   /// found.
   std::optional<StepContacts> find(TimeStep& step, bool give_up);
-  /// Whether the gaps of round contacts at the end of the step agree with the prediction, which
-  /// uses the directions at the middle of the step. In a step that is too long they do not agree,
-  /// and contact forces create energy.
+  /// Whether the final gaps of round contacts agree with the prediction from the middle of the
+  /// step. In a step that is too long they do not, and contact forces create energy.
   bool keeps_directions(const TimeStep& step) const;
   /// Largest penetration at the end of a step [m], over all rigid contacts that were open at the
   /// middle of the step.

@@ -14,7 +14,7 @@ namespace statejump::truss::detail {
 enum class ContactStatus : unsigned char { open, stick, slip_plus, slip_minus };
 using ContactStatuses = std::vector<ContactStatus>;
 
-/// State of a truss between two steps. The memory of each contact is not here, but in its Contact.
+/// State of a truss between two steps. Each Contact stores its own memory.
 struct MotionState {
   double time = 0.0;         ///< [s]
   VectorXd q;                ///< Free displacements [m].
@@ -36,9 +36,9 @@ struct TimeStep {
   double length = 0.0;  ///< [s]
   double theta = 1.0;
   bool differentiates = false;  ///< Whether the last two steps determine its starting values.
-  /// Whether the matrix omits the softening by compression. The matrix may need this if elements
-  /// are slack. At the start of a step, a slack element appears to be compressed by its thermal
-  /// expansion. At the end its force vanishes, and only its mass resists a rotation.
+  /// Whether the matrix omits the softening by compression. At the start of a step, a slack element
+  /// seems compressed by its expansion. At the end its force vanishes, and only its mass resists
+  /// rotation.
   bool is_definite = false;
   Bodies::Step span = {};
   VectorXd q_from;
@@ -49,9 +49,8 @@ struct TimeStep {
   VectorXd v;
   VectorXd held = {};  ///< Impulses of the velocity constraints, for their scaled columns.
 
-  /// Mean force in the step, which determines the work of a contact force. In a step of backward
-  /// differentiation it is the mean of the forces at both ends. The exception is a friction force
-  /// at its limit while the contact slides.
+  /// Mean force, which determines the work in a step. In backward differentiation it is the mean of
+  /// both ends, unless the contact slides with friction at its limit.
   double mean(double before, double after, bool slides) const {
     return differentiates && !slides ? 0.5 * (before + after) : after;
   }

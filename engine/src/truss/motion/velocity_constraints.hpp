@@ -10,8 +10,8 @@
 namespace statejump::truss::detail {
 
 /// Linear constraints Bᵀ v = w on the velocities at the end of a step: first those of joints that
-/// constrain two nodes, then those of drives. The columns of B are scaled to the magnitude of the
-/// matrix of a step, so that pivots are comparable.
+/// constrain two nodes, then those of drives. Columns are scaled to the step matrix, so that pivots
+/// are comparable.
 class VelocityConstraints {
  public:
   /// @pre The arguments outlive this object.

@@ -81,8 +81,7 @@ struct BallJoint {
   void evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const;
   void warm(const Trial& trial, JointStatus status, double temperature_rate,
             JointWriter& writer) const;
-  /// Displacement of the ball relative to the socket since the start of the step while the joint is
-  /// open [m].
+  /// Displacement of ball against socket since the start of the step; joint open [m].
   Eigen::Vector3d slack_motion(const Trial& trial) const;
   JointStatus decide(const Trial& trial, JointStatus status) const;
   void begin(const Trial& trial, JointStatus status, double* now) const;
@@ -101,8 +100,8 @@ struct BallJoint {
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;
   JointStatus settled(const Trial& trial, JointStatus status) const;
-  /// Contact problems have one direction of friction per contact. A ball joint does not fit this
-  /// form, so it returns no contact and keeps its status.
+  /// Contact problems have only one friction direction per contact, so a ball joint keeps its
+  /// status in them.
   std::optional<LocalContact> contact(const Trial&, JointStatus) const { return {}; }
   /// Index in history() at which the memory of a contact with partial slip begins.
   int slip_memory_begin() const;

@@ -17,8 +17,8 @@ struct Model;
 class JointWriter;
 
 /// The branch of a joint's equations that is active, as found by the solver. The sign is the
-/// direction of the slide. For a slider it is along its axis; for a revolute it is that of the
-/// journal's surface over the bearing's, anticlockwise about the axis.
+/// direction of the slide. A slider slides along its axis; in a revolute the journal's surface
+/// slides over the bearing's, positive anticlockwise.
 enum class JointStatus : unsigned char {
   stick,
   slip_plus,

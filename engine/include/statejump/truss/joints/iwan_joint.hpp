@@ -78,8 +78,7 @@ struct IwanJoint {
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;
   JointStatus settled(const Trial&, JointStatus status) const { return status; }
-  /// Its friction has no Coulomb cone. Contact problems therefore do not contain this joint, and it
-  /// keeps its status in them.
+  /// Its friction has no Coulomb cone, so the joint keeps its status in contact problems.
   std::optional<LocalContact> contact(const Trial&, JointStatus) const { return {}; }
   bool slips_smoothly() const { return false; }
   double least_slide() const { return 0.0; }

@@ -23,8 +23,8 @@ namespace statejump::truss {
 ///
 /// With a finite stiffness k_f, sticking friction acts as a spring, M_f = k_f (φ − p), and slip
 /// changes the stored rotation p. Play and stiffness have a potential and no memory, so only
-/// friction has statuses. The unknown is the force that M_f causes on a lever as long as the first
-/// link in the reference configuration. The row of this unknown is a slide on that radius.
+/// friction has statuses. The unknown is M_f divided by the length of the first link in the
+/// reference configuration. Its row is a slide on that radius.
 struct LatchHinge {
   std::string name;
   int first_link = 0;

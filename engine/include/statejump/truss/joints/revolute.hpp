@@ -62,8 +62,7 @@ struct ClearanceRevolute {
   void evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const;
   void warm(const Trial& trial, JointStatus status, double temperature_rate,
             JointWriter& writer) const;
-  /// Displacement of the journal relative to the bearing since the start of the step while the
-  /// joint is open [m].
+  /// Displacement of journal against bearing since the start of the step; joint open [m].
   Eigen::Vector3d slack_motion(const Trial& trial) const;
   JointStatus decide(const Trial& trial, JointStatus status) const;
   void begin(const Trial& trial, JointStatus status, double* now) const;

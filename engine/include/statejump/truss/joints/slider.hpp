@@ -23,8 +23,8 @@ namespace statejump::truss {
 ///
 /// One unknown represents friction and stop together, because statics does not determine how a
 /// rigid wall and rigid friction share a force. With a finite stiffness k_t, friction is λ_f =
-/// clamp(k_t (s − p_k); ±f) and the stop supports the remainder of λ. p = s − λ_f/k_t takes the
-/// place of s in the friction law.
+/// clamp(k_t (s − p_k); ±f) and the stop supports the remainder of λ. In the friction law, p = s −
+/// λ_f/k_t replaces s.
 ///
 /// With partial slip λ_f is the force of kernel::partial_slip_step() under the constant limit f,
 /// with one step of that law per path step. One row covers stick and slip. `slip±` then means that
@@ -41,9 +41,9 @@ namespace statejump::truss {
 ///   k_t dz(e) = k_t e − k_t clamp(e; ±w/2),
 ///
 /// it equals a friction λ = k_t e with the limit f + k_t w/2 and a spring −k_t clamp(e; ±w/2).
-/// Statuses, rows and memory are those without play. The heat of a slip is f times its length; the
-/// limit of λ is larger than f. At the start the joint is in the middle of its play. A play needs
-/// friction, a finite k_t, and no partial slip.
+/// Statuses, rows and memory are those without play. The heat of a slip is f times its length. At
+/// the start the joint is in the middle of its play. A play needs friction, a finite k_t, and no
+/// partial slip.
 struct Slider {
   std::string name;
   int first = 0;
