@@ -28,8 +28,7 @@ void use_failure(const pybind11::module_& engine);
 /// Adds ThermalProgram to the module.
 void bind_thermal_program(pybind11::module_& module);
 
-/// Adds the classes SpringSlider and Path and the function solve to the module. Call it after
-/// bind_thermal_program.
+/// Adds SpringSlider, Path and solve() to the module. Call it after bind_thermal_program.
 void bind_spring_slider(pybind11::module_& module);
 
 /// Adds the catalogue of contact laws to the module.

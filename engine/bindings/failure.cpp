@@ -19,8 +19,8 @@ namespace statejump::bindings {
 
 namespace {
 
-/// Class of the exception EngineFailure. It is a raw pointer, because a static py::object would be
-/// released after the interpreter.
+/// Class of EngineFailure. It is a raw pointer, because a static py::object would be released after
+/// the interpreter.
 PyObject* failure_class = nullptr;
 
 constexpr const char* doc =

@@ -231,8 +231,7 @@ py::array_t<double> scalars(const std::vector<State>& states, Member member) {
   return result;
 }
 
-/// Indices of all joints of one type in the list of joints, and of their outputs in the list of
-/// outputs.
+/// Indices of one type's joints among all joints, and of their outputs among all outputs.
 struct OfType {
   std::vector<py::ssize_t> joints;
   std::vector<py::ssize_t> outputs;
@@ -384,8 +383,7 @@ std::function<bool(double)> going_on(const py::object& progress) {
   };
 }
 
-/// Passes the records of the iterations of a path to a caller's function, as tuples in the order of
-/// the record's fields.
+/// Passes the iterations of a path to a caller's function, as tuples in the order of TraceRecord.
 truss::TraceSink trace_to(const py::object& function, const truss::Model& model) {
   if (function.is_none()) return {};
   return [&](const truss::TraceRecord& one) {

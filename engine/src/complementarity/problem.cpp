@@ -18,7 +18,7 @@ using kernel::OutOfRange;
 using kernel::require;
 
 /// A dense matrix is factored as a sparse one if its fraction of nonzero entries is at most this,
-/// unless it is small. At 0.05 both factorizations took the same time for piles of bodies.
+/// unless it is small. For piles of bodies, both take the same time at 0.05.
 constexpr double largest_sparse_fraction = 0.05;
 constexpr Eigen::Index least_sparse_size = 200;
 

@@ -23,10 +23,9 @@ using kernel::require;
 constexpr int first_sweeps = 20;
 /// Sweeps after the other methods have failed; doubled each time.
 constexpr int more_sweeps = 200;
-/// Largest number of linear systems in one Newton attempt. From a good start Newton's method
-/// converges within ten.
+/// Largest number of linear systems in one Newton attempt. From a good start ten suffice.
 constexpr int newton_systems = 30;
-/// Largest number of factorisations of the interior point. Usually it needs twenty; with lagged
+/// Largest number of factorisations of the interior point. Usually twenty suffice; with lagged
 /// friction up to a hundred.
 constexpr int interior_factors = 300;
 /// The interior point stops if this many steps do not halve its merit.
@@ -36,8 +35,8 @@ constexpr int steps_without_progress = 100;
 constexpr Eigen::Index few_contacts = 40;
 constexpr Eigen::Index many_contacts = 250;
 constexpr int pivots_per_contact = 50;
-/// Handover from the interior point to Newton's method: merit at the first Newton attempt; ratio of
-/// merits and number of steps before the next attempt; number of linear systems per attempt.
+/// From interior point to Newton: merit at the first Newton attempt; ratio of merits and number of
+/// steps before the next; linear systems per attempt.
 constexpr double first_handover = 1e-2;
 constexpr double handover_ratio = 0.1;
 constexpr int steps_per_handover = 10;

@@ -26,9 +26,8 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int halving_limit = 40;
-/// F_t counts as at its limit if its relative distance from μ F_N is below this value. The value
-/// exceeds the errors of Newton's method and of roots, so that a path that only touches the limit
-/// does not slip.
+/// F_t counts as at its limit if its relative distance from μ F_N is below this value. It exceeds
+/// numerical errors, so that a path that only touches the limit does not slip.
 constexpr double limit_rounding = 1e-10;
 
 /// Rejects laws that these equations do not contain.
@@ -234,8 +233,8 @@ class PathFollower {
 
   enum class Outcome : unsigned char { arrives, turns, separates, fails };
 
-  /// Attempts one step towards `to` in the current motion. The step ends at the first event; if
-  /// slip starts there, sign_ is set.
+  /// Attempts one step towards `to` in the current motion. It ends at the first event; sets sign_
+  /// if slip starts.
   Outcome attempt(double to, Equilibrium& next) {
     next = now_;
     if (!reach(to, next)) return Outcome::fails;
@@ -260,7 +259,7 @@ class PathFollower {
     sign_ = sign;
     if (excess(sign, now_) > -limit_rounding * mu_ * now_.normal()) {
       // F_t is already at the limit. Either slip starts here, or F_t leaves the limit and returns
-      // to it later.
+      // later.
       if (!(slip_rate(now_) < 0.0)) return Outcome::fails;
       next = now_;
       return Outcome::turns;

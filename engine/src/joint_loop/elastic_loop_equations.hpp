@@ -162,8 +162,7 @@ class Equations {
  private:
   void evaluate(const FrictionLine& line, const Parameters& p, const Vector& z, Vector& residual,
                 Matrix& jacobian) const;
-  /// Writes the equation of friction only. The caller must set the other entries of its row to 0
-  /// before.
+  /// Writes the equation of friction only. Other entries of its row must be 0.
   void evaluate_friction(const FrictionLine& line, const Parameters& p, const Vector& z,
                          Vector& residual, Matrix& jacobian) const;
   static void evaluate_partial(const FrictionLine& line, const Parameters& p, const Vector& z,

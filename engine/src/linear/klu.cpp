@@ -50,8 +50,7 @@ struct SparseFactor::Factors {
   Factors() {
     klu_defaults(&common);
     // Initial memory of the factors, as a multiple of the memory of the matrix entries. KLU's
-    // default is ten times this value, which would be gigabytes for a large truss. KLU enlarges the
-    // factors on demand.
+    // default, ten times this value, is gigabytes for a large truss. KLU enlarges it on demand.
     common.initmem = 1.0;
   }
   Factors(const Factors&) = delete;
@@ -115,7 +114,7 @@ struct SparseFactor::Factors {
 
   /// Factors a matrix of the same pattern with the last pivots. Returns false if the elimination
   /// multiplies a row by more than `most`, or if a pivot does not exceed rounding times that
-  /// factor. A factorization with new pivots must then show whether the matrix is singular.
+  /// factor. New pivots then show whether the matrix is singular.
   bool keeps_pivots(int* columns, int* rows, double* values, const Matrix& matrix, double most) {
     if (now.numeric == nullptr) return false;
     if (halves.are_halved()) {
@@ -176,8 +175,7 @@ struct SparseFactor::Factors {
     }
 
     /// Copies the entries of a matrix to their positions. Returns false if an entry has no
-    /// position. Also returns false if less than half of the positions are used, because a new
-    /// order then saves time.
+    /// position, or if less than half of the positions are used: a new order then saves time.
     bool take(const Matrix& matrix, std::vector<double>& values) const {
       values.assign(rows.size(), 0.0);
       std::size_t used = 0;
@@ -275,8 +273,7 @@ struct SparseFactor::Factors {
   }
 
   /// Selects factors whose pattern has a position for every entry of a small matrix. It prefers the
-  /// present factors, then those used most recently. If none fit, it starts a new order without
-  /// factors.
+  /// present factors, then those used last. If none fit, it starts a new order.
   void choose_kept(const Matrix& matrix) {
     if (now.order != nullptr && now.order->pattern->take(matrix, entries)) return;
     if (now.order != nullptr) others.push_front(std::move(now));

@@ -39,8 +39,8 @@ class SparseFactor {
   void release();
   /// Solution of the factored system.
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;
-  /// Cost of a factorisation divided by the cost of a solution. The estimate uses the number of
-  /// entries and assumes that all columns and rows have equally many.
+  /// Cost of a factorisation divided by the cost of a solution. Estimated as if all columns and
+  /// rows had equally many entries.
   double solutions_per_factorization() const;
   /// Sign of the determinant of the factored matrix, 1 or -1.
   int determinant_sign() const;

@@ -138,8 +138,7 @@ struct NormalForce {
   double force;  ///< with dissipation
 };
 
-/// @param impact_speed approach speed at which the contact began; 0: it begins now, at its current
-/// speed
+/// @param impact_speed approach speed at the start of contact; 0: contact starts now
 inline NormalForce normal_force(const Constants& k, const ContactPoint& at, const Radii& radii,
                                 double impact_speed) {
   const kernel::laws::NormalState elastic = normal_state(k, at.depth, radii);
@@ -201,8 +200,8 @@ double sliding_speed(const Constants& k, const SpatialContact<Terms>& spatial,
 }
 
 /// Friction force; its first component acts along (−n_y, n_x).
-/// @param motion slide of the step [m] for a law with memory, which returns dissipation in J;
-/// otherwise speed [m/s], and dissipation is in W
+/// @param motion slide of the step [m] for a law with memory (dissipation in J), otherwise speed
+/// [m/s] (dissipation in W)
 inline kernel::laws::FrictionResponse friction(const Constants& k, const NormalForce& normal,
                                                double motion, kernel::ContactHistory& history) {
   return kernel::laws::evaluate(

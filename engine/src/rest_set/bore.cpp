@@ -26,8 +26,7 @@ struct CanSet {
   bool low_disc = false, high_disc = false;
 };
 
-/// Whether the vector (fe along e, fw across, fz along z) lies in the sum of the friction cones
-/// about e and z.
+/// Whether the vector (fe, fw, fz) lies in the sum of the friction cones about e and z.
 bool in_sum(double fe, double fw, double fz, double alpha) {
   const double size = std::hypot(fe, fw, fz);
   const double s = std::sin(alpha), c = std::cos(alpha);

@@ -438,9 +438,8 @@ double Profile::nearest_contact(double phi, double& least) const {
   return 0.5 * (low + high);
 }
 
-/// A minimum search finds the contact only to the square root of rounding, which is too coarse for
-/// the normal. At contact, the direction from wall to centre is normal to the wall. The secant
-/// method solves this condition.
+/// A minimum is accurate only to the square root of rounding, too coarse for the normal. The
+/// direction from wall to centre is normal to the wall; the secant method solves this condition.
 double Profile::refined_contact(const Vector2d& centre, double contact) const {
   const auto tangency = [&](double theta) {
     const double h = 1e-4;

@@ -32,8 +32,8 @@ void Assembly::clear() {
 }
 
 void Assembly::record() {
-  // A million joints write some 1e8 positions. To save memory, only the rows are stored in addition
-  // to the positions, column by column.
+  // A million joints write some 1e8 positions. To save memory, only rows are stored besides, column
+  // by column.
   const Eigen::Index n = residual.size();
   std::vector<std::size_t> next(static_cast<std::size_t>(n) + 1, 0);
   for (const Run& run : runs_) {

@@ -15,7 +15,7 @@ namespace {
 /// Largest number of joints that a failure names. The joints that slide fastest come first.
 constexpr std::size_t most_named = 3;
 /// Ratio of a displacement to the size of the truss below which a jump cannot be distinguished from
-/// the error of Newton's method. It is the square root of the rounding error.
+/// the error of Newton's method.
 const double jump_share = std::sqrt(std::numeric_limits<double>::epsilon());
 /// After a failed step, the index of the equations is checked at these multiples of the tangent
 /// step. If the path reverses at a limit point like a parabola, one of them lies beyond the limit
@@ -133,8 +133,8 @@ std::vector<double> PathFollower::program_rates_before(double target) const {
 }
 
 /// If the solve found that a slipping joint sticks, but its rates require that it slides, the joint
-/// continues to slide. The slide in a short step may be smaller than the error of Newton's method,
-/// especially in a slender truss, and its sign is then not reliable.
+/// continues to slide. The slide of a short step may be below the error of Newton's method,
+/// especially in slender trusses; its sign is then unreliable.
 /// @param to, statuses converged solution; replaced by the final solution
 /// @param first how the first solve ended
 SolveReport PathFollower::slide_on(double target, bool is_short, VectorXd& to, Statuses& statuses,

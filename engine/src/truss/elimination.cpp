@@ -10,8 +10,8 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// If two terms cancel to less than this fraction of the larger one, their sum counts as zero. Each
-/// term is a sum of at most some thousand products, each with a rounding of 1e-16.
+/// If two terms cancel to less than this fraction of the larger one, their sum counts as zero.
+/// Terms are sums of at most some thousand products with a rounding of 1e-16.
 constexpr double rounding_fraction = 1e-12;
 /// Factors equal up to rounding count as equally large pivots.
 constexpr double equal_fraction = 1.0 - rounding_fraction;

@@ -35,8 +35,8 @@ struct Elimination {
 };
 
 /// Eliminates one constraint after another by Gauss–Jordan elimination. The pivot is the
-/// displacement with the largest factor, so that factors do not grow. Among equal factors, the
-/// displacement used in the fewest sums is chosen, so that chains of constraints remain sparse.
+/// displacement with the largest factor, so that factors do not grow. Among equal factors it is the
+/// one in the fewest sums, so that chains remain sparse.
 Elimination eliminate(const Model& model);
 
 }  // namespace statejump::truss::detail

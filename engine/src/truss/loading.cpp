@@ -14,14 +14,13 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Largest displacement in one load step, divided by the size of the truss. If loads move a
-/// deployed structure farther, it is no longer the structure that was modelled.
+/// Largest displacement in one load step, divided by the size of the truss. A deployed structure
+/// that loads move farther is not the modelled one.
 constexpr double near_share = 0.05;
 /// Smallest step of the load fraction. It determines the limit load to six digits.
 constexpr double least_step = 1e-6;
-/// Proximal stiffness divided by the stiffness of the stiffest element. It acts on displacements
-/// that only friction at its limit resists. It limits the step of an iteration and does not affect
-/// the solution.
+/// Proximal stiffness, over that of the stiffest element, of displacements that only friction at
+/// its limit resists. It limits the step of an iteration, not the solution.
 constexpr double proximal_share = 1e-6;
 
 /// Copy of the truss with a fraction of its loads and misfits. With fraction 0 the reference

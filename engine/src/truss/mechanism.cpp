@@ -112,9 +112,9 @@ std::pair<FoundModes, bool> free_modes(const System& system, const VectorXd& z, 
   const double least = free_share * system.stiffness_scale();
   const bool pushed = (factors.vectorD().array() < 0.0).any();
   // One vector shows whether there is a free mode. If there is one, five rounds reduce the Rayleigh
-  // quotient below ten times the largest eigenvalue that counts as free. This is true even with
-  // some 1e6 other modes just above that eigenvalue, and for a start vector with a hundredth of the
-  // usual component of a free mode (6e9 · 10⁻⁹ < 10).
+  // quotient below ten times the largest eigenvalue that counts as free. This holds with some 1e6
+  // other modes just above it, and with a hundredth of the usual start component of a free mode
+  // (6e9 · 10⁻⁹ < 10).
   const Modes first = lowest_modes(shifted, factors, 1);
   if (std::abs(first.eigenvalues[0]) > 10.0 * least) return {FoundModes{}, pushed};
   return {modes_between(system, lowest_modes(shifted, factors, most_modes), -least, least), pushed};

@@ -21,8 +21,7 @@ struct NewtonOptions {
   /// Largest number of halvings in the line search. Ten reduce a step below a thousandth: no
   /// descent.
   int most_halvings = 10;
-  /// Number of bisections for the fraction of a step at which a joint changes its status. The
-  /// fraction is accurate to 2^-50.
+  /// Number of bisections for the fraction of a step at which a joint changes its status.
   int fraction_halvings = 50;
   /// Largest step along a displacement that only the regularisation resists, divided by the size of
   /// the truss. Longer steps could change lengths and directions of elements by more than a

@@ -27,8 +27,8 @@ inline std::size_t index(int i) {
   return static_cast<std::size_t>(i);
 }
 
-/// The vector drawn + moved between two nodes, its length, and the increase of its length. The
-/// increase is computed without the difference of two lengths.
+/// The vector drawn + moved between two nodes, its length, and the increase of its length. No
+/// difference of two lengths is used.
 struct Lengths {
   Vector3d along;
   double drawn;

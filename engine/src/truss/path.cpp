@@ -76,7 +76,7 @@ constexpr int most_foreseen = 4;
 /// the energy balance limits the steps.
 constexpr int most_located = 32;
 /// Largest number of located status changes of all joints per increment while elements are slack.
-/// Slack elements, held by dashpots, make and lose contact repeatedly without significant forces.
+/// Such elements make and lose contact repeatedly without significant forces.
 constexpr int most_located_with_slack = 8;
 /// While elements are slack, changes are no longer located after this many steps since the last
 /// change.

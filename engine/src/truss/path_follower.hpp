@@ -110,8 +110,7 @@ struct PathFollower {
   double largest_work = 0.0;       ///< Largest work of the temperature so far [J].
   double energy_gained = 0.0;      ///< Accumulated error of the energy balance [J].
   double slack_work = 0.0;         ///< Work of the dashpots in the last step [J].
-  /// Energy error of the last step [J], if this error was the reason for its rejection; otherwise
-  /// infinity.
+  /// Energy error of the last step if it was rejected for it [J]; otherwise infinity.
   double refused_loss = std::numeric_limits<double>::infinity();
   /// Rates of the unknowns at `time`; empty: unknown.
   VectorXd rate = {};

@@ -50,8 +50,7 @@ class RateProblem {
   /// @param z unknowns at the start of the step
   /// @param target time at the end of the step [s]
   /// @param found statuses of a converged solve over the same step; empty: no solve converged
-  /// @param changing further joints at a limit, in addition to slipping joints and joints whose
-  /// status differs in `found`
+  /// @param changing further joints at a limit, besides those that slip or change in `found`
   RateAnswer solve(const VectorXd& z, double target, const StepStart& start, const Statuses& found,
                    const std::vector<int>& changing);
 

@@ -18,9 +18,8 @@ struct Region {
 };
 
 /// Division of a truss for parallel assembly: regions that share no free nodes, and the elements
-/// and joints between them, which are assembled afterwards. The division depends only on the truss,
-/// and so does the order in which a row is summed. Results therefore do not depend on the number of
-/// threads.
+/// and joints between them, which are assembled afterwards. The division, and thus the order of
+/// sums, depends only on the truss, not on the number of threads.
 struct Regions {
   std::vector<Region> apart;  ///< Regions; a small truss has none.
   Region between;

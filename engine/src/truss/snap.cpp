@@ -78,8 +78,8 @@ double lever_of(const Model& model, double size) {
 /// dashpots are as stiff as the stiffest element. They become softer while steps converge, and
 /// stiffer if steps fail; at the end their forces are negligible. They do not stabilise an
 /// instability whose motion exceeds the play.
-/// @param step takes one step with dashpots of the given level. Returns the motion in the step [m],
-/// or nothing if the step has no solution; the state is then unchanged
+/// @param step takes one step with dashpots of the given level. Returns the motion [m], or nothing
+/// if there is no solution; the state is then unchanged
 /// @param drift motion in a step if nothing is unstable [m]
 bool PathFollower::come_to_rest(const std::function<std::optional<double>(double level)>& step,
                                 double drift) {

@@ -12,7 +12,7 @@ namespace {
 
 /// Smallest step of the opened fraction of the clearances.
 constexpr double least_opening = 1e-4;
-/// First step of the opened fraction of the clearances, and the step after a difficult step.
+/// Step of the opened fraction, at first and after a difficult step.
 constexpr double first_opening = 0.125;
 
 }  // namespace
@@ -121,8 +121,7 @@ std::vector<FailureJoint> PathFollower::slipping(const Statuses& statuses) const
 
 /// Throws a failure if the state is unstable even with all closed joints fixed.
 void PathFollower::refuse_buckled(double when) {
-  // Releases the factors of the rates, because the factors of the stability check need as much
-  // memory.
+  // Makes room: the factors of the stability check need as much memory.
   rates.release();
   for (;;) {
     const double slack = system.slack_stiffness(slack_level);
@@ -176,8 +175,7 @@ bool PathFollower::damp() {
   return true;
 }
 
-/// Adds a note about sticking joints with dependent constraints, if the last solve found such
-/// joints.
+/// Adds a note about sticking joints with dependent constraints, if any were found.
 void PathFollower::note_not_unique(double when) {
   if (newton.regularisation() != Regularisation::reactions) return;
   note(NoteKind::not_unique, when, newton.dependent_joints());

@@ -61,8 +61,7 @@ using Choice = std::vector<std::size_t>;
 /// Indices of some candidates.
 using Group = std::vector<std::size_t>;
 
-/// One choice of the statuses in a group, with the step and the index that result if all other
-/// candidates have the status of the base.
+/// One choice of statuses in a group, with its step and index while other candidates keep the base.
 struct Motion {
   Choice choice;
   VectorXd step;

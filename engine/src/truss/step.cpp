@@ -37,8 +37,8 @@ bool PathFollower::slide_at_stake(int i, JointStatus before, double target,
   return std::abs(slide_rate[i]) * (target - time) > least;
 }
 
-/// Fraction of a step to `to` at which the stiffness of a part first jumps; 1: no stiffness jumps.
-/// The step is interpolated linearly.
+/// Fraction of the step to `to`, interpolated linearly, at which a stiffness first jumps; 1: none
+/// jumps.
 double PathFollower::first_edge(double target, const VectorXd& to, const StepStart& begin,
                                 const Rounding& rounding) const {
   const VectorXd before = system.beyond_edges(z, time, origin);

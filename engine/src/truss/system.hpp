@@ -123,7 +123,7 @@ class System {
   }
 
   /// Evaluates residual and Jacobian at z with the given statuses.
-  /// @param opening opened fraction of the clearances; below 1 only during the start
+  /// @param opening opened fraction of the clearances
   void evaluate(const VectorXd& z, double time, const StepStart& start, const Statuses& statuses,
                 JointModel joints, double opening, Assembly& to) const;
   /// Evaluates elements and loads only.
@@ -169,7 +169,7 @@ class System {
   Statuses all_stick() const { return Statuses(model_->joints.size(), JointStatus::stick); }
 
   /// Status that the inequalities of a joint require, given the status whose rows hold at z.
-  /// @param moved displacements of all nodes at z [m]
+  /// @param moved displacements at z [m]
   JointStatus decide(int joint, const VectorXd& z, const Eigen::Matrix3Xd& moved, double time,
                      const StepStart& start, JointModel joints, double opening, JointStatus status,
                      const Rounding& rounding) const;
@@ -177,8 +177,8 @@ class System {
                      JointModel joints, double opening, JointStatus status,
                      const Rounding& rounding) const;
 
-  /// Some joint laws have one row for stick and slip. This function sets the statuses of such
-  /// joints to those at the end of the step.
+  /// Sets the statuses of joints whose law has one row for stick and slip to those at the end of
+  /// the step.
   void settle(const VectorXd& z, double time, const StepStart& start, Statuses& statuses) const;
 
   /// The state at z as the start of the first step, without memory of friction.
@@ -270,8 +270,8 @@ class System {
   /// Displacement that scales rounding errors at z [m]. It is the largest displacement, but at
   /// least path_scale() and at most the size of the truss. The lower bound matters if a truss
   /// returns to its reference configuration, where displacements and forces vanish but rounding
-  /// errors of the path do not. The upper bound matters if an iteration diverges, because its
-  /// displacements must not loosen the tolerances.
+  /// errors of the path do not. The upper bound keeps a diverging iteration from loosening the
+  /// tolerances.
   double reach(const VectorXd& z) const;
   /// Displacement expected from the model before a solution is known [m]. It is the larger of two
   /// values. They are the largest thermal strain times the size of the truss, and the largest force
@@ -311,8 +311,7 @@ class System {
   /// and the force that it causes in the stiffest element.
   Rounding rounding(const VectorXd& z) const;
   /// Rounding error of a joint's slide minus its elastic deflection [m].
-  /// @param by result of rounding(z). It reads all of z, so the caller computes it once for many
-  /// joints
+  /// @param by result of rounding(z). compute it once for many joints
   double slide_rounding(int joint, const VectorXd& z, double time, const StepStart& start,
                         const Rounding& by) const;
   /// Node of a free displacement.

@@ -51,9 +51,8 @@ struct Merit {
   /// 4.4.
   double natural_map = 0.0;
   /// |r - P_K(r - û)| / |q| after W is divided by its mean diagonal and r multiplied by it. This
-  /// value is independent of the units, whereas the choice of units can make the natural map
-  /// insensitive to u or r. The value does not become small if there is no solution and reactions
-  /// grow without bound.
+  /// value is independent of units, which can make the natural map insensitive to u or r. It does
+  /// not become small if there is no solution and reactions grow without bound.
   double scaled = 0.0;
 
   /// The value that is compared with the tolerance.

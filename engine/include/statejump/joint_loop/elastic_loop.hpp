@@ -39,8 +39,8 @@ struct ElasticJointPoint {
   bool slipping() const { return motion == JointMotion::slip; }
 };
 
-/// Quasi-static path. It contains events (first and last point, changes of motion, corners of the
-/// program) and samples between them.
+/// Quasi-static path. It has events (first, last, changes of motion, corners of the program) and
+/// samples between them.
 struct ElasticLoop {
   std::vector<ElasticJointPoint> points;
   std::vector<ElasticJointPoint> events;
@@ -60,9 +60,9 @@ struct ElasticLoop {
   }
 };
 
-/// Equilibrium at ΔT = 0 with the contact at φ from the joint force's axis, at rest. It can start
-/// both the quasi-static path and the dynamics of the model. The contact history holds F_t along
-/// (−n_y, n_x) and the k_t of TangentialCompliance::mindlin.
+/// Equilibrium at ΔT = 0 with the contact at φ from the joint force's axis, at rest. Start of the
+/// quasi-static path and of the dynamics. The contact history holds F_t along (−n_y, n_x) and the
+/// k_t of TangentialCompliance::mindlin.
 /// @param contact_angle φ [rad], |φ| <= atan μ; tan φ = F_t/F_N
 /// Throws as elastic_loop() does.
 linkage::State loaded_state(const linkage::Linkage& model, double contact_angle = 0.0);

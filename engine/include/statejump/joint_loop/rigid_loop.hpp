@@ -27,8 +27,8 @@ struct JointPoint {
   JointMotion motion;              ///< from this point on
 };
 
-/// Quasi-static path of the clearance joint. It contains events (first and last point, changes of
-/// motion, corners of the program) and samples between them.
+/// Quasi-static path of the clearance joint. It has events (first, last, changes of motion, corners
+/// of the program) and samples between them.
 struct RigidLoop {
   std::vector<JointPoint> points;
   std::vector<JointPoint> events;

@@ -61,11 +61,11 @@ struct Run {
 /// ends has an error of order h^2.5.
 ///
 /// For a friction law with memory, the slide ∫ v_t dt is a component of the ODE. Each stage applies
-/// the law to a copy of the history at the start of the step, with the slide up to the stage. The
-/// accepted step updates the history once. The order is 4 in stick at constant normal load. It is 1
-/// while the normal load changes, because the slide of a step uses the stiffness at its end. The
-/// friction heat is that of kernel::mindlin_step(), which integrates work by the trapezoidal rule.
-/// This adds an error O(h²) to the energy balance.
+/// the law to a copy of the history at the start of the step. The accepted step updates the history
+/// once. The order is 4 in stick at constant normal load. It is 1 while the normal load changes,
+/// because the slide of a step uses the stiffness at its end. The friction heat is that of
+/// kernel::mindlin_step(), which integrates work by the trapezoidal rule. This adds an error O(h²)
+/// to the energy balance.
 ///
 /// A contact's dissipation is scaled by the approach speed at the start of the step in which
 /// contact begins. This causes an error of order h in its damping. Throws std::invalid_argument for

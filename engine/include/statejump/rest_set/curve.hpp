@@ -61,10 +61,9 @@ Curve lobed_curve(double clearance, double amplitude, int lobes, int samples = 7
 /// the smaller of two distances. At the smallest r over all contact directions θ the journal
 /// touches without overlap. These positions form the configuration curve. It is the clearance
 /// circle for a round bore, and the parallel curve at distance R1 for a smooth wall less curved
-/// than the journal. N is the normal of the wall at the contact. Limits: only positions that the
-/// centre reaches from the origin along a straight line without overlap are included; contacts are
-/// sought in `samples` directions and refined. Throws std::invalid_argument if the journal does not
-/// fit at the origin.
+/// than the journal. N is the normal of the wall at the contact. Limits: only positions reached
+/// from the origin along a straight line without overlap; contacts are sought in `samples`
+/// directions and refined. Throws std::invalid_argument if the journal does not fit at the origin.
 Curve journal_in_profile(const std::function<double(double)>& rho, double journal_radius,
                          int samples = 720);
 

@@ -40,12 +40,12 @@ struct RestSet {
   std::vector<RestComponent> parts;  ///< empty: the component rests nowhere
   double area = 0.0;                 ///< sum over the parts [m²]
   double length = 0.0;               ///< sum over the parts [m]
-  /// Largest distance between two positions of the set [m], also in different components. A state
-  /// jump of this joint under the same force cannot be larger.
+  /// Largest distance between two positions of the set [m]. No state jump of this joint under the
+  /// same force is larger.
   double diameter = 0.0;
   std::array<Eigen::Vector3d, 2> farthest = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  /// Bound of the error of `diameter` due to the approximation of the surface [m]. It is 0 for
-  /// closed forms and curves, whose error is rounding only.
+  /// Bound of the error of `diameter` due to the approximation of the surface [m]. 0 for closed
+  /// forms and curves, which have rounding only.
   double diameter_error = 0.0;
 };
 

@@ -50,13 +50,12 @@ namespace statejump::spring_slider {
 ///   stick   e = s w/2 and 0 <= s D <= f: friction pushes away from this end of the play only
 ///   slide   e = s w/2 and D = s f, p moves
 ///
-/// With play too, friction at a rigid stop keeps its value from the arrival, f or 0. A block that
-/// starts stuck starts in the middle of the play, p = 0; a preload may then move it to an end of
-/// the play and further. A block that starts frictionless has p = x.
+/// Friction at a rigid stop again keeps its value from the arrival, f or 0. A block that starts
+/// stuck starts in the middle of the play, p = 0; a preload may then move it to an end of the play
+/// and further. A block that starts frictionless has p = x.
 ///
 /// Limits: no inertia, no buckling (see euler_load), constant f, E and α independent of temperature
-/// (for other α see report_temperatures_of). SpringSlider is a plain value; call validate() once,
-/// because other functions do not check it.
+/// (for other α see report_temperatures_of). SpringSlider is a plain value; call validate() once.
 struct SpringSlider {
   /// Young's modulus E of the link [Pa], > 0.
   double young_modulus = 0.0;

@@ -115,8 +115,8 @@ struct Path {
   /// Displacement at the end minus that at the start [m].
   double state_jump() const { return cycle_end_displacements.back() - start_displacement(model); }
 
-  /// Displacement of the block at the end of cycle `cycle`, counted from 1, minus its displacement
-  /// at the start [m]. Throws std::invalid_argument unless 1 <= cycle <= program.cycles.
+  /// Displacement at the end of cycle `cycle` (from 1) minus that at the start [m]. Throws
+  /// std::invalid_argument unless 1 <= cycle <= program.cycles.
   double jump_after_cycle(int cycle) const;
 };
 
@@ -132,10 +132,10 @@ Path solve(const SpringSlider& model, const thermal::Program& program);
 /// content of `path` is unspecified.
 void solve(const SpringSlider& model, const thermal::Program& program, Path& path);
 
-/// Computes the same path as solve() without `times`, but keeps only the first two cycles, the
-/// last, and those that sample() needs at `times` [s]. A long program needs memory only for the
-/// requested times and the displacement at the end of every cycle. All cycles are computed. Throws
-/// std::invalid_argument if a time is negative or not finite.
+/// Computes the path of solve(), but keeps only the first two cycles, the last, and those that
+/// sample() needs at `times` [s]. A long program needs memory only for the requested times and the
+/// displacement at the end of every cycle. All cycles are computed. Throws std::invalid_argument if
+/// a time is negative or not finite.
 Path solve(const SpringSlider& model, const thermal::Program& program,
            const Eigen::Ref<const Eigen::VectorXd>& times);
 

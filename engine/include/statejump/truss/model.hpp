@@ -45,8 +45,7 @@ struct Node {
   Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< Dead load [N].
 };
 
-/// A term of a constraint: a vector for a node. Its value is the node's displacement component
-/// along the vector, times the vector's length.
+/// A term of a constraint: displacement of a node along a vector, times the vector's length.
 struct ConstraintTerm {
   int node = 0;                                      ///< Number.
   Eigen::Vector3d factor = Eigen::Vector3d::Zero();  ///< [-]
@@ -71,9 +70,8 @@ struct Model : Elements {
   std::vector<thermal::Program> programs;  ///< At least one; all of one duration.
 
   /// Two times count as equal if their difference is below this fraction of the duration [-].
-  /// Programs of 3 x 0.1 s and of 1 x 0.3 s therefore have the same length; so do times entered
-  /// with ten digits. The fraction is smaller than the default interval within which events are
-  /// located.
+  /// Programs of 3 x 0.1 s and of 1 x 0.3 s thus have the same length, also if entered with ten
+  /// digits. The fraction is smaller than the default interval within which events are located.
   static constexpr double same_time = 1e-9;
 
   /// Throws std::invalid_argument whose message names the element or joint, its value and the

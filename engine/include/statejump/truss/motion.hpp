@@ -11,8 +11,8 @@
 
 namespace statejump::truss {
 
-/// Inertia and dashpots of a truss, in addition to its Model. Each vector has one number for each
-/// link or joint. An empty vector means zeros.
+/// Inertia and dashpots of a truss, in addition to its Model. Each vector has one number per link
+/// or joint; an empty vector means zeros.
 struct Inertia {
   /// Mass of each link [kg], >= 0, attached to its two nodes. The mass matrix of a link is
   /// constant, and exact for a body of constant shape. For a straight rod it is m/6 [2 1; 1 2].
@@ -110,7 +110,7 @@ struct Motion {
   bool complete = true;               ///< False if MotionOptions::progress ended it.
   double time_step = 0.0;             ///< [s]; the shortest one.
   long steps = 0;
-  /// Number of steps that were repeated because their error was too large or they had no solution.
+  /// Number of steps repeated because their error was too large or they had no solution.
   long rejected_steps = 0;
   /// Number of inexact steps: in runs with an error tolerance, the shortest steps whose error still
   /// exceeds it; in runs with equal steps, those computed wholly or partly by damped implicit
@@ -167,8 +167,8 @@ struct Motion {
 ///
 /// Trusses are planar or spatial. Three-dimensional joints slide as in the quasi-static solver. The
 /// friction of a ball acts along its direction at the end of the step, so the step is solved
-/// repeatedly until this direction converges. If it does not converge, the failure `not_converged`
-/// names the joint.
+/// repeatedly until this direction converges. Otherwise the failure `not_converged` names the
+/// joint.
 ///
 /// If one of equal steps has no solution, it is repeated by implicit Euler, then in halves. The
 /// matrix of the repeated steps omits the softening of links by compression. `inexact_steps` counts

@@ -169,9 +169,8 @@ struct Path {
 /// **Where a path ends.** If a status changes within the shortest step, the rates of all joints at
 /// a limit are decided together (truss/rate_problem.hpp). If no slow continuation exists, slip is
 /// unstable. If several continuations exist, statics does not determine the motion. After every
-/// step the solver evaluates the index of the equations, and checks whether the rates at both ends
-/// explain the displacements of the step. Without `locate_events` an increment may step over a
-/// limit point.
+/// step the solver evaluates the index of the equations and checks whether the rates at both ends
+/// explain the displacements. Without `locate_events` an increment may step over a limit point.
 ///
 /// **Start.** The reference configuration need not be in equilibrium. It is first relaxed at ΔT = 0
 /// with bilateral pins in place of clearance joints. The pin forces determine where each journal

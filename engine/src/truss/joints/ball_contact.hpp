@@ -13,7 +13,7 @@
 namespace statejump::truss::detail {
 
 // Kinematics of a ball in its socket: the present state, and the changes since the start of the
-// step. The functions work with doubles, or with dual numbers that carry derivatives.
+// step. Numbers are doubles, or dual numbers with derivatives.
 
 /// Variables: displacements of four nodes, three forces, the temperature.
 constexpr int ball_variables = 3 * most_joint_nodes + most_joint_forces + 1;
@@ -41,8 +41,7 @@ constexpr std::size_t socket = 1;
 constexpr std::size_t ball_far = 2;    ///< Far end of the link that rotates the ball.
 constexpr std::size_t socket_far = 3;  ///< Far end of the link that rotates the socket.
 
-/// Memory of a ball joint in history(). With partial slip, the memory of the contact is stored
-/// after it.
+/// Memory of a ball joint in history(). With partial slip, the contact's memory follows.
 struct BallMemory {
   Eigen::Vector3d offset;  ///< Ball minus socket [m].
   /// From the far node of the ball's link to the ball [m]; zero without link.

@@ -164,8 +164,8 @@ Response respond(const BallJoint& joint, const Trial& trial, JointStatus status)
   }
   const Dual depth =
       detail::chain(now.normal_force, contact_of(joint).depth(now.normal_force.value()));
-  // `opening` is the opened fraction of the clearance. It also scales the depth, so that the search
-  // for the start proceeds from pins to contacts in small steps.
+  // The opened fraction of the clearance also scales the depth, so that the start proceeds from
+  // pins to contacts in small steps.
   const Dual gap = now.distance - now.clearance - trial.opening * depth;
   Vector<Dual> row = now.normal * gap;
   if (joint.partial_slip && trial.model == JointModel::friction) {

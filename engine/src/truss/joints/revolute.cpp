@@ -38,8 +38,8 @@ constexpr std::size_t bearing = 1;
 constexpr std::size_t journal_far = 2;
 constexpr std::size_t bearing_far = 3;
 
-/// Memory of a revolute in history(). With partial slip, the memory of the contact is stored after
-/// it. In-plane vectors are components along its two plane directions.
+/// Memory of a revolute in history(). With partial slip, the contact's memory follows. In-plane
+/// vectors are components along its two plane directions.
 struct Memory {
   Vector2d eccentricity;       ///< [m]
   Vector2d journal_direction;  ///< Journal minus far node of its link [m]; zero without link.
@@ -433,8 +433,8 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
     in_contact(*this, trial, g, start, motion, bends, of);
     holds_normal = true;
     const ByNormal depth = contact_of(*this).depth(normal);
-    // `opening` is the opened fraction of the clearance. It also scales the depth, so that the
-    // search for the start proceeds from pins to contacts in small steps.
+    // The opened fraction of the clearance also scales the depth, so that the start proceeds from
+    // pins to contacts in small steps.
     writer.closure(0, g.eccentricity.norm() - g.clearance - trial.opening * depth.value);
     corner[0][0] = -trial.opening * depth.slope;
     const double mu = trial.model == JointModel::friction ? friction_coefficient : 0.0;

@@ -305,8 +305,7 @@ JointStatus Slider::decide(const Trial& trial, JointStatus status) const {
 }
 
 void Slider::begin(const Trial& trial, JointStatus status, double* now) const {
-  // The memory at the start follows from the slide from the reference configuration, in which the
-  // slip is zero.
+  // Memory at the start: slide from the reference configuration, where slip is zero.
   std::vector<double> drawn(detail::index(history()), 0.0);
   Trial from = trial;
   from.history = drawn.data();

@@ -67,8 +67,7 @@ class Assembly {
 
   Eigen::VectorXd residual;
   Eigen::Matrix3Xd moved;  ///< Displacements of all nodes at the evaluated state [m].
-  /// The Jacobian, as updated by the last evaluation that did so. All copies of an assembly have
-  /// the same pattern.
+  /// The last updated Jacobian. All copies of an assembly share its pattern.
   linear::SparseView jacobian() const {
     return {residual.size(),      residual.size(),      values_.size(),
             slots_->outer.data(), slots_->inner.data(), values_.data()};
@@ -154,8 +153,7 @@ class AssemblyStrand {
         for (int i = 0; i < of_rows; ++i) run[i] += value(i, j);
       }
     };
-    // Most nodes are free in space or in a plane. For them the loops have a constant length, which
-    // is faster.
+    // Most nodes are free in space or in a plane. Loops of constant length are faster.
     if (rows == 2 && columns == 2) {
       add_up(std::integral_constant<int, 2>(), std::integral_constant<int, 2>());
     } else if (rows == 3 && columns == 3) {

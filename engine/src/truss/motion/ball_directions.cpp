@@ -43,7 +43,7 @@ bool direct_balls(const System& system, const TimeStep& step, int rotations,
     };
     if (contact.slips_in_part) {
       // The contact problem limits friction to `given_force`. A solve with given statuses uses only
-      // the partial-slip law, without this limit.
+      // the law.
       if (rotations > 0 && friction.norm() < beside.given_force) continue;
       beside.given_force = std::max(given, 2.0 * friction.norm());
       if (rotations > 0 && bound > 0.0) settled = false;

@@ -12,10 +12,10 @@ using Eigen::Vector3d;
 /// Friction of a ball in its socket, in the tangent plane at the middle of a step. Friction is a
 /// vector, but a contact acts along one direction, so a ball has two contacts. The first contact
 /// acts in the direction `along` of friction at the end of the step, and has Coulomb's limit. The
-/// second, the transverse contact, acts perpendicular to it. Its stiffness is the transverse
-/// tangent of the law, the ratio of limit to deflection. Its force vanishes once the direction has
-/// converged; see direct_balls(). With partial slip both contacts are components of one law, along
-/// and across a direction that rotates with the contact, so no direction is iterated.
+/// second, the transverse contact, acts perpendicular to it. Its stiffness is the law's transverse
+/// tangent, limit over deflection. Its force vanishes once the direction has converged; see
+/// direct_balls(). With partial slip both contacts are components of one law, along and across a
+/// direction that rotates with the contact, so no direction is iterated.
 struct BallFriction {
   const BallJoint* joint = nullptr;
   std::size_t place = 0;  ///< Index of its first contact; the transverse contact follows.

@@ -58,7 +58,7 @@ Contact::Across Contact::across(double depth, double speed, double h) const {
   const double stiffness = 1.5 * hertz_stiffness * std::sqrt(at);
   const double elastic = force_at(at) + stiffness * (depth - at);
   // The dashpot coefficient contains the fourth root of the depth, whose derivative is unbounded at
-  // zero depth. The coefficient is therefore evaluated at the depth in the middle of the step.
+  // zero depth. So it is evaluated at the middle of the step.
   const double dashpot =
       damping * std::sqrt(1.5 * hertz_stiffness * std::sqrt(std::max(-gap, 0.0)));
   const double slope = h * stiffness + dashpot;
@@ -255,8 +255,7 @@ void Contacts::begin(const State& state, StartFriction start) {
     contact.compliance = contact.tangential_compliance(contact.given_force);
     if (contact.slips_in_part) {
       const SlipAnnuli::Pressed by = contact.pressed(contact.given_force, contact.given_force, 1.0);
-      // The normal force is applied first, then the slide, because partial slip depends on the
-      // order.
+      // The normal force acts first, then friction, because partial slip depends on the order.
       contact.annuli.take(by, Eigen::Vector2d::Zero());
       contact.friction_force =
           contact.annuli.take(by, {slide_at_rest(contact, state, start), 0.0})[0];

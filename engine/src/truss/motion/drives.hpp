@@ -17,9 +17,8 @@ class Drives {
   Drives(const System& system, const std::vector<Drive>& drives);
 
   Eigen::Index count() const { return static_cast<Eigen::Index>(drives_->size()); }
-  /// Derivatives of each link's angle with respect to the independent displacements [1/m]. They are
-  /// evaluated with the prescribed direction of the link at the end of the step and with its length
-  /// at q.
+  /// Derivatives of each link's angle with respect to the independent displacements [1/m]. They use
+  /// the prescribed direction at the end of the step and the length at q.
   std::vector<Eigen::Triplet<double>> directions(const VectorXd& q, double to) const;
   /// Required angular velocity of each link at the end of the step [rad/s]: that of the program,
   /// plus half of the angle error at the start (positions q) divided by the step length.

@@ -3,13 +3,13 @@
 
 namespace statejump::truss::detail {
 
-/// Step sizes within a time span. Each size is half of the next larger size, so few sizes occur and
-/// matrix factors can be reused. Every step starts at a multiple of its length, so that the last
-/// step ends at the end of the span.
+/// Step sizes within a time span. Each is half of the next larger size, so that factors can be
+/// reused. Every step starts at a multiple of its length, so that the last step ends at the end of
+/// the span.
 class DyadicStepSize {
  public:
-  /// @param level number of times that the span is halved to give the first step
-  /// @param most_halvings number of times that the span is halved to give the shortest step
+  /// @param level halvings of the span that give the first step
+  /// @param most_halvings halvings of the span that give the shortest step
   DyadicStepSize(int level, int most_halvings);
 
   /// End of the next step as a fraction of the span.

@@ -17,8 +17,7 @@ namespace laws = kernel::laws;
 namespace {
 
 /// Laws of one contact for kernel::contact_step(). A friction law with memory receives the mean
-/// velocity since the end of the last step, computed from the integrated slide. Dashpots receive
-/// the present velocity.
+/// velocity since the last step, from the integrated slide. Dashpots receive the present velocity.
 struct StageLaws {
   const laws::JointLaw& law;
   const laws::FrictionParameters friction_parameters;

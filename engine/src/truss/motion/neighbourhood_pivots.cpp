@@ -12,11 +12,11 @@ using Eigen::Index;
 namespace {
 
 /// Initial size of a neighbourhood, in layers of joints. It is doubled while a correction reaches
-/// the edge of the neighbourhood.
+/// the edge.
 constexpr int first_layers = 4;
 /// Tolerated velocity correction at the edge of a neighbourhood, divided by the largest correction.
-/// Solves of the whole truss correct the remaining error. A smaller tolerance would not save
-/// solves, because statuses depend only on the signs of residuals.
+/// Solves of the whole truss correct the remaining error. A smaller tolerance saves no solves: only
+/// signs of residuals decide statuses.
 constexpr double felt = 1e-2;
 
 }  // namespace

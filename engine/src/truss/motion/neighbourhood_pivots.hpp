@@ -14,10 +14,10 @@ namespace statejump::truss::detail {
 /// Changes statuses (pivots) in the neighbourhood of contacts whose inequalities are violated.
 ///
 /// If slip spreads from joint to joint, each solve of the whole truss reveals only the next joint.
-/// Impulses act only as far as sound travels in a step. Each pivot therefore uses the equations of
-/// only those bodies and contacts that lie within some layers around a contact. This neighbourhood
-/// grows while a correction reaches its edge. The resulting statuses are a guess: a solve of the
-/// whole truss then checks the inequalities of all contacts.
+/// Impulses act only as far as sound travels in a step. Each pivot therefore uses only the bodies
+/// and contacts within some layers around a contact. This neighbourhood grows while a correction
+/// reaches its edge. The resulting statuses are a guess: a solve of the whole truss then checks the
+/// inequalities of all contacts.
 class NeighbourhoodPivots {
  public:
   using Index = Eigen::Index;

@@ -11,8 +11,7 @@ namespace statejump::truss::detail {
 namespace {
 
 /// If a pivot of W is below this fraction of the largest pivot, the reaction depends on other
-/// reactions. W results from solves with matrices of condition number at most 1e4, because h²K is
-/// about as large as M.
+/// reactions. W results from matrices of condition 1e4 at most, because h²K is about as large as M.
 constexpr double dependent = 1e-10;
 /// A joint is named if its reaction in a null vector exceeds this fraction of the largest reaction.
 constexpr double takes_part = 1e-3;

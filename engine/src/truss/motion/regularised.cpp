@@ -71,8 +71,7 @@ class Run {
   Motion make() &&;
 
  private:
-  /// Rates of positions, velocities and slides in a stage. Computing them does not change the
-  /// memory of contacts.
+  /// Rates of positions, velocities and slides in a stage.
   struct Rates {
     VectorXd velocity;
     VectorXd acceleration;
@@ -228,7 +227,7 @@ bool Run::begin() {
     way = contacts_.start_way(*start, options_.start_friction);
   }
   const double h = duration_ / static_cast<double>(options_.steps);
-  // The normal force is applied first, then the slide, because partial slip depends on the order.
+  // The normal force acts first, then friction, because partial slip depends on the order.
   commit({q_, v_, 0.0, h, VectorXd::Zero(contacts_.numbers())});
   if (!way.isZero(0.0)) commit({q_, v_, 0.0, h, way});
   heat_.friction.setZero();

@@ -37,8 +37,7 @@ constexpr int before_longer = 8;
 /// Shorter equal steps are cheaper than more substeps.
 constexpr long most_parts = 10;
 
-/// After this many consecutive attempts without progress, a step counts as unsolvable. Each attempt
-/// has a shorter step, or a contact that changes its status.
+/// After this many consecutive attempts without progress, a step counts as unsolvable.
 constexpr int most_tries = 1000;
 
 void check(const Model& model, const MotionOptions& options) {
@@ -288,7 +287,7 @@ bool Run::try_step(double to, double span, detail::DyadicStepSize& step_size, in
   note(stepper_, length, [&] { stepper_.accept(); });
   ++motion_.steps;
   motion_.time_step = std::min(motion_.time_step, length);
-  // The error of a step is of third order, so a step of double length has eight times the error.
+  // The error is of third order: eight times as large at double length.
   step_size.accept(8.0 * off <= options_.displacement_tolerance);
   return true;
 }

@@ -28,7 +28,7 @@ constexpr int most_trusted = 10;
 /// differ by rounding.
 constexpr double at_once = 1e-6;
 /// A status may change early if the missing force divided by Coulomb's limit is at most this. The
-/// error of the force is then as large, and lasts until the force has grown by the missing amount.
+/// error of the force is as large, until the force has grown by it.
 constexpr double early = 1e-6;
 
 }  // namespace

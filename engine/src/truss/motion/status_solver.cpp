@@ -10,15 +10,14 @@ namespace {
 
 /// Largest number of Newton iterations. Three or four suffice, unless a contact has a wrong status.
 constexpr int most_iterations = 8;
-/// Larger limit for two slower cases: partial slip, in which tangents change in every iteration,
-/// and a matrix that omits the softening by compression.
+/// Limit for slower cases: partial slip, whose tangents change, and a matrix without softening by
+/// compression.
 constexpr int most_tangents = 50;
-/// In the line search, the step is halved until the residual has decreased by this fraction, or
-/// until the step is too short.
+/// The line search halves the step until the residual has decreased by this fraction, or the step
+/// is short.
 constexpr double least_fall = 1e-4;
 constexpr double shortest_share = 1e-3;
-/// If Newton's method with kept factors needs more iterations than this, new factors are computed
-/// for the next step.
+/// If kept factors need more iterations than this, the next step computes new factors.
 constexpr int few_iterations = 3;
 /// Kept factors are abandoned if a correction exceeds this fraction of the previous correction.
 constexpr double falls_to = 0.3;

@@ -11,8 +11,8 @@
 
 namespace statejump::truss::detail {
 
-/// Factors of the equations of a step for given statuses of the active contacts. They were computed
-/// in this step or in an earlier step of the same length.
+/// Factors of the equations of a step for given statuses of the active contacts. They stem from
+/// this or an earlier step of the same length.
 struct StatusFactors {
   double h = 0.0;
   std::vector<int> active;  ///< Numbers of the active contacts.

@@ -22,9 +22,8 @@ namespace statejump::truss::detail {
 ///
 /// with Signorini's condition and Coulomb's law between u = Hᵀ v and r. The directions H are those
 /// of the middle of the step. Backward differentiation has the same equations with other starting
-/// values (TimeStep). StatusSearch finds the statuses of the contacts; for given statuses the
-/// equations are smooth. If the search fails, ContactProblem solves the step. A solved step is
-/// committed.
+/// values (TimeStep). StatusSearch finds the statuses, for which the equations are smooth. If it
+/// fails, ContactProblem solves the step. A solved step is committed.
 class Stepper {
  public:
   /// @pre The arguments outlive this object.
@@ -36,17 +35,16 @@ class Stepper {
   /// the forces of that state.
   void begin(const VectorXd& q, const VectorXd& v, const State* equilibrium);
   /// Takes one step to the time `to`. The state changes only if the step succeeds. Returns false if
-  /// the gap of a contact differs from its prediction, which uses the directions at the middle of
-  /// the step.
+  /// a contact's gap differs from the prediction with the directions at mid-step.
   /// @throws Failure if no solution is found
   bool advance(double to);
   /// Like advance(), by implicit Euler with a positive definite matrix, for steps without another
   /// solution. With `give_up`, it also returns false if the statuses are not found.
   bool advance_damped(double to, bool give_up);
   /// Attempts a step of backward differentiation without committing it. Returns the error of the
-  /// displacements [m]. The step is second-order accurate if the last step was of this type too. If
-  /// `give_up` is set and the statuses are not found, the result is empty and the contact problem
-  /// is not tried.
+  /// displacements [m]. The step is second-order accurate if the last step was of this type too.
+  /// With `give_up`, the result is empty if the statuses are not found; the contact problem is not
+  /// tried.
   /// @throws Failure as advance()
   std::optional<double> attempt(double to, bool give_up);
   /// Commits the attempted step.

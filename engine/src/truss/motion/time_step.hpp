@@ -57,8 +57,8 @@ struct TimeStep {
 };
 
 /// Tolerance of the law of an elastic contact, as a fraction of its force. The contact problem is
-/// solved to 1e-10 of its largest velocity. In a stiff contact this velocity error causes a much
-/// larger relative error of the force.
+/// solved to 1e-10 of its largest velocity. In a stiff contact, the relative error of the force is
+/// much larger.
 constexpr double on_law = 1e-6;
 
 /// Allowed violation of an inequality, as a fraction of the contact's own force or of the largest

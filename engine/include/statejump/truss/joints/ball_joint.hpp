@@ -18,10 +18,10 @@ namespace statejump::truss {
 ///
 ///   dσ = (1 − n nᵀ) de + r1 ω1 dt × n − r2 ω2 dt × n
 ///
-/// in a tangent plane that rotates with the contact. This rotation is the smallest one from the old
-/// normal to the new normal, followed by one about n with the mean spin of both parts. Friction
-/// rotates in the same way in a DEM. Let t be the friction force, which deflects the contact with
-/// the compliance C = 1/k_t, k_t = 8 G* √(R δ) (Mindlin):
+/// in a tangent plane that rotates with the contact. This is the smallest rotation from the old to
+/// the new normal, then one about n with the mean spin of both parts, as in a DEM. Let t be the
+/// friction force, which deflects the contact with the compliance C = 1/k_t, k_t = 8 G* √(R δ)
+/// (Mindlin):
 ///
 ///   open    λ_n = 0, t = 0, |e| <= c    contact   |e| = c + (λ_n/K)^(2/3), λ_n >= 0
 ///   stick   dσ = d(C t), |t| <= μ λ_n   slip      |t| = μ λ_n, dσ = d(C t) + t/|t| dγ, dγ >= 0
@@ -45,8 +45,7 @@ namespace statejump::truss {
 /// direction rotates. The status slip means that the whole contact slides.
 ///
 /// **Unknowns.** The unknowns are the components of the force on the ball, λ_n n + t, along fixed
-/// directions. No direction in the tangent plane has to be chosen. Pinned, closed and open joints
-/// have the same unknowns.
+/// directions. Pinned, closed and open joints have the same unknowns.
 ///
 /// [1] J. C. Simo, T. J. R. Hughes, Computational Inelasticity, Springer 1998, ch. 3.3.
 struct BallJoint {
@@ -66,7 +65,7 @@ struct BallJoint {
   /// 8 G* √R of Mindlin's k_t = 8 G* √(R δ) [N/m^1.5], > 0. Infinity means rigid stick, which only
   /// dynamics supports.
   double mindlin_stiffness = 0.0;
-  /// 1: the contact slips partially, starting at its rim. Needs friction. 0: it slips as a whole.
+  /// 1: the contact slips partially, starting at its rim. Needs friction.
   int partial_slip = 0;
   int program = 0;
   double temperature_fraction = 1;

@@ -93,8 +93,8 @@ struct Trial {
   /// and its rate [m/s]. It is a scalar along the slide, or a vector in the tangent plane.
   Eigen::Vector3d owed = Eigen::Vector3d::Zero();
   Eigen::Vector3d owed_rate = Eigen::Vector3d::Zero();
-  /// Stiffness of the spring that resists the motion of a joint without force since the start of
-  /// the step [N/m], see System::slack_stiffness(). 0: no spring.
+  /// Spring stiffness against motion of a joint without force since the start of the step [N/m],
+  /// see System::slack_stiffness(). 0: no spring.
   double slack_stiffness = 0.0;
   /// Whether this stiffness also acts on joints in contact.
   bool damps_contact = false;

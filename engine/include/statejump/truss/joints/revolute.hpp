@@ -45,8 +45,7 @@ struct ClearanceRevolute {
   /// 8 G* √R of Mindlin's k_t = 8 G* √(R δ), the stiffness of the sticking contact [N/m^1.5];
   /// infinity: rigid stick. It may be finite only if `hertz_stiffness` is finite.
   double mindlin_stiffness = std::numeric_limits<double>::infinity();
-  /// 1: the contact slips partially, starting at its rim. Needs friction and finite stiffnesses. 0:
-  /// it slips as a whole.
+  /// 1: the contact slips partially, starting at its rim. Needs friction and finite stiffnesses.
   int partial_slip = 0;
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
   int program = 0;

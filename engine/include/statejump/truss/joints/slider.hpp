@@ -54,8 +54,7 @@ struct Slider {
   double clearance_plus = std::numeric_limits<double>::infinity();   ///< [m], >= 0.
   /// Stiffness k_t of the sticking contact [N/m], > 0; infinity: rigid.
   double tangential_stiffness = std::numeric_limits<double>::infinity();
-  /// 1: the contact slips partially, starting at its rim. Needs friction and a finite k_t. 0: it
-  /// slips as a whole.
+  /// 1: the contact slips partially, starting at its rim. Needs friction and a finite k_t.
   int partial_slip = 0;
   /// Stiffness k_s of the stops [N/m], > 0; infinity: rigid.
   double stop_stiffness = std::numeric_limits<double>::infinity();
