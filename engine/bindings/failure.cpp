@@ -20,7 +20,7 @@ namespace statejump::bindings {
 namespace {
 
 /// Class of EngineFailure. It is a raw pointer, because a static py::object would be released after
-/// the interpreter.
+/// the interpreter has ended.
 PyObject* failure_class = nullptr;
 
 constexpr const char* doc =

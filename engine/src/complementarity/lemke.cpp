@@ -40,7 +40,7 @@ MatrixXd lcp_matrix(const ScaledProblem& problem) {
   return m;
 }
 
-/// Lemke's tableau: It has one row per basic variable, and columns for w, for z, for the artificial
+/// Lemke's tableau. It has one row per basic variable, and columns for w, for z, for the artificial
 /// variable, and for the values.
 class Table {
  public:

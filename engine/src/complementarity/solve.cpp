@@ -35,8 +35,8 @@ constexpr int steps_without_progress = 100;
 constexpr Eigen::Index few_contacts = 40;
 constexpr Eigen::Index many_contacts = 250;
 constexpr int pivots_per_contact = 50;
-/// From interior point to Newton: merit at the first Newton attempt; ratio of merits and number of
-/// steps before the next; linear systems per attempt.
+/// Handover from interior point to Newton: merit at the first Newton attempt; ratio of merits and
+/// number of steps before the next; linear systems per attempt.
 constexpr double first_handover = 1e-2;
 constexpr double handover_ratio = 0.1;
 constexpr int steps_per_handover = 10;

@@ -86,8 +86,8 @@ Equilibrium start(const linkage::Linkage& model, const Equations& equations, dou
   model.validate();
   validate_laws(model);
   const int side = loaded_side(model, contact_angle);
-  // First the position of rigid bodies; moments about A then give (f, 0), which deflects each
-  // spring.
+  // The position of rigid bodies comes first; moments about A then give the force (f, 0), which
+  // deflects each spring.
   const JointPoint rigid = joint_point(model, 0.0, side, contact_angle);
   Equilibrium at;
   at.p = parameters(model, 0.0);

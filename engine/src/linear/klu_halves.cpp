@@ -17,7 +17,7 @@ namespace statejump::linear {
 
 namespace {
 
-/// Columns of the matrix per column of the separator, at least. The separator's long columns wait
+/// The separator has at most one column per this many columns of the matrix. Its long columns wait
 /// for both halves.
 constexpr int columns_of_one = 1000;
 

@@ -14,8 +14,8 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// For this many elements or joints, integrating the work or writing the outputs takes about ten
-/// times as long as starting a thread.
+/// Integrating the work or writing the outputs of this many elements takes about ten times as long
+/// as starting a thread.
 constexpr std::size_t parts_at_once = 5000;
 
 }  // namespace

@@ -21,7 +21,7 @@ constexpr std::size_t nodes_at_once = 50000;
 /// moves_along() [-].
 constexpr double least_motion = 1e-9;
 
-/// For every node, whether an element with 6 dofs per node is attached to it.
+/// Whether an element with 6 dofs per node is attached to a node, for every node.
 std::vector<bool> rotating_nodes(const Model& model) {
   std::vector<bool> rotates(model.nodes.size(), false);
   const auto ask = [&]<class Type>(const std::vector<Type>& elements) {

@@ -26,8 +26,8 @@ struct NodeDofs {
   int freedoms = 0;  ///< Number of translations.
   const Eigen::Matrix3d* directions = nullptr;
   int rotations = 0;  ///< 3 where an element has 6 dofs per node, else 0.
-  /// For a node with constraints, its translations as sums of dofs. Null: each translation is a dof
-  /// of the node.
+  /// Translations of a node with constraints as sums of dofs. Null: each translation is a dof of
+  /// the node.
   const DofSums* sums = nullptr;
 
   /// Whether a translation is itself a dof, and not a sum or a multiple of dofs.

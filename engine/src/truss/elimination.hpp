@@ -28,8 +28,8 @@ inline int place_of(int node, int direction) {
 /// hold to rounding at every state. The cost is fill: a constraint of n terms makes a block of n²
 /// entries for each element at its dependent node.
 struct Elimination {
-  /// For each dependent displacement (by its index): the indices and factors of the independent
-  /// displacements in its sum.
+  /// Sum of each dependent displacement, by its index: indices and factors of independent
+  /// displacements.
   std::map<int, std::map<int, double>> sums;
   std::vector<int> redundant;  ///< Indices of constraints that follow from others.
 };

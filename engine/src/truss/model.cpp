@@ -128,7 +128,7 @@ void check_constraint(const Constraint& constraint, const Model& model) {
   }
 }
 
-/// Rejects a joint that constrains its nodes along a direction along which supports or constraints
+/// Rejects a joint that constrains its nodes along a direction in which supports or constraints
 /// already prevent their relative motion. Otherwise two forces would constrain one direction.
 void check_held_directions(const Model& model) {
   const detail::DofMap dofs(model);

@@ -41,8 +41,8 @@ struct RateAnswer {
 ///
 /// A solution is a jump, not a continuation, if its displacement exceeds √s times the size of the
 /// truss. s is the larger of two ratios in the step with unchanged statuses: displacement to the
-/// size of the truss, and force change to the largest joint force. [1] R. W. Cottle, J.-S. Pang, R.
-/// E. Stone, The Linear Complementarity Problem, SIAM 2009, ch. 3.
+/// size of the truss, and force change to the largest joint force.
+/// [1] R. W. Cottle, J.-S. Pang, R. E. Stone, The Linear Complementarity Problem, SIAM 2009, ch. 3.
 class RateProblem {
  public:
   explicit RateProblem(const System& system) : system_(&system), at_(0) {}

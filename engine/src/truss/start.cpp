@@ -121,7 +121,7 @@ std::vector<FailureJoint> PathFollower::slipping(const Statuses& statuses) const
 
 /// Throws a failure if the state is unstable even with all closed joints fixed.
 void PathFollower::refuse_buckled(double when) {
-  // Makes room: the factors of the stability check need as much memory.
+  // Makes room: the factors of the stability check need as much memory as these.
   rates.release();
   for (;;) {
     const double slack = system.slack_stiffness(slack_level);

@@ -311,7 +311,7 @@ class System {
   /// and the force that it causes in the stiffest element.
   Rounding rounding(const VectorXd& z) const;
   /// Rounding error of a joint's slide minus its elastic deflection [m].
-  /// @param by result of rounding(z). compute it once for many joints
+  /// @param by result of rounding(z), computed once for many joints
   double slide_rounding(int joint, const VectorXd& z, double time, const StepStart& start,
                         const Rounding& by) const;
   /// Node of a free displacement.
@@ -341,8 +341,8 @@ class System {
   bool is_idle(int joint, const VectorXd& from, const VectorXd& to, double force) const;
   /// Whether a joint has partial slip.
   bool slips_smoothly() const { return slips_smoothly_; }
-  /// For a joint that rolls: slide of a step minus the elastic deflection, without corrections of
-  /// the slip error [m].
+  /// Slide of a step minus the elastic deflection, without corrections of the slip error [m]; for a
+  /// joint that rolls.
   Vector3d lag(int joint, const VectorXd& z, double time, const StepStart& start) const;
   double stiffness_scale() const { return stiffness_scale_; }
   double size() const { return size_; }  ///< Largest extent of the reference configuration [m].

@@ -77,9 +77,8 @@ double rolling_arc(const linkage::Linkage& model, const JointPoint& point);
 /// and no jump remains. Bisection finds the ΔT of slip and separation to rounding; corners of the
 /// program are exact. `samples` points per monotone branch (>= 1) fill the path; events are sought
 /// between neighbouring samples. Throws std::invalid_argument for a model or program out of range,
-/// for expanding radii and for
-/// |contact_angle| > atan μ. Also for a spring that is absent or unloaded at the start, because the
-/// position is then undetermined.
+/// for expanding radii and for |contact_angle| > atan μ. Also for a spring that is absent or
+/// unloaded at the start, because the position is then undetermined.
 RigidLoop rigid_loop(const linkage::Linkage& model, const thermal::Program& program,
                      double contact_angle = 0.0, int samples = 200);
 

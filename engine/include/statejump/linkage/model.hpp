@@ -22,8 +22,8 @@ struct ThermalLink {
   double poisson_ratio = 0.3;       ///< ν [-], in (-1, 0.5]; also of its half of the joint
 };
 
-/// One deployed rib of the umbrella antenna: section 4 of the paper (Figs 10 and 11; its equations
-/// in parentheses).
+/// One deployed rib of the umbrella antenna: section 4 of the paper (Figs 10 and 11; equation
+/// numbers in parentheses).
 ///
 /// Links AB and BC are attached to the frame by ideal pins at A = (0, 0) and C = (a, 0). At B the
 /// journal (radius R1) of BC moves with play in the bearing (radius R2) of AB. With d = r_journal −

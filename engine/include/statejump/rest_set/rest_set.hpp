@@ -13,8 +13,8 @@ struct RestComponent {
   double area = 0.0;      ///< of its two-dimensional pieces [m²]
   double length = 0.0;    ///< of its one-dimensional pieces [m]; an isolated point has neither
   double diameter = 0.0;  ///< largest distance between two of its positions [m]
-  /// For a circular clearance, the angle of the arc [rad]; for a spherical one, the largest angle
-  /// between two directions. NaN if the clearance has no centre.
+  /// Angle of the arc of a circular clearance [rad], or largest angle between two directions of a
+  /// spherical one. NaN if the clearance has no centre.
   double angle = std::numeric_limits<double>::quiet_NaN();
   /// Middle of an arc or segment; on a surface, a position well inside the friction cone.
   Eigen::Vector3d representative = Eigen::Vector3d::Zero();

@@ -9,7 +9,8 @@
 namespace statejump::spring_slider {
 
 /// A heated link that pushes a block with dry friction between two stops. This is the paper's
-/// reduced model of a one-dimensional clearance joint (section 3, Figs 4 and 5).
+/// reduced model of a one-dimensional clearance joint (section 3, Figs 4 and 5; equation numbers in
+/// parentheses).
 ///
 /// The link is a massless spring between the fixed frame and the block. Its unloaded length is l_T
 /// = l0 (1 + α ΔT), so its thermal displacement is x_T = l_T − l0 (2). With the block at x

@@ -133,7 +133,7 @@ struct Motion {
 /// **Scheme.** For a step h, with the constant mass matrix M, the forces f of links, springs,
 /// torsion springs, dashpots and loads, and the impulses r of the contacts in directions H,
 ///
-///   M (v1 − v0) = h (θ f1 + (1 − θ) f0) + H r, q1 = q0 + h (θ v1 + (1 − θ) v0)
+///   M (v1 − v0) = h (θ f1 + (1 − θ) f0) + H r,   q1 = q0 + h (θ v1 + (1 − θ) v0)
 ///
 /// Newton's method solves the step with M + h θ C + (h θ)² K at the middle of the step; H is
 /// evaluated there too. Contacts first keep the statuses of the previous step, and change them if

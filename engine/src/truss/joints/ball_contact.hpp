@@ -44,9 +44,9 @@ constexpr std::size_t socket_far = 3;  ///< Far end of the link that rotates the
 /// Memory of a ball joint in history(). With partial slip, the contact's memory follows.
 struct BallMemory {
   Eigen::Vector3d offset;  ///< Ball minus socket [m].
-  /// From the far node of the ball's link to the ball [m]; zero without link.
+  /// Vector from the far node of the ball's link to the ball [m]; zero without link.
   Eigen::Vector3d ball_direction;
-  /// From the far node of the socket's link to the socket [m]; zero without link.
+  /// Vector from the far node of the socket's link to the socket [m]; zero without link.
   Eigen::Vector3d socket_direction;
   Eigen::Vector3d friction;  ///< t [N].
   Eigen::Vector3d axis;  ///< Reference direction of the slip memory in the tangent plane; or zero.

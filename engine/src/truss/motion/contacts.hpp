@@ -52,8 +52,7 @@ struct Contact {
   bool active = false;
   double opened = 0.0;  ///< Change of the gap from the middle to the end at zero end speed [m].
   double slid = 0.0;    ///< Slide of the step at zero end speed [m].
-  // For a ball joint: components of the contact's directions along the three force columns of the
-  // joint.
+  // Components of a ball contact's directions along the joint's three force columns.
   Vector3d normal_shares = Vector3d::Zero();
   Vector3d tangential_shares = Vector3d::Zero();
 

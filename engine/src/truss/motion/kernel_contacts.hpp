@@ -33,8 +33,8 @@ struct KernelContact {
   double held = 0.0;     ///< k_t of a pad [N/m]; 0: no pad.
 
   bool is_pad() const { return held > 0.0; }
-  /// For a pad with play: its law is a spring with Coulomb's limit, whatever the friction law of
-  /// the other contacts.
+  /// Law of a pad with play: a spring with Coulomb's limit, whatever the friction law of other
+  /// contacts.
   SlipAnnuli annuli;
   bool has_play() const { return annuli.play > 0.0; }
   SlipAnnuli::Pressed loads_annuli() const { return {held, 0.0, 1.0, pressed, 0.0}; }

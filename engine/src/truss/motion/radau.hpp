@@ -19,7 +19,7 @@ struct Radau {
   Eigen::MatrixXd a;
   Eigen::MatrixXd inverse;  ///< A⁻¹
   /// Weights of the stages' increments in the difference between this method and the embedded
-  /// method of order s. The latter also uses h/λ times the rate at the start.
+  /// method of order s. The embedded method also uses h/λ times the rate at the start.
   Eigen::VectorXd embedded;
 
   double eigenvalue = 0.0;     ///< λ, the real eigenvalue.

@@ -11,8 +11,8 @@ namespace statejump::truss::detail {
 namespace {
 
 /// Largest number of contacts for SmoothStepper. Every status change ends a step of the whole
-/// truss, so the cost grows with their square. For more contacts, steps with many changes are
-/// cheaper.
+/// truss, so the cost grows with the square of their number. For more contacts, steps with many
+/// changes are cheaper.
 constexpr std::size_t most_contacts = 200;
 constexpr int most_iterations = 8;
 /// New tangents are computed if a correction exceeds this fraction of the previous correction.
@@ -28,7 +28,7 @@ constexpr int most_trusted = 10;
 /// differ by rounding.
 constexpr double at_once = 1e-6;
 /// A status may change early if the missing force divided by Coulomb's limit is at most this. The
-/// error of the force is as large, until the force has grown by it.
+/// error of the force is equally large until the force has grown by it.
 constexpr double early = 1e-6;
 
 }  // namespace

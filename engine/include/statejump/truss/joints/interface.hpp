@@ -63,7 +63,7 @@ struct JointFrame {
   double temperature_fraction = 1.0;
   /// Right-handed frame of fixed directions.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
-  /// For each direction of the joint, whether a force constrains the first two nodes along it.
+  /// Whether a force constrains the first two nodes, for each direction of the joint.
   std::array<bool, 3> holds{false, false, false};
 };
 
@@ -89,8 +89,8 @@ struct Trial {
   /// True in dynamics, where separate contacts represent soft stops and play, so that the joint
   /// omits its springs.
   bool in_motion = false;
-  /// For a joint that rolls: the slip error of earlier steps plus that expected in this step [m],
-  /// and its rate [m/s]. It is a scalar along the slide, or a vector in the tangent plane.
+  /// Slip error of a joint that rolls [m]: that of earlier steps plus that expected in this step;
+  /// then its rate [m/s]. It is a scalar along the slide, or a vector in the tangent plane.
   Eigen::Vector3d owed = Eigen::Vector3d::Zero();
   Eigen::Vector3d owed_rate = Eigen::Vector3d::Zero();
   /// Spring stiffness against motion of a joint without force since the start of the step [N/m],

@@ -32,9 +32,9 @@ namespace statejump::truss {
 /// Elements need no statuses, because λ is a piecewise linear, monotone function of s. The status
 /// `slip±` means that some elements slip in that direction.
 ///
-/// [1] D. J. Segalman, J. Appl. Mech. 72 (2005) 752-760. [2] D. J. Segalman, Sandia report
-/// SAND2002-3828 (2002): distances in a geometric series; Segalman puts a slider in the middle of
-/// each interval.
+/// [1] D. J. Segalman, J. Appl. Mech. 72 (2005) 752-760.
+/// [2] D. J. Segalman, Sandia report SAND2002-3828 (2002): distances in a geometric series;
+/// Segalman puts a slider in the middle of each interval.
 struct IwanJoint {
   std::string name;
   int first = 0;
