@@ -19,7 +19,7 @@ inline std::string more_name(const std::string& engine) {
 }
 
 /// Adds EngineFailure, the exception into which the bindings translate every failure of the engine.
-/// Call first.
+/// Call it before the other bind functions.
 void bind_failure(pybind11::module_& module);
 
 /// Uses the same exception for failures in the second module.
@@ -28,7 +28,7 @@ void use_failure(const pybind11::module_& engine);
 /// Adds ThermalProgram to the module.
 void bind_thermal_program(pybind11::module_& module);
 
-/// Adds SpringSlider, its Path and solve to the module. Call after bind_thermal_program.
+/// Adds SpringSlider, Path and solve() to the module. Call it after bind_thermal_program.
 void bind_spring_slider(pybind11::module_& module);
 
 /// Adds the catalogue of contact laws to the module.

@@ -19,8 +19,8 @@ namespace statejump::bindings {
 
 namespace {
 
-/// The exception's class. A raw pointer that lives as long as the interpreter, because a static
-/// py::object would be released after it.
+/// Class of EngineFailure. It is a raw pointer, because a static py::object would be released after
+/// the interpreter has ended.
 PyObject* failure_class = nullptr;
 
 constexpr const char* doc =
@@ -35,8 +35,8 @@ constexpr const char* doc =
     "file: of a mesh; reason, details: why it is rejected, see mesh_reasons()\n"
     "numbers: further numbers, name with unit to value";
 
-/// Raises the failure with these attributes; other attributes keep the values of the class, None or
-/// empty.
+/// Raises EngineFailure with the given attributes. All other attributes keep the defaults of the
+/// class: None or empty.
 void raise(const char* kind, const std::string& message, const py::dict& attributes) {
   const py::object failure = py::reinterpret_borrow<py::object>(failure_class)(message);
   failure.attr("kind") = kind;
@@ -143,7 +143,8 @@ void bind_failure(py::module_& module) {
   attributes["nodes"] = py::tuple();
   attributes["numbers"] = py::dict();
   attributes["details"] = py::dict();
-  // An argument out of range is a ValueError, a failed run a RuntimeError.
+  // Python code can catch EngineFailure as a ValueError (argument out of range) or as a
+  // RuntimeError (failed run).
   const py::tuple bases = py::make_tuple(py::reinterpret_borrow<py::object>(PyExc_ValueError),
                                          py::reinterpret_borrow<py::object>(PyExc_RuntimeError));
   failure_class =

@@ -27,7 +27,8 @@ std::string number_named(const FailureFields& fields, const char* name) {
   return text_of("%g", number_of(fields, name));
 }
 
-/// " at a temperature change of 12.5 K (t = 0.25 s)"; "" if no instant is known.
+/// Returns for example " at a temperature change of 12.5 K (t = 0.25 s)", or "" if the failure has
+/// no instant.
 std::string at_instant(const FailureFields& fields) {
   if (!fields.temperature_change) return "";
   std::ostringstream text;
@@ -37,7 +38,7 @@ std::string at_instant(const FailureFields& fields) {
   return text.str();
 }
 
-/// "node 'B' mostly along x, node 'C' mostly along y; node …": modes separated by semicolons.
+/// Lists the moving nodes of each mode: "node 'B' mostly along x, node 'C' mostly along y; node …".
 std::string movers(const std::vector<FailureMode>& modes) {
   std::string text;
   for (const FailureMode& mode : modes) {

@@ -6,17 +6,17 @@
 
 namespace statejump {
 
-/// Number of threads of in_parallel(): OMP_NUM_THREADS, if set, so that users who start many
-/// processes can limit it. Else the number of processors available to the process.
+/// Number of threads of in_parallel(). It is OMP_NUM_THREADS if set, so that users who start many
+/// processes can limit it; otherwise the number of processors available to the process.
 std::size_t threads();
 
-/// Calls `work(k)` for every k below `count`, several at a time, in any order. The threads end
-/// before it returns, so a process may fork afterwards. If `work` throws, all calls are still made,
-/// and the exception with the lowest k is rethrown.
+/// Calls `work(k)` for every k from 0 to `count` − 1 on several threads, in any order. The threads
+/// end before the function returns, so the process may fork afterwards. If `work` throws, all calls
+/// are still made, and the exception with the lowest k is rethrown.
 void in_parallel(std::size_t count, const std::function<void(std::size_t)>& work);
 
-/// Calls `work(i)` for every i below `count` in blocks of `length`, with in_parallel(). A single
-/// block is a plain loop.
+/// Calls `work(i)` for every i from 0 to `count` − 1. in_parallel() runs blocks of `length` calls;
+/// a single block runs as a plain loop.
 template <class Work>
 void each_in_parallel(std::size_t count, std::size_t length, Work&& work) {
   const std::size_t pieces = (count + length - 1) / length;

@@ -20,8 +20,8 @@ namespace laws = kernel::laws;
 
 namespace {
 
-/// A contact with the law of that kind and name. The other laws are Hertz's contact, no
-/// dissipation, and Mindlin's friction.
+/// Builds a contact with the given law, found by its kind and name. Its other laws are Hertz's
+/// contact, no dissipation, and Mindlin's friction.
 laws::JointLaw law_among_defaults(const std::string& kind, const std::string& name) {
   laws::JointLaw law;
   law.friction = laws::MindlinFriction{};

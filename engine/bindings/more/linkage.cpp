@@ -25,8 +25,8 @@ namespace {
 
 using Row = std::vector<std::pair<const char*, double>>;
 
-/// Arrays by column name.
-/// @param row_of row i as (name, value) pairs, the same names in every row
+/// Converts rows into arrays, one for each column name.
+/// @param row_of returns row i as (name, value) pairs; all rows have the same names
 template <class RowOf>
 py::dict columns(std::size_t rows, RowOf&& row_of) {
   std::vector<std::pair<const char*, py::array_t<double>>> arrays;

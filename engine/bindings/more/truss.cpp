@@ -33,7 +33,8 @@ using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Indices = py::array_t<int, py::array::c_style | py::array::forcecast>;
 using Flags = py::array_t<bool, py::array::c_style | py::array::forcecast>;
 
-/// The arrays of one type of item. Rejects a missing array, or one of another length.
+/// The arrays with the parameters of one type of element or joint. Rejects a missing array and
+/// arrays of different lengths.
 class Table {
  public:
   Table(const char* kind, const py::dict& arrays) : kind_(kind), arrays_(arrays) {
@@ -73,7 +74,8 @@ Vector3d row(const Numbers& array, std::size_t i) {
   return Eigen::Map<const Vector3d>(array.data() + 3 * i);
 }
 
-/// The directions that neither a fixed coordinate nor a guide plane constrains, and their number.
+/// Returns the directions that neither a fixed coordinate nor a guide plane constrains, and how
+/// many there are.
 std::pair<truss::Directions, int> free_directions(const bool* fixed, Vector3d normal) {
   std::vector<Vector3d> held;
   for (int k = 0; k < 3; ++k) {
@@ -100,18 +102,18 @@ std::pair<truss::Directions, int> free_directions(const bool* fixed, Vector3d no
   return {truss::Directions(columns), freedoms};
 }
 
-/// Number of nodes above which reading a truss leaves megabytes of free memory.
+/// If a truss has more nodes than this, reading it leaves megabytes of free memory in the process.
 constexpr std::size_t many_nodes = 10000;
 
-/// Returns free memory to the system. Reading a large truss leaves gaps between blocks in use, too
-/// small for the arrays of the solver.
+/// Returns free memory to the operating system. Reading a large truss leaves free gaps between used
+/// blocks that are too small for the arrays of the solver.
 void give_back_memory() {
 #ifdef __GLIBC__
   malloc_trim(0);
 #endif
 }
 
-/// Items of a type of element or joint, from a table with the columns of its parameters.
+/// Creates the elements or joints of one type from a table whose columns are their parameters.
 template <class Type>
 std::vector<Type> items_of(const Table& table) {
   std::vector<Type> items(table.size());
@@ -169,7 +171,7 @@ truss::Model make_model(const py::dict& nodes_, const py::dict& elements_, const
     const auto fixed = table.flags("fixed", 3);
     const auto normal = table.numbers("guide_normal", 3);
     const auto force = table.numbers("force_N", 3);
-    // Most nodes have one of a few supports, so equal ones are stored once.
+    // Most nodes have one of a few supports, so nodes with equal supports share one object.
     using Support = std::tuple<bool, bool, bool, double, double, double>;
     std::map<Support, std::pair<truss::Directions, int>> supports;
     model.nodes.reserve(table.size());
@@ -206,7 +208,7 @@ truss::Model make_model(const py::dict& nodes_, const py::dict& elements_, const
   return model;
 }
 
-/// An array (states, items) or (states, items, 3) of one member of every state.
+/// Array of one member of every state, with shape (states, items) or (states, items, 3).
 template <class State, class Member>
 py::array_t<double> stacked(const std::vector<State>& states, Member member, py::ssize_t width) {
   const auto count = static_cast<py::ssize_t>(states.size());
@@ -229,7 +231,7 @@ py::array_t<double> scalars(const std::vector<State>& states, Member member) {
   return result;
 }
 
-/// Indices of the joints of one type among all joints, and of their outputs among all outputs.
+/// Indices of one type's joints among all joints, and of their outputs among all outputs.
 struct OfType {
   std::vector<py::ssize_t> joints;
   std::vector<py::ssize_t> outputs;
@@ -266,7 +268,7 @@ py::array_t<Number> of_joints(const std::vector<truss::State>& states, std::size
   return result;
 }
 
-/// Outputs of all types by key; statuses and heat by type of joint.
+/// Outputs of all types by key. Statuses and heat are stored for each type of joint.
 py::dict states_dict(const truss::Model& model, const std::vector<truss::State>& states) {
   using truss::State;
   py::dict d;
@@ -328,8 +330,8 @@ py::array_t<Number> of_events(const std::vector<truss::Event>& found, Value valu
   return result;
 }
 
-/// Events as columns, because a truss of a million joints has millions of events. Joints are
-/// numbered within their type. Statuses are codes; `statuses` lists their names.
+/// Events as columns, because a truss of a million joints has millions of events. A joint's number
+/// counts only joints of its type. Statuses are stored as codes; `statuses` lists their names.
 py::dict event_columns(const truss::Model& model, const std::vector<truss::Event>& found) {
   using truss::Event;
   std::vector<py::ssize_t> place(model.joints.size());
@@ -371,7 +373,8 @@ py::dict event_columns(const truss::Model& model, const std::vector<truss::Event
   return events;
 }
 
-/// Reports the finished fraction to a caller's function. Returns whether to continue.
+/// Passes the finished fraction of a run to the caller's function, which returns whether to
+/// continue.
 std::function<bool(double)> going_on(const py::object& progress) {
   return [&progress](double done) {
     py::gil_scoped_acquire lock;
@@ -380,7 +383,7 @@ std::function<bool(double)> going_on(const py::object& progress) {
   };
 }
 
-/// Passes the iterations of a path to a caller's function, as tuples in the order of the record.
+/// Passes the iterations of a path to a caller's function, as tuples in the order of TraceRecord.
 truss::TraceSink trace_to(const py::object& function, const truss::Model& model) {
   if (function.is_none()) return {};
   return [&](const truss::TraceRecord& one) {
@@ -397,7 +400,8 @@ truss::TraceSink trace_to(const py::object& function, const truss::Model& model)
   };
 }
 
-/// Reports like going_on(), for runs whose partial results are useful: Ctrl-C ends the run.
+/// Reports progress like going_on(), for runs whose partial results are useful: Ctrl-C ends the run
+/// and keeps them.
 std::function<bool(double)> until_interrupted(const py::object& progress) {
   return [go_on = going_on(progress)](double done) {
     try {

@@ -33,7 +33,7 @@ enum class FailureKind : unsigned char {
 /// "mechanism", "held_mechanism", …: the enumerator's name.
 const char* to_string(FailureKind kind);
 
-/// A node and the coordinate direction ('x', 'y' or 'z') of its largest component in a mode.
+/// A node of a mode, and the coordinate direction ('x', 'y' or 'z') in which its motion is largest.
 struct ModeNode {
   std::string node;
   char along;
@@ -57,8 +57,8 @@ struct FailureFields {
   bool more_modes = false;                        ///< There may be more than `mode_count`.
   std::optional<double> time = {};                ///< [s]
   std::optional<double> temperature_change = {};  ///< ΔT [K]; for a truss that of its first program
-  /// The result that does not exist, e.g. "no equilibrium of the drawn shape". For the kinds
-  /// singular and not_converged, and for too_many_steps of dynamics.
+  /// The result that was not found, e.g. "no equilibrium of the drawn shape". Used for the kinds
+  /// singular and not_converged, and in dynamics for too_many_steps.
   std::string sought = {};
   /// Message of the law or part of the program that detected the failure.
   std::string cause = {};
@@ -66,16 +66,17 @@ struct FailureFields {
   std::vector<std::pair<std::string, double>> numbers = {};
 };
 
-/// Sentence of a failure, rendered from its fields; the only place with its wording.
+/// Sentence that describes a failure, composed from its fields. Only this function contains the
+/// wording.
 std::string sentence(const FailureFields& fields);
 
 /// Remedy; "" if there is no general one.
 std::string remedy(const FailureFields& fields);
 
-/// The part of the sentence that explains the reason; "" if there is none.
+/// The part of a failure's sentence that explains the reason; "" if there is no such part.
 std::string cause(const FailureFields& fields);
 
-/// A model with valid input has no result. what() is the sentence.
+/// Thrown if a model with valid input has no result. what() returns the sentence of the failure.
 class Failure : public std::runtime_error {
  public:
   explicit Failure(FailureFields fields)
@@ -86,8 +87,8 @@ class Failure : public std::runtime_error {
   FailureFields fields_;
 };
 
-/// The torsion spring of a linkage does not load its joint at the start, so the position within the
-/// play is undetermined.
+/// Thrown if the torsion spring of a linkage does not load the joint at the start, so the journal's
+/// position within the play is undetermined.
 class UnloadedJoint : public kernel::OutOfRange {
  public:
   using OutOfRange::OutOfRange;

@@ -6,7 +6,7 @@ namespace statejump {
 /// How a structure reaches its first equilibrium at ΔT = 0 from the reference configuration.
 ///
 /// `stuck`: before loads and preloads act, joints stick in the reference configuration. A joint
-/// slides only if its friction limit is exceeded; its friction is then the limit.
+/// slides only if its friction limit is exceeded; its friction then equals the limit.
 /// `frictionless`: loads and preloads act on joints without friction. Friction starts in that
 /// equilibrium with zero force.
 ///

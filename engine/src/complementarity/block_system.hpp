@@ -19,16 +19,16 @@ struct BlockRows {
   std::vector<BlockMatrix> b;
 };
 
-/// Factors of A W + B for some contacts, with block-diagonal A and B; dense if W is dense, else
-/// sparse. If sparse factors are singular to rounding, dense ones with full row pivoting replace
-/// them, up to a size.
+/// Factors of A W + B for a subset of the contacts, with block-diagonal A and B. The factors are
+/// dense if W is dense, otherwise sparse. If sparse factors are singular to rounding, dense factors
+/// with full row pivoting replace them, unless the matrix is too large.
 class BlockSystem {
  public:
   BlockSystem(const ScaledProblem& problem, const BlockRows& rows);
 
   /// Solution r of (A W + B) r = c, with zero for contacts outside the system; empty if the
   /// equations are singular to rounding.
-  /// @param c one block for each contact in the system
+  /// @param c right-hand side: one block for each contact in the system
   std::optional<Eigen::VectorXd> solve(const std::vector<Block>& c) const;
 
  private:

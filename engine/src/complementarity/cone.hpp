@@ -17,23 +17,23 @@ inline Block block_of(const Eigen::VectorXd& all, Eigen::Index contact, int dime
           dimension == 3 ? all[contact * dimension + 2] : 0.0};
 }
 
-/// Writes the block of a contact into a vector of all contacts.
+/// Writes the block of one contact into a vector that holds the blocks of all contacts.
 inline void set_block(Eigen::VectorXd& all, Eigen::Index contact, int dimension,
                       const Block& block) {
   all.segment(contact * dimension, dimension) = block.head(dimension);
 }
 
 /// r - P_K(r - û) of one contact: zero if Coulomb's law holds. P_K projects onto the cone |x_t| <=
-/// mu x_n. Each branch is written so that a small û is not lost beside a large r.
+/// mu x_n. The formula of each branch keeps a small û accurate beside a large r.
 inline Block natural_map(const Block& r, const Block& u, double mu) {
   Block modified = u;
   modified[0] += mu * u.tail<2>().norm();
   const Block x = r - modified;
   const double size = x.tail<2>().norm();
-  // Without friction the cone is a ray: points behind its tip have no tangential part either.
+  // Without friction the cone is a ray. The projection of a point behind its tip is zero.
   if (x[0] >= 0.0 && size <= mu * x[0]) return modified;
   if (mu * size <= -x[0]) return r;
-  // Projection onto the edge; for size = 0 one of the branches above has returned.
+  // Projection onto the boundary of the cone. Here size > 0.
   Block edge(1.0, mu * x[1] / size, mu * x[2] / size);
   edge /= std::sqrt(1.0 + mu * mu);
   return r - edge * edge.dot(r) + edge * edge.dot(modified);

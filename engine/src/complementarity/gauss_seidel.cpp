@@ -9,9 +9,10 @@ namespace statejump::complementarity {
 
 namespace {
 
-/// A contact whose normal compliance is below the rounding of the mean one cannot be solved alone.
+/// Normal compliance over the mean normal compliance below which it is rounding. Such a contact
+/// cannot be solved alone.
 constexpr double least_compliance = 1e-15;
-/// Sweeps between two evaluations of the merit, each of which costs a sweep.
+/// Sweeps between two evaluations of the merit. One evaluation costs as much as a sweep.
 constexpr int sweeps_per_check = 5;
 
 }  // namespace

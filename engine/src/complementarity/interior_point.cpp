@@ -13,19 +13,19 @@ namespace statejump::complementarity {
 
 namespace {
 
-/// Fraction of the distance to the cone's boundary that a step covers.
+/// A step covers at most this fraction of the distance to the boundary of the cone.
 constexpr double boundary_fraction = 0.995;
 /// Smallest fraction of the current gap that a corrector aims at.
 constexpr double least_centring = 1e-3;
 /// A shorter step indicates contacts far from the central path.
 constexpr double short_step = 0.1;
-/// Fraction of the current gap that the centring step then aims at.
+/// After a short step, the centring step aims at this fraction of the current gap.
 constexpr double centring_after_short_step = 0.5;
-/// Number of steps with lagged friction after the first short step; it doubles after each further
-/// one.
+/// Number of steps with lagged friction after the first short step. The number doubles after each
+/// further short step.
 constexpr int first_lag = 5;
-/// Largest ratio of a contact's velocity residual times its reaction to the gap, at which a lagged
-/// step reduces the gap.
+/// A lagged step reduces the gap only if for every contact its velocity residual times its reaction
+/// is below this multiple of the gap.
 constexpr double residual_per_gap = 10.0;
 
 /// Determinant of Lorentz' cone, without cancellation of squares.
@@ -34,7 +34,7 @@ double determinant(const Block& x) {
   return (x[0] - size) * (x[0] + size);
 }
 
-/// x with x_n increased by a few roundings if rounding put x on the boundary.
+/// Returns x. If rounding put x on the boundary of the cone, x_n is increased by a few roundings.
 Block kept_inside(Block x) {
   constexpr double roundings = 8.0 * std::numeric_limits<double>::epsilon();
   x[0] = std::max(x[0], x.tail<2>().norm() * (1.0 + roundings));
@@ -57,11 +57,11 @@ Block quotient(const Block& right, const Block& x) {
   return result;
 }
 
-/// Largest step with x + step dx in the cone, at most `most`.
+/// Largest step length for which x + step dx is in the cone, but not more than `most`.
 double step_to_boundary(const Block& x, const Block& dx, double most) {
   double step = most;
   if (dx[0] < 0.0) step = std::min(step, -x[0] / dx[0]);
-  // det(x + s dx) = c + 2 b s + a s^2, c > 0.
+  // Determinant along the direction: det(x + s dx) = c + 2 b s + a s^2 with c > 0.
   const double a = dx[0] * dx[0] - dx.tail<2>().squaredNorm();
   const double b = x[0] * dx[0] - x.tail<2>().dot(dx.tail<2>());
   const double c = determinant(x);
@@ -79,7 +79,7 @@ double step_to_boundary(const Block& x, const Block& dx, double most) {
 
 }  // namespace
 
-/// Nesterov's and Todd's scaling of a pair: P x = P^-1 z = lambda.
+/// Scaling P of Nesterov and Todd for a pair (x, z): P x = P^-1 z = lambda.
 struct InteriorPoint::Scaling {
   Scaling(const Block& x, const Block& z) {
     const double dx = std::sqrt(determinant(x));
@@ -182,14 +182,14 @@ double InteriorPoint::advance() {
   if (lagged && error * size > residual_per_gap * at.gap) sigma = 1.0;
   for (std::size_t i = 0; i < count; ++i) {
     const Block scaled_dx = at.scalings[i].p * direction.dx[i];
-    // P^-1 dz = v - P dx, with v = -lambda of the predictor.
+    // The scaled direction of z is P^-1 dz = v - P dx; in the predictor v = -lambda.
     targets[i] -= product(scaled_dx, -at.scalings[i].lambda - scaled_dx);
     targets[i][0] += sigma * at.gap;
   }
   if (!solve_for(targets, direction)) return 0.0;
   double step = std::min(1.0, boundary_fraction * longest_step(direction));
   if (step < short_step) {
-    // Some contacts are too close to the boundary: recentre without second-order terms.
+    // Some contacts are too close to the cone's boundary: recentre without second-order terms.
     for (std::size_t i = 0; i < count; ++i) {
       targets[i] = -at.squares[i];
       targets[i][0] += centring_after_short_step * at.gap;

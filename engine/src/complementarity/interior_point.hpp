@@ -13,27 +13,28 @@ namespace statejump::complementarity {
 /// Path-following interior point on De Saxcé's form of Coulomb's law.
 ///
 /// Each contact has a diagonal D = (1/(c mu), 1/c), c = max(1, 1/mu). Then x = D^-1 r and z = D û
-/// both lie in Lorentz' cone x_n >= |x_t|. û = u + mu |u_t| n becomes z = D (W r + q) + |z_t| e_n.
-/// The steps are Newton steps on this equation and x∘z = sigma e (Jordan product), with the
-/// derivative of the friction term. In the scaling of Nesterov and Todd, P x = P^-1 z, they are
+/// both lie in Lorentz' cone x_n >= |x_t|. The equation û = u + mu |u_t| n becomes z = D (W r + q)
+/// + |z_t| e_n. The method takes Newton steps on this equation and on x∘z = sigma e (Jordan
+/// product), with the derivative of the friction term. In the scaling of Nesterov and Todd, P x =
+/// P^-1 z, they are
 ///
 ///    (D W D + A P^2) dx = A P v + (residual of z),   A = I - e_n (z_t/|z_t|)^T,
 ///
 /// with v from the centring and Mehrotra's (1992) second-order term.
 ///
-/// Without the friction term the problem is convex and the method polynomial. With it there is no
-/// convergence proof, only experience (Acary, Armand, Nguyen, Shpakovych 2023). If the steps become
-/// short, some steps use A = I: the friction term lags by one step. Each is then a step of a convex
-/// problem (the fixed point of Acary and Cadoux 2013). The gap x.z then decreases only as fast as
-/// the residual, which keeps the pairs off the boundary. Contacts without friction have one
-/// component, x_n = r_n.
+/// Without the friction term |z_t| e_n the problem is convex and the method polynomial. With this
+/// term convergence is not proved, only observed (Acary, Armand, Nguyen, Shpakovych 2023). If the
+/// steps become short, some steps use A = I: the friction term lags by one step, so each of these
+/// steps belongs to a convex problem (the fixed point of Acary and Cadoux 2013). The gap x.z then
+/// decreases only as fast as the residual, which keeps the pairs off the boundary. Contacts without
+/// friction have one component, x_n = r_n.
 class InteriorPoint {
  public:
   /// Starts far from the boundary.
   explicit InteriorPoint(const ScaledProblem& problem);
 
-  /// One predictor-corrector step, one factorisation.
-  /// @return its length, at most 1; 0 at the end
+  /// Takes one predictor-corrector step with one factorisation.
+  /// @return length of the step, at most 1; 0 if the method has ended
   double advance();
   Eigen::VectorXd reactions() const;
 
@@ -64,7 +65,8 @@ class InteriorPoint {
   Linearised linearised(bool lagged) const;
   BlockSystem factored(const std::vector<Scaling>& scalings,
                        const std::vector<BlockMatrix>& a) const;
-  /// Direction for given Jordan products x∘z + dx∘z + x∘dz; false if the equations are singular.
+  /// Computes the direction (dx, dz) for given Jordan products x∘z + dx∘z + x∘dz. Returns false if
+  /// the equations are singular.
   bool solve(const BlockSystem& system, const std::vector<Scaling>& scalings,
              const std::vector<BlockMatrix>& a, const std::vector<Block>& residuals,
              const std::vector<Block>& targets, Direction& direction) const;

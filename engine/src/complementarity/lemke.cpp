@@ -13,9 +13,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Smallest pivot: larger than the rounding of some hundred eliminations of entries of order one.
+/// Smallest accepted pivot. It exceeds the rounding of some hundred eliminations of entries of
+/// order one.
 constexpr double least_pivot = 1e-11;
-/// Ratios and entries that differ by less are equal up to rounding.
+/// Two ratios or entries count as equal if they differ by less than this tolerance.
 constexpr double tie_tolerance = 1e-12;
 
 /// Matrix of the linear complementarity problem; z = (r_n, p, m, lambda) of each contact.
@@ -39,8 +40,8 @@ MatrixXd lcp_matrix(const ScaledProblem& problem) {
   return m;
 }
 
-/// Lemke's tableau: one row per basic variable; columns of w, of z, of the artificial variable, and
-/// the values.
+/// Lemke's tableau. It has one row per basic variable, and columns for w, for z, for the artificial
+/// variable, and for the values.
 class Table {
  public:
   explicit Table(const ScaledProblem& problem)
@@ -72,8 +73,8 @@ class Table {
     return worst;
   }
 
-  /// Leaving row when `entering` grows from zero: the lexicographically smallest ratio, the
-  /// artificial variable first; -1 on a ray.
+  /// Row of the variable that leaves the basis when `entering` grows from zero. It has the
+  /// lexicographically smallest ratio; the artificial variable takes precedence. -1: ray.
   Index leaving(Index entering) const {
     Index best = -1;
     for (Index i = 0; i < size_; ++i) {

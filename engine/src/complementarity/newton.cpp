@@ -13,15 +13,15 @@ namespace statejump::complementarity {
 
 namespace {
 
-/// Proximal term relative to the mean compliance. It must be larger than the errors of the factors,
-/// 1e-16 of the largest compliance, and smaller than all nonzero compliances.
+/// Proximal term relative to the mean compliance. It must be larger than the errors of the factors
+/// (1e-16 of the largest compliance) and smaller than every nonzero compliance.
 constexpr double proximal = 1e-10;
 /// A step is compared with the largest of this many merits.
 constexpr std::size_t memory = 5;
 /// Shortest step of the line search.
 constexpr double shortest_step = 1.0 / 64.0;
 
-/// Solution of the linearised equations at an iterate; empty if they are singular.
+/// Solves the equations linearised at an iterate. The result is empty if they are singular.
 std::optional<Eigen::VectorXd> newton_target(const ScaledProblem& problem, const Iterate& at) {
   const int d = problem.dimension();
   BlockRows rows;

@@ -37,7 +37,7 @@ struct Sliding {
   }
 };
 
-/// Root of f in lambda > 0 by Newton's method inside a shrinking bracket.
+/// Finds the root lambda > 0 of f by Newton's method inside a shrinking bracket.
 double slip_rate(const Sliding& sliding) {
   double low = 0.0;
   double high = std::max(sliding.stiffness.maxCoeff(), sliding.normal_stiffness);
@@ -46,7 +46,7 @@ double slip_rate(const Sliding& sliding) {
     high *= 8.0;
   }
   double lambda = low > 0.0 ? std::sqrt(low * high) : 0.5 * high;
-  // Bisection alone ends after about 1100 halvings of the exponent; Newton's method needs five.
+  // Bisection alone would need about 1100 halvings; Newton's method needs five iterations.
   for (int k = 0; k < 200 && low < high; ++k) {
     const auto [value, rate] = sliding.excess(lambda);
     if (value == 0.0) break;
@@ -79,7 +79,8 @@ bool solve_one_contact(const BlockMatrix& w, const Block& q, double mu, double l
   const double angle = 0.5 * std::atan2(s(0, 1), half);
   Matrix2d axes;
   axes << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
-  // If W is rank-deficient, rounding must not give a negative stiffness in the sliding direction.
+  // The stiffness in the sliding direction is not negative. If W is rank-deficient, rounding could
+  // make it so.
   const Vector2d stiffness = Vector2d(mean + radius, mean - radius).cwiseMax(0.0);
   const Sliding sliding{
       stiffness, axes.transpose() * load, axes.transpose() * coupling, q[0], w(0, 0), mu};

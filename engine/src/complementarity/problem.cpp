@@ -17,8 +17,8 @@ namespace {
 using kernel::OutOfRange;
 using kernel::require;
 
-/// Largest fraction of nonzero entries of a dense matrix that is factored as a sparse one, unless
-/// it is small. Measured on piles of bodies: at 0.05 both take the same time.
+/// A dense matrix is factored as a sparse one if its fraction of nonzero entries is at most this,
+/// unless it is small. For piles of bodies, both take the same time at 0.05.
 constexpr double largest_sparse_fraction = 0.05;
 constexpr Eigen::Index least_sparse_size = 200;
 
@@ -111,7 +111,7 @@ ScaledProblem::ScaledProblem(const Problem& problem)
   blocks_.reserve(static_cast<std::size_t>(contacts()));
   for (Eigen::Index i = 0; i < contacts(); ++i) {
     const Eigen::Index at = i * dimension_;
-    // In the plane, the second tangential component has unit compliance and no load.
+    // In planar problems, the unused second tangential component gets unit compliance and no load.
     BlockMatrix block = BlockMatrix::Identity();
     for (int row = 0; row < dimension_; ++row) {
       for (int column = 0; column < dimension_; ++column) {

@@ -13,8 +13,8 @@ namespace statejump::complementarity {
 double natural_map_merit(const Problem& problem, const Eigen::VectorXd& reactions,
                          const Eigen::VectorXd& velocities);
 
-/// A dimensionless problem: W divided by its mean diagonal, q by its mean entry. Coulomb's cones do
-/// not change.
+/// A dimensionless problem: W is divided by its mean diagonal entry, q by its mean entry. The
+/// friction cones do not change.
 class ScaledProblem {
  public:
   /// @param problem valid

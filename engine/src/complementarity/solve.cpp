@@ -18,24 +18,25 @@ namespace {
 
 using kernel::require;
 
-/// Sweeps before the first Newton attempt. They find the statuses of most contacts and cost less
-/// than one linear system.
+/// Number of sweeps before the first Newton attempt. These sweeps find the statuses of most
+/// contacts and cost less than one linear system.
 constexpr int first_sweeps = 20;
 /// Sweeps after the other methods have failed; doubled each time.
 constexpr int more_sweeps = 200;
-/// Linear systems of one Newton attempt: from a good start it converges within ten.
+/// Largest number of linear systems in one Newton attempt. From a good start ten suffice.
 constexpr int newton_systems = 30;
-/// Factorisations of the interior point: twenty are usual, up to a hundred with lagged friction.
+/// Largest number of factorisations of the interior point. Usually twenty suffice; with lagged
+/// friction up to a hundred.
 constexpr int interior_factors = 300;
-/// The interior point stops if its merit is not halved in this many steps.
+/// The interior point stops if this many steps do not halve its merit.
 constexpr int steps_without_progress = 100;
-/// Number of contacts up to which Lemke's table is cheaper than the interior point, number up to
-/// which it is tried at all (seconds), and largest number of pivots per contact; ten are many.
+/// Limits for Lemke's method: contacts up to which it is cheaper than the interior point; contacts
+/// up to which it is tried (seconds); pivots per contact.
 constexpr Eigen::Index few_contacts = 40;
 constexpr Eigen::Index many_contacts = 250;
 constexpr int pivots_per_contact = 50;
-/// Merit of the interior point at the first Newton attempt, ratio of merits and number of steps
-/// before the next attempt, and number of linear systems per attempt.
+/// Handover from interior point to Newton: merit at the first Newton attempt; ratio of merits and
+/// number of steps before the next; linear systems per attempt.
 constexpr double first_handover = 1e-2;
 constexpr double handover_ratio = 0.1;
 constexpr int steps_per_handover = 10;
@@ -95,15 +96,15 @@ class Driver {
     if (!ended()) run_interior_point();
     if (!ended() && !is_small && planar_contacts > 0 && planar_contacts <= many_contacts)
       run_lemke();
-    // From the best result, a few sweeps may find the statuses that Newton's method did not. From
-    // the end of the earlier sweeps, many may be needed.
+    // Few sweeps from the best result may find the statuses that Newton's method did not find. Many
+    // sweeps may be needed from the iterate at which earlier sweeps ended.
     if (!ended()) finish(best_, more_sweeps);
     for (int sweeps = more_sweeps; !ended() && sweeps_left() > 0; sweeps *= 2) {
       swept = finish(std::move(swept), sweeps);
     }
   }
 
-  /// Sweeps, then tries Newton from there.
+  /// Sweeps, then tries Newton's method from the resulting iterate.
   /// @return the iterate after the sweeps
   Iterate finish(Iterate from, int sweeps) {
     Iterate swept = sweep(std::move(from), std::min(sweeps, sweeps_left()));
@@ -165,7 +166,7 @@ class Driver {
     }
   }
 
-  /// Tolerance of the scaled merit; the factor leaves room for the natural map in the caller's
+  /// Tolerance of the scaled merit. The factor 0.1 is a margin for the natural map in the caller's
   /// units.
   double scaled_tolerance() const { return 0.1 * options_.tolerance; }
 

@@ -26,8 +26,8 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int halving_limit = 40;
-/// Relative distance of F_t from μ F_N that counts as at the limit. It exceeds the errors of
-/// Newton's method and of roots, so that a path that only touches the limit does not slip.
+/// F_t counts as at its limit if its relative distance from μ F_N is below this value. It exceeds
+/// numerical errors, so that a path that only touches the limit does not slip.
 constexpr double limit_rounding = 1e-10;
 
 /// Rejects laws that these equations do not contain.
@@ -50,8 +50,9 @@ bool slips_at_the_rim(const linkage::Linkage& model) {
   return std::holds_alternative<kernel::laws::MindlinDeresiewiczFriction>(model.law.friction);
 }
 
-/// Verifies that a law with the trait point_contact has Hertz's force, which the equations assume.
-/// @param p at ΔT = 0
+/// The equations assume Hertz's force. This function checks that a normal law with the trait
+/// point_contact has it.
+/// @param p parameters at ΔT = 0
 void require_hertz(const linkage::Linkage& model, const Parameters& p) {
   const double depth = 1e-3 * model.radial_clearance();
   const double expected = normal_force(p, depth);
@@ -85,7 +86,8 @@ Equilibrium start(const linkage::Linkage& model, const Equations& equations, dou
   model.validate();
   validate_laws(model);
   const int side = loaded_side(model, contact_angle);
-  // Rigid bodies first. Then each spring deflects by the force (f, 0), from moments about A.
+  // The position of rigid bodies comes first; moments about A then give the force (f, 0), which
+  // deflects each spring.
   const JointPoint rigid = joint_point(model, 0.0, side, contact_angle);
   Equilibrium at;
   at.p = parameters(model, 0.0);
@@ -106,8 +108,9 @@ Equilibrium start(const linkage::Linkage& model, const Equations& equations, dou
   return at;
 }
 
-/// Root of a function that is < 0 at `before` and >= 0 at `after`: false position (Illinois).
-/// `value(x, y)` returns whether y could be computed. Returns a point with value >= 0, or NaN.
+/// Finds the root of a function that is < 0 at `before` and >= 0 at `after` by false position
+/// (Illinois method). `value(x, y)` returns whether it could compute y. The result has value >= 0,
+/// or is NaN.
 template <class Value>
 double root(double before, double value_before, double after, double value_after, Value&& value) {
   double low = std::min(value_before, 0.0);
@@ -152,7 +155,8 @@ class PathFollower {
     sign_ = contact_angle < 0.0 ? -1.0 : 1.0;
     side_ = equations_.moment(now_.z) < 0.0 ? -1.0 : 1.0;
     if (compliance_ == TangentialCompliance::mindlin && slips_at_the_rim(model)) {
-      // Loaded at a constant ratio of both forces, as in loaded_state(): no annulus has slipped.
+      // Both forces have grown at a constant ratio, as in loaded_state(), so no annulus has
+      // slipped.
       partial_.friction_coefficient = mu_;
       partial_.step(now_.p, now_.z[dep], -1.5 * now_.z[ft] / now_.stiffness(), partial_.memory);
       is_partial_ = true;
@@ -162,7 +166,7 @@ class PathFollower {
     loop_.points.push_back(point());
   }
 
-  /// Decides between stick and slip when ΔT starts to change towards `to`.
+  /// Decides whether the contact sticks or slips when ΔT starts to change towards `to`.
   void turn(double to) {
     heading_ = to > now_.p.temperature_change ? 1.0 : -1.0;
     if (is_partial_) {
@@ -229,7 +233,8 @@ class PathFollower {
 
   enum class Outcome : unsigned char { arrives, turns, separates, fails };
 
-  /// One step towards `to` in the current motion, up to the first event; sets sign_ if slip starts.
+  /// Attempts one step towards `to` in the current motion. It ends at the first event; sets sign_
+  /// if slip starts.
   Outcome attempt(double to, Equilibrium& next) {
     next = now_;
     if (!reach(to, next)) return Outcome::fails;
@@ -247,12 +252,14 @@ class PathFollower {
       }
       return find(next, [this](const Equilibrium& at) { return slip_rate(at); });
     }
-    // Sign of the exceeded limit; the force at the start may be at the opposite limit.
+    // Sign of the friction limit that F_t exceeds. At the start of the step, F_t may be at the
+    // opposite limit.
     const double sign = next.z[ft] < 0.0 ? -1.0 : 1.0;
     if (!(excess(sign, next) > limit_rounding * mu_ * next.normal())) return outcome;
     sign_ = sign;
     if (excess(sign, now_) > -limit_rounding * mu_ * now_.normal()) {
-      // Already at the limit: either slips from here, or leaves the limit and returns later.
+      // F_t is already at the limit. Either slip starts here, or F_t leaves the limit and returns
+      // later.
       if (!(slip_rate(now_) < 0.0)) return Outcome::fails;
       next = now_;
       return Outcome::turns;
@@ -271,8 +278,8 @@ class PathFollower {
     return sign * at.z[ft] - mu_ * at.normal();
   }
 
-  /// Plastic slide along F_t per kelvin of temperature change [m/K]; negative in slip, because
-  /// friction opposes it.
+  /// Plastic slide along F_t per kelvin of temperature change [m/K]. It is negative in slip,
+  /// because friction opposes the slide.
   double slip_rate(const Equilibrium& at) const {
     const double ratio = sign_ * mu_;
     const Vector rate = equations_.slipping_rate(ratio, at);
@@ -288,8 +295,8 @@ class PathFollower {
     return sign_ * heading_ * slide;
   }
 
-  /// Last point in contact before `to`, by bisection. Without force the contact direction is
-  /// undefined, so no convergence counts as no contact.
+  /// Finds the last point in contact before `to` by bisection. Without force the contact direction
+  /// is undefined. Points without convergence therefore count as points without contact.
   Equilibrium last_contact(double to) const {
     Equilibrium last = now_;
     const auto parts = [&](double change) {

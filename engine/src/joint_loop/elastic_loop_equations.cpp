@@ -38,7 +38,7 @@ Parameters parameters(const linkage::Linkage& model, double temperature_change) 
   p.k2 = axial(bc, p.l2);
   p.r1 = thermal(model.journal_radius, model.journal_thermal_expansion, temperature_change);
   p.r2 = thermal(model.bearing_radius, model.bearing_thermal_expansion, temperature_change);
-  // The curvature of the bearing has its physical sign, or the sign printed in the paper.
+  // The curvature of the bearing has either its physical sign or the sign printed in the paper.
   const bool internal = has(model.law.normal, kernel::laws::Trait::accepts_bulging_wall);
   const double sign = internal ? -1.0 : 1.0;
   const double sum = p.r2.value + sign * p.r1.value;
@@ -206,9 +206,10 @@ void Equations::evaluate_friction(const FrictionLine& line, const Parameters& p,
   }
 }
 
-/// Row of partial slip: F_t minus the law, divided by the stiffness at the start of the step [m].
-/// The law is linear between many kinks. Difference quotients over a millionth of its scales
-/// approximate its derivatives to that accuracy, so that Newton's method does not slow down.
+/// Row of partial slip: F_t minus the force of the law, divided by the stiffness at the start of
+/// the step [m]. The law is piecewise linear with many kinks. Difference quotients over a millionth
+/// of its scales approximate its derivatives to a millionth, which is accurate enough for Newton's
+/// method.
 void Equations::evaluate_partial(const FrictionLine& line, const Parameters& p, const Vector& z,
                                  double slide, Vector& residual, Matrix& jacobian) {
   constexpr double share = 1e-6;

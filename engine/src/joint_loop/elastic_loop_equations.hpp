@@ -12,8 +12,8 @@
 
 namespace statejump::joint_loop::detail {
 
-/// Unknowns, in this order. The equations are in the order of elastic_loop()'s documentation, the
-/// axial ones first.
+/// Unknowns, in this order. The equations follow the order in the documentation of elastic_loop(),
+/// beginning with the axial equations.
 enum Unknown { e1, e2, th2, th4, dep, psi, ft };
 enum Equation { axial1, axial2, across1, across2, closure_x, closure_y, friction };
 using Vector = Eigen::Matrix<double, 7, 1>;
@@ -42,8 +42,8 @@ inline Eigen::Vector2d across(const Eigen::Vector2d& u) {
   return {-u.y(), u.x()};
 }
 
-/// Hertz's force. A negative depth gives the mirrored tension, which only serves root finding: it
-/// indicates loss of contact.
+/// Hertz's normal force. For a negative depth it is the mirrored tension, which only serves root
+/// finding and indicates loss of contact.
 inline double normal_force(const Parameters& p, double depth) {
   return numerics::hertz_force(p.hertz.value, depth);
 }
@@ -67,8 +67,8 @@ struct Equilibrium {
 };
 
 /// Slide of journal relative to bearing, ∫ (R2 − R1 + δ) dψ + (R1 − δ/2) dθ4 − (R2 + δ/2) dθ2, with
-/// its derivatives at the end. The part with the radii at ΔT = 0 is a function of the state, so no
-/// rounding accumulates. The rest is small and uses the trapezoidal rule.
+/// its derivatives at the end. The part with the radii at ΔT = 0 is a function of the state and
+/// accumulates no rounding. The small remainder uses the trapezoidal rule.
 class Slide {
  public:
   explicit Slide(const linkage::Linkage& model)
@@ -117,7 +117,7 @@ class Slide {
   double r1_, r2_;
 };
 
-/// Partial slip in one step: force as a function of slide and depth.
+/// Partial slip in one step: the tangential force as a function of slide and depth.
 struct PartialSlip {
   double friction_coefficient = 0.0;
   kernel::PartialSlipMemory memory;  ///< at the start of the step
@@ -131,7 +131,8 @@ struct PartialSlip {
   }
 };
 
-/// Equation of friction: F_t = ratio F_N, no slip since `from`, or partial slip since then.
+/// Equation of friction: either F_t = ratio F_N, or no slip since the state `from`, or partial slip
+/// since that state.
 struct FrictionLine {
   bool sticks = false;
   double ratio = 0.0;
@@ -146,8 +147,8 @@ class Equations {
  public:
   explicit Equations(const linkage::Linkage& model);
 
-  /// Whether the contact force exceeds rounding: at a hundred times the rounding of the spring's
-  /// force its direction has an error of one percent.
+  /// Whether the contact force exceeds rounding. At a hundred times that rounding, its direction
+  /// has an error of one percent.
   bool touches(const Equilibrium& at) const { return at.normal() > 100.0 * force_rounding_; }
 
   const Slide& slide() const { return slide_; }
@@ -162,7 +163,7 @@ class Equations {
  private:
   void evaluate(const FrictionLine& line, const Parameters& p, const Vector& z, Vector& residual,
                 Matrix& jacobian) const;
-  /// The equation of friction alone; the other entries of its row must be 0.
+  /// Writes the equation of friction only. Other entries of its row must be 0.
   void evaluate_friction(const FrictionLine& line, const Parameters& p, const Vector& z,
                          Vector& residual, Matrix& jacobian) const;
   static void evaluate_partial(const FrictionLine& line, const Parameters& p, const Vector& z,

@@ -15,7 +15,8 @@ using numerics::change_between;
 
 namespace {
 
-/// Follows the path. `arc` is the constant of the current rolling motion.
+/// Follows the path. `arc` is the value of rolling_arc() that the current rolling motion keeps
+/// constant.
 class PathFollower {
  public:
   PathFollower(const linkage::Linkage& model, int side, double contact_angle)
@@ -24,13 +25,13 @@ class PathFollower {
     arc_ = rolling_arc(model_, now_);
   }
 
-  /// State at ΔT after a step so small that φ is monotone.
+  /// State at ΔT. The step to ΔT must be so small that φ is monotone.
   JointPoint next(double temperature_change) const {
     const double wanted = std::clamp(rolling_angle(temperature_change), -limit_, limit_);
     return joint_point(model_, temperature_change, side_, wanted);
   }
 
-  /// Whether rolling from the current state to ΔT would leave the friction cone.
+  /// Whether φ would leave the friction cone if the joint rolled from the current state to ΔT.
   bool slips(double temperature_change) const {
     return arc_at(temperature_change, limit_) < arc_ || arc_at(temperature_change, -limit_) > arc_;
   }
@@ -50,7 +51,8 @@ class PathFollower {
     return rolling_arc(model_, joint_point(model_, temperature_change, side_, angle));
   }
 
-  /// φ in the cone at which the arc equals the rolling constant; the arc grows with φ.
+  /// Angle φ in the friction cone at which rolling_arc() has its constant value. The arc grows with
+  /// φ.
   double rolling_angle(double temperature_change) const {
     if (arc_at(temperature_change, limit_) <= arc_) return limit_;
     if (arc_at(temperature_change, -limit_) >= arc_) return -limit_;
@@ -89,7 +91,7 @@ JointPoint joint_point(const linkage::Linkage& model, double temperature_change,
   const Vector2d d(c * std::cos(contact_angle), c * std::sin(contact_angle));
   const Vector2d w = Vector2d(model.frame_length, 0.0) - d;
   const double length = w.norm();
-  // Foot of B on w and its height; avoids an arc cosine near its ends.
+  // Foot of the perpendicular from B on w, and its height. An arc cosine is inaccurate near ±1.
   const double x = (length * length + (l1 - l2) * (l1 + l2)) / (2.0 * length);
   const double y = std::sqrt((l1 - x) * (l1 + x));
   const Vector2d along = w / length;
@@ -120,7 +122,8 @@ int loaded_side(const linkage::Linkage& model, double contact_angle) {
           "> 0 N m/rad, else statics leaves the position within the play undetermined");
   require(std::abs(contact_angle) <= std::atan(model.friction_coefficient()), "contact_angle",
           contact_angle, "[-atan(mu), atan(mu)] rad");
-  // The sign of M must be the assumed one; if neither sign fits, the contact is unloaded.
+  // The resulting sign of M must equal the assumed sign. If this holds for neither sign, the
+  // contact is unloaded.
   int side = 0;
   for (const int candidate : {-1, 1}) {
     if (candidate * joint_point(model, 0.0, candidate, contact_angle).spring_moment > 0.0) {
@@ -153,7 +156,7 @@ RigidLoop rigid_loop(const linkage::Linkage& model, const thermal::Program& prog
   bool first = true;
   const auto event = [&loop](const JointPoint& point) { loop.events.push_back(point); };
   for (const thermal::Branch& branch : thermal::monotone_branches(program)) {
-    // Rolling resumes at every corner: a reversal brings φ back into the cone.
+    // The joint rolls again after a corner: a reversal brings φ back into the friction cone.
     bool fresh = true;
     for (int i = 1; i <= samples; ++i) {
       const double from = follower.now().temperature_change;

@@ -8,8 +8,8 @@
 
 namespace statejump::linear {
 
-/// LU factors of a sparse complex matrix with a constant pattern; the complex counterpart of
-/// SparseFactor.
+/// LU factors of a sparse complex matrix with a constant pattern. The class is the complex
+/// counterpart of SparseFactor.
 class ComplexFactor {
  public:
   ComplexFactor();
@@ -19,10 +19,11 @@ class ComplexFactor {
   ComplexFactor(const ComplexFactor&) = delete;
   ComplexFactor& operator=(const ComplexFactor&) = delete;
 
-  /// Orders a square, compressed pattern. False if the diagonal has a zero in every ordering.
+  /// Computes a fill-reducing order of a square, compressed pattern. Returns false if every order
+  /// has a zero on the diagonal.
   bool analyze(const Eigen::SparseMatrix<double>& pattern);
-  /// Factors a matrix with these entries of the pattern, in order. The pivot positions are those of
-  /// the first factorization. False if a pivot is zero.
+  /// Factors a matrix whose entries are `values`, in the order of the pattern. The pivot positions
+  /// are those of the first factorization. Returns false if a pivot is zero.
   bool factorize(const std::complex<double>* values);
   /// Solves in place.
   void solve(Eigen::VectorXcd& x) const;

@@ -22,15 +22,16 @@ namespace {
 using numerics::raise;
 using Matrix = Eigen::Ref<const Eigen::SparseMatrix<double>>;
 
-/// Fill of L over the fill that AMD predicted, above which COLAMD is tried as well.
+/// If the fill of L divided by the fill that AMD predicted exceeds this ratio, COLAMD is tried as
+/// well.
 constexpr double exceeded_fill = 2.0;
-/// Positions over nonzero entries up to which a new pattern has the positions of the last one as
-/// well. Iterates with other zeros then share an order; more positions fill the factors too much.
+/// A new pattern also gets the positions of the last one, if its positions divided by its nonzero
+/// entries do not exceed this ratio. Iterates with different zeros then share an order.
 constexpr double widest = 1.5;
 /// Columns that a thread takes at once.
 constexpr std::size_t columns_at_once = 20000;
 
-/// Whether a permutation is odd: a cycle of length n is n - 1 transpositions.
+/// Whether a permutation is odd. A cycle of length n consists of n - 1 transpositions.
 bool odd(const int* permutation, int size) {
   std::vector<bool> seen(static_cast<std::size_t>(size), false);
   bool is_odd = false;
@@ -48,8 +49,8 @@ bool odd(const int* permutation, int size) {
 struct SparseFactor::Factors {
   Factors() {
     klu_defaults(&common);
-    // Initial size of the factors over the entries of the matrix. The default of KLU is ten times
-    // as much, gigabytes for a large truss. KLU enlarges the factors on demand.
+    // Initial memory of the factors, as a multiple of the memory of the matrix entries. KLU's
+    // default, ten times this value, is gigabytes for a large truss. KLU enlarges it on demand.
     common.initmem = 1.0;
   }
   Factors(const Factors&) = delete;
@@ -66,7 +67,7 @@ struct SparseFactor::Factors {
   }
 
   /// Computes factors of a small matrix in the order of COLAMD, and keeps them if they have fewer
-  /// entries. AMD's order fills far more than predicted if rows are exchanged for pivots.
+  /// entries. In AMD's order, row exchanges for pivots cause far more fill than predicted.
   bool choose_order(double* values) {
     const std::shared_ptr<const Order> first = now.order;
     const double foreseen = first->symbolic->lnz;  // negative for COLAMD, which predicts no fill
@@ -82,12 +83,13 @@ struct SparseFactor::Factors {
     return choose_pivots(now.order->columns(), now.order->rows(), values);
   }
 
-  /// Whether every pivot exceeds the rounding of its column, within its diagonal block.
-  /// @param growth possible growth of rounding errors before the pivot
+  /// Whether every pivot exceeds the rounding errors of its column within the same diagonal block.
+  /// @param growth factor by which rounding errors may have grown before the pivot
   bool has_pivots(const Matrix& matrix, double growth) const {
     const double least = singular_pivot * growth;
     const double* pivots = static_cast<const double*>(now.numeric->Udiag);
-    // KLU divides every row by its largest entry, in the order of the pivots.
+    // KLU divides every row by its largest entry. It stores these entries in the order of the
+    // pivots.
     const double* row_size = now.numeric->Rs;
     std::atomic<bool> has = true;
     for (int block = 0; block < now.order->symbolic->nblocks; ++block) {
@@ -110,9 +112,9 @@ struct SparseFactor::Factors {
     return has;
   }
 
-  /// Factors a matrix of the same pattern with the last pivots. False if rows are multiplied by
-  /// more than `most`, or if a pivot does not exceed the rounding amplified by that factor. New
-  /// pivots then show whether the matrix is singular.
+  /// Factors a matrix of the same pattern with the last pivots. Returns false if the elimination
+  /// multiplies a row by more than `most`, or if a pivot does not exceed rounding times that
+  /// factor. New pivots then show whether the matrix is singular.
   bool keeps_pivots(int* columns, int* rows, double* values, const Matrix& matrix, double most) {
     if (now.numeric == nullptr) return false;
     if (halves.are_halved()) {
@@ -127,8 +129,8 @@ struct SparseFactor::Factors {
     return growth <= most && has_pivots(matrix, growth * growth);
   }
 
-  /// The largest entry of L; NaN if any entry is NaN. Reads KLU's storage, in which the rows of a
-  /// column precede its entries, because klu_extract() copies all of L.
+  /// The largest entry of L, or NaN if any entry is NaN. It is read from KLU's storage (rows of a
+  /// column, then entries), because klu_extract() would copy L.
   double largest_of_lower() const {
     double largest = 0.0;
     for (int block = 0; block < now.order->symbolic->nblocks; ++block) {
@@ -172,8 +174,8 @@ struct SparseFactor::Factors {
       }
     }
 
-    /// Copies the entries of a matrix to their positions. False if an entry has no position, or if
-    /// less than half of the positions are used, so that a new order pays off.
+    /// Copies the entries of a matrix to their positions. Returns false if an entry has no
+    /// position, or if less than half of the positions are used: a new order then saves time.
     bool take(const Matrix& matrix, std::vector<double>& values) const {
       values.assign(rows.size(), 0.0);
       std::size_t used = 0;
@@ -192,11 +194,12 @@ struct SparseFactor::Factors {
     }
   };
 
-  /// AMD orders the pattern of the matrix plus its transpose, with the least fill if pivots stay on
-  /// the diagonal. COLAMD bounds the fill for any row exchanges.
+  /// AMD orders the pattern of the matrix plus its transpose; its fill is smallest if all pivots
+  /// stay on the diagonal. COLAMD bounds the fill for any row exchanges.
   enum class Ordering : unsigned char { amd, colamd };
 
-  /// Order of a pattern. KLU's C interface allocates and frees its own objects.
+  /// Order of a pattern. The object in it belongs to KLU's C interface, which allocates and frees
+  /// it.
   struct Order {
     Order(int size, Pattern of, Ordering ordering, klu_common common) : pattern(std::move(of)) {
       common.ordering = ordering == Ordering::amd ? 0 : 1;
@@ -235,8 +238,8 @@ struct SparseFactor::Factors {
     }
   };
 
-  /// An order with the last factors in it. Entries that are zero at some iterates make the pattern
-  /// of a truss alternate, often between the first and the later iterations of each solve.
+  /// An order, with the last factors that use it. Entries that are zero at some iterates make the
+  /// pattern alternate, often between the first and the later iterations of a solve.
   struct Kept {
     std::shared_ptr<const Order> order;    ///< Shared and only read.
     std::shared_ptr<const Order> settled;  ///< Order that COLAMD did not improve.
@@ -269,8 +272,8 @@ struct SparseFactor::Factors {
     return std::nullopt;
   }
 
-  /// Makes current the factors whose pattern has a place for every entry of a small matrix: the
-  /// present ones, else the ones used last, else none in a new order.
+  /// Selects factors whose pattern has a position for every entry of a small matrix. It prefers the
+  /// present factors, then those used last. If none fit, it starts a new order.
   void choose_kept(const Matrix& matrix) {
     if (now.order != nullptr && now.order->pattern->take(matrix, entries)) return;
     if (now.order != nullptr) others.push_front(std::move(now));
@@ -294,7 +297,7 @@ struct SparseFactor::Factors {
     if (others.size() > most_others) others.pop_back();
   }
 
-  /// Most orders of a small matrix whose factors are kept beside the current ones.
+  /// Largest number of further orders of a small matrix that are kept with their factors.
   static constexpr std::size_t most_others = 4;
 
   klu_common common{};
@@ -353,7 +356,7 @@ double SparseFactor::solutions_per_factorization() const {
 int SparseFactor::determinant_sign() const {
   Factors& f = *factors_;
   if (f.size == 0) return 1;
-  // Rows are divided by positive numbers; both permutations make the matrix block triangular.
+  // Rows are divided by positive numbers, so only both permutations change the determinant's sign.
   if (!f.now.odd_permutation) {
     f.now.odd_permutation =
         odd(f.now.numeric->Pnum, f.size) != odd(f.now.order->symbolic->Q, f.size);

@@ -9,7 +9,7 @@ namespace statejump::linear {
 
 namespace {
 
-/// KLU takes complex numbers as pairs, without const, but does not write to them.
+/// KLU expects complex numbers as non-const pairs of doubles, but does not write to them.
 double* pairs(const std::complex<double>* values) {
   return const_cast<double*>(reinterpret_cast<const double*>(values));
 }

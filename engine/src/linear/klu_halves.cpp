@@ -17,7 +17,7 @@ namespace statejump::linear {
 
 namespace {
 
-/// Largest separator: one column per this many. Its columns are long, and their factorization waits
+/// The separator has at most one column per this many columns of the matrix. Its long columns wait
 /// for both halves.
 constexpr int columns_of_one = 1000;
 
@@ -27,8 +27,8 @@ std::size_t index(int i) {
 
 enum ColumnSet : unsigned char { first_half, second_half, separator };
 
-/// Set of every column. Columns of the second half that share a row with the first half form the
-/// separator.
+/// Assigns every column to a set. A column of the second half that shares a row with the first half
+/// belongs to the separator.
 std::vector<ColumnSet> cut(int size, const int* columns, const int* rows) {
   const numerics::Lists rows_of({columns, columns + size + 1}, {rows, rows + columns[size]});
   const numerics::Lists columns_of = rows_of.inverted(index(size));
@@ -136,7 +136,7 @@ bool HalvedFactors::refactor(const int* columns, const int* rows, const double* 
   const std::size_t length = index(n);
   row_size_.assign(length, 0.0);
   work_.assign(length, 0.0);
-  // The largest entries of rows, of the first columns and of the others.
+  // Largest entry of each row: one thread per half of the columns.
   in_parallel(2, [&](std::size_t half) {
     double* largest = half == 0 ? row_size_.data() : work_.data();
     const int middle = columns[n / 2];

@@ -19,8 +19,8 @@ namespace {
 namespace odeint = boost::numeric::odeint;
 using Vector = AllTerms::Vector;
 
-/// Scales of the components, so that one tolerance serves all: the play, the play times the angular
-/// frequency of the stiffer link, E A times the play.
+/// Scales of all components for one tolerance: the play for positions, the play times the stiffer
+/// link's angular frequency for speeds, E A times the play for energies.
 Vector scales(const Constants& k, double clearance, double angular_frequency) {
   Vector result;
   result.fill(k.ab.rigidity * clearance);
@@ -50,7 +50,8 @@ class AdaptiveRun {
       memory_.impact_speed = std::max(memory_.impact_speed, k_.law.smallest_impact_speed);
     }
     for (const Branch& branch : thermal::monotone_branches(program)) integrate(branch);
-    // The last of evenly spaced samples may be one rounding before or after the end.
+    // Rounding may put the last of the evenly spaced samples just before or after the end of the
+    // run.
     if (run_.samples.back().time < time_ * (1.0 - 1e-12)) record(time_, heat_, y_);
     run_.energy_residue = energy_residue(model_, run_.samples.front(), run_.samples.back());
     return std::move(run_);

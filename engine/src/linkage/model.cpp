@@ -106,7 +106,7 @@ State initial_state(const Linkage& model, Start start, double temperature_rate,
           "0 to the clearance [m]: no penetration at the start");
   const double l1 = model.link_ab.stress_free_length;
   const double l2 = model.link_bc.stress_free_length;
-  // The triangle of the links and w = AC − d; see joint_point() in joint_loop.hpp.
+  // The links form a triangle with w = AC − d; see joint_point().
   const Vector2d w = Vector2d(model.frame_length, 0.0) - eccentricity;
   const double length = w.norm();
   const double x = (length * length + (l1 - l2) * (l1 + l2)) / (2.0 * length);

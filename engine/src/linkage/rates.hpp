@@ -17,7 +17,7 @@
 
 namespace statejump::linkage::detail {
 
-/// Components of the state vector after the tips' positions (AB 0 and 1, BC 2 and 3) and their
+/// Indices in the state vector after the tips' positions (AB 0 and 1, BC 2 and 3) and their
 /// velocities (4 to 7).
 enum Component : std::size_t {
   thermal_work = 8,
@@ -28,7 +28,7 @@ enum Component : std::size_t {
   slide = 13,  ///< of journal relative to bearing in this step; for a friction law with memory
 };
 
-/// Links and elastic contact only, no couple on a link: the most frequent case.
+/// Terms of the most frequent case: links and elastic contact only, without couples on the links.
 struct BasicTerms {
   static constexpr bool all_terms = false;
   using Vector = std::array<double, 10>;
@@ -111,7 +111,7 @@ struct ContactPoint {
   double nx, ny, depth, approach_speed;
 };
 
-/// d|² − c², computed without a square root; > 0 in contact.
+/// The difference |d|² − c², computed without a square root. It is positive in contact.
 template <class Terms>
 double overlap(const Constants& k, const typename Terms::Vector& y, double temperature_change) {
   const double c = radii_at(k, temperature_change).clearance();
@@ -138,7 +138,7 @@ struct NormalForce {
   double force;  ///< with dissipation
 };
 
-/// @param impact_speed 0: the contact begins here, at its current approach speed
+/// @param impact_speed approach speed at the start of contact; 0: contact starts now
 inline NormalForce normal_force(const Constants& k, const ContactPoint& at, const Radii& radii,
                                 double impact_speed) {
   const kernel::laws::NormalState elastic = normal_state(k, at.depth, radii);
@@ -159,7 +159,7 @@ TurnRates turn_rates(const Constants& k, const typename Terms::Vector& y) {
           (bx * y[7] - y[3] * y[6]) / (bx * bx + y[3] * y[3])};
 }
 
-/// The contact in the plane, in the form of the kernel's tangential velocity laws.
+/// The planar contact in the form that the kernel's tangential velocity laws expect.
 template <class Terms>
 struct SpatialContact {
   kernel::JointContact contact;
@@ -186,7 +186,8 @@ inline const kernel::Vector3& joint_axis() {
   return z;
 }
 
-/// Speed [m/s] of journal relative to bearing along (−n_y, n_x), by the tangential velocity law.
+/// Speed [m/s] of the journal relative to the bearing along (−n_y, n_x), according to the
+/// tangential velocity law.
 template <class Terms>
 double sliding_speed(const Constants& k, const SpatialContact<Terms>& spatial,
                      const ContactPoint& at) {
@@ -198,9 +199,9 @@ double sliding_speed(const Constants& k, const SpatialContact<Terms>& spatial,
   return -at.ny * v.x() + at.nx * v.y();
 }
 
-/// Friction along (−n_y, n_x), first component.
-/// @param motion slide of the step [m] for a law with memory (dissipation in J), else speed [m/s]
-/// (dissipation in W)
+/// Friction force; its first component acts along (−n_y, n_x).
+/// @param motion slide of the step [m] for a law with memory (dissipation in J), otherwise speed
+/// [m/s] (dissipation in W)
 inline kernel::laws::FrictionResponse friction(const Constants& k, const NormalForce& normal,
                                                double motion, kernel::ContactHistory& history) {
   return kernel::laws::evaluate(
@@ -234,8 +235,8 @@ LinkForces link_forces(const LinkConstants& k, double x, double y, double vx, do
   return {ux, uy, inverse, -pull * ux, -pull * uy};
 }
 
-/// ∂V/∂ΔT [J/K] of the normal law at fixed depth, through the radii: central difference over a
-/// hundredth of a kelvin. Its error, 1e-9 of V per kelvin, affects only the energy balance.
+/// ∂V/∂ΔT [J/K] of the normal law at fixed depth due to expanding radii, as central difference over
+/// 0.01 K. Its error, 1e-9 of V per kelvin, affects only the energy balance.
 double radii_energy_rate(const Constants& k, double depth, double temperature_change);
 
 /// Forces and couples of the contact on the two links.
@@ -244,7 +245,8 @@ struct ContactEffect {
   double couple_ab = 0.0, couple_bc = 0.0;  ///< [N m]
 };
 
-/// Separate from rates(), so that rates() stays short for an open joint. Adds to the energy rates.
+/// Contact forces on the links; adds to the energy rates. Separate, so that rates() is short for an
+/// open joint.
 template <class Terms>
 [[gnu::noinline]] ContactEffect contact_effect(const Constants& k, const typename Terms::Vector& y,
                                                const Temperature& heat, const State& memory,

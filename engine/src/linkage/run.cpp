@@ -36,7 +36,7 @@ typename Terms::Vector step(const Constants& k, const Trajectory& trajectory, do
   return stage;
 }
 
-/// Root of |d| = c within a step that starts without contact, by bisection on its length.
+/// Finds |d| = c within a step that starts without contact, by bisection on the step length.
 template <class Terms>
 FirstContact locate(const Constants& k, const Trajectory& trajectory, double t, double h,
                     const typename Terms::Vector& y) {
@@ -143,7 +143,7 @@ class FixedStepRun {
 }  // namespace
 
 /// Largest step [s] for which the method does not amplify the links' axial motion: |λ| h <= 2.78,
-/// slightly inside its bounds on the real (2.785) and the imaginary axis (2.828).
+/// slightly inside the stability bounds on the real axis (2.785) and the imaginary axis (2.828).
 double stable_step(const Linkage& model) {
   const Constants k = constants(model);
   const double zeta = model.axial_damping_ratio;

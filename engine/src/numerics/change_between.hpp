@@ -9,23 +9,23 @@
 
 namespace statejump::numerics {
 
-/// Interval in which a condition changes: last point found where it is false, first where it is
-/// true.
+/// Interval in which a condition changes: the last point found false, and the first found true.
 struct Change {
   double before;
   double after;
 };
 
-/// Sixty halvings of an interval: below the rounding of a quantity measured over it.
+/// Sixty halvings reduce an interval to this fraction, below the rounding of quantities measured
+/// over it.
 constexpr double fine = 0x1p-60;
 
-/// Bisects between `before`, where a condition is false, and `after`, where it is true. Ends when
-/// both are neighbouring numbers or at most `tolerance` apart. `after` may be smaller than
-/// `before`. Uses Boost.Math's bisection with at most 200 halvings; an interval about zero needs
-/// more only for roots below 1e-60 of it.
+/// Bisects between `before`, where a condition is false, and `after`, where it is true. It ends
+/// when both points are neighbouring numbers, or at most `tolerance` apart. `after` may be smaller
+/// than `before`. Uses Boost.Math's bisection with at most 200 halvings; they suffice for every
+/// root that is larger than 1e-60 of the interval.
 /// @param holds condition(x); not evaluated at the ends
-/// @param tolerance in the unit of the ends; 0: neighbouring numbers
-/// @throws std::logic_error if an end is not finite
+/// @param tolerance in the unit of `before` and `after`; 0: ends at neighbouring numbers
+/// @throws std::logic_error if `before` or `after` is not finite
 template <class Condition>
 Change change_between(double before, double after, Condition&& holds, double tolerance = 0.0) {
   if (before == after) return {before, after};

@@ -12,7 +12,7 @@ namespace statejump::numerics {
 class Lists {
  public:
   Lists() = default;
-  /// @param begins first index of each list, then the end of the last
+  /// @param begins index of the first number of each list, followed by the end of the last list
   Lists(std::vector<std::size_t> begins, std::vector<int> numbers)
       : numbers_(std::move(numbers)), begin_(std::move(begins)) {}
 
@@ -44,9 +44,10 @@ class Lists {
   std::vector<std::size_t> begin_{0};
 };
 
-/// Items in breadth-first order. When a search ends, it restarts at the first item not yet visited.
-/// @param groups_of the groups of every item
-/// @param items_of the items of every group
+/// Items in breadth-first order. When no more items can be reached, the search restarts at the
+/// first item not yet visited.
+/// @param groups_of list of groups for every item
+/// @param items_of list of items for every group
 inline std::vector<int> breadth_first(const Lists& groups_of, const Lists& items_of) {
   std::vector<int> order;
   order.reserve(groups_of.size());

@@ -5,7 +5,7 @@
 
 namespace statejump::numerics {
 
-/// Sets `largest` to the maximum of both; NaN if either is NaN.
+/// Sets `largest` to the maximum of both arguments, or to NaN if either is NaN.
 inline void raise(double& largest, double value) {
   if (!(value <= largest) && !std::isnan(largest)) largest = value;
 }

@@ -21,7 +21,8 @@ inline void add_up(RestSet& set) {
   }
 }
 
-/// RestStudy of sets with union and intersection; `describe` converts one into a RestSet.
+/// RestStudy of all sets, their union and their intersection. `describe` converts a set into a
+/// RestSet.
 template <class Set, class Describe, class Unite, class Intersect>
 RestStudy study_of(const std::vector<Set>& sets, Describe&& describe, Unite&& unite,
                    Intersect&& intersect) {

@@ -26,7 +26,7 @@ struct CanSet {
   bool low_disc = false, high_disc = false;
 };
 
-/// Whether (along e, across, along z) lies in the sum of the friction cones about e and z.
+/// Whether the vector (fe, fw, fz) lies in the sum of the friction cones about e and z.
 bool in_sum(double fe, double fw, double fz, double alpha) {
   const double size = std::hypot(fe, fw, fz);
   const double s = std::sin(alpha), c = std::cos(alpha);
@@ -108,7 +108,7 @@ double can_diameter(const CanSet& set, double c, double b, std::array<Vector3d, 
 }
 
 RestSet can(const CanSet& set, double c, double b) {
-  // Nodes: the arcs of band, low rim and high rim, in this order.
+  // Nodes of the graph: arcs of band, low rim and high rim, in this order.
   const std::array<const Intervals*, 3> rows = {&set.band, &set.low_rim, &set.high_rim};
   std::vector<std::pair<int, Interval>> nodes;
   for (int row = 0; row < 3; ++row) {

@@ -70,7 +70,8 @@ struct Implicit {
     return {p, -slope(p).normalized()};
   }
 
-  /// Root on a grid line between points of different sign: one of their coordinates differs.
+  /// Root on a grid line between two points at which Γ has different signs. The points differ in
+  /// one coordinate.
   Vector2d root(const Vector2d& inside, const Vector2d& outside) const {
     const int k = inside.x() != outside.x() ? 0 : 1;
     Vector2d p = inside;
@@ -86,7 +87,7 @@ struct Implicit {
   }
 };
 
-/// A segment of a grid line: its lower end (i, j), along x (0) or y (1).
+/// A segment of a grid line: its lower end (i, j), and its direction x (0) or y (1).
 using GridEdge = std::array<int, 3>;
 
 // Rest sets.
@@ -254,7 +255,7 @@ struct CurveGrid {
   std::map<GridEdge, std::vector<GridEdge>> neighbours() const;
 };
 
-/// Each cell joins the roots on its sides in pairs, so every root has at most two neighbours.
+/// Each cell connects the roots on its sides in pairs. So every root has at most two neighbours.
 std::map<GridEdge, std::vector<GridEdge>> CurveGrid::neighbours() const {
   std::map<GridEdge, std::vector<GridEdge>> result;
   for (int j = 0; j < ny; ++j) {
@@ -269,8 +270,8 @@ std::map<GridEdge, std::vector<GridEdge>> CurveGrid::neighbours() const {
       }
       if (crossed.size() == 4 &&
           (surface.value(0.5 * (node(i, j) + node(i + 1, j + 1))) < 0.0) == corner[0]) {
-        // The middle belongs to corners 0 and 2, so corners 1 and 3 are separated, as listed.
-        // Otherwise rotate.
+        // If the cell's centre belongs to corners 0 and 2, the listed order separates corners 1 and
+        // 3. Otherwise rotate the list.
       } else if (crossed.size() == 4) {
         crossed = {3, 0, 1, 2};
       }
@@ -387,7 +388,8 @@ struct Profile {
             value, "finite, > 0 m");
     return value;
   }
-  /// Distance r of the centre in direction phi at contact with the wall at theta; else infinity.
+  /// Distance r of the centre in direction phi at which it touches the wall point at theta;
+  /// infinity if it never does.
   double first_touch(double theta, double phi) const {
     const double value = wall(theta);
     const double side = value * std::sin(theta - phi);
@@ -401,8 +403,10 @@ struct Profile {
   double refined_contact(const Vector2d& centre, double contact) const;
 };
 
-/// The wall point that limits the position most, refined by golden section search.
-/// @param least in: first_touch(phi, phi); out: smallest distance on the grid of samples
+/// Angle of the wall point that is touched first in direction phi, refined by golden section
+/// search.
+/// @param least on input first_touch(phi, phi), on output the smallest distance on the grid of
+/// samples
 double Profile::nearest_contact(double phi, double& least) const {
   double contact = phi;
   for (int i = -samples / 4; i <= samples / 4; ++i) {
@@ -434,9 +438,8 @@ double Profile::nearest_contact(double phi, double& least) const {
   return 0.5 * (low + high);
 }
 
-/// The minimum is accurate only to the square root of rounding, too coarse for the normal. The
-/// direction from wall to centre is normal to the wall; the secant method solves this tangency
-/// condition.
+/// A minimum is accurate only to the square root of rounding, too coarse for the normal. The
+/// direction from wall to centre is normal to the wall; the secant method solves this condition.
 double Profile::refined_contact(const Vector2d& centre, double contact) const {
   const auto tangency = [&](double theta) {
     const double h = 1e-4;

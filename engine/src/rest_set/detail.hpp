@@ -33,13 +33,13 @@ inline void check_length(double value, const char* name) {
   kernel::require(std::isfinite(value) && value > 0.0, name, value, "finite, > 0 m");
 }
 
-/// Closed interval; on a circle 0 <= a < period and b - a <= period.
+/// Closed interval from a to b. On a circle 0 <= a < period and b - a <= period.
 struct Interval {
   double a, b;
   double width() const { return b - a; }
 };
 
-/// Disjoint closed intervals, points included, on a line (period 0) or a circle.
+/// Disjoint closed intervals on a line (period 0) or a circle. An interval may be a single point.
 class Intervals {
  public:
   explicit Intervals(double period = 0.0, double tolerance = 0.0)
@@ -138,7 +138,8 @@ class Intervals {
   std::vector<Interval> list_;
 };
 
-/// Farthest pair, exact; pruned by the distance from the centre of the box.
+/// Exact farthest pair of points. Distances from the centre of the bounding box exclude most of
+/// them.
 template <class Points>
 double farthest_pair(const Points& points, std::size_t& first, std::size_t& second) {
   first = second = 0;

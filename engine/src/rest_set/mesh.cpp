@@ -37,7 +37,8 @@ Mesh welded(const Mesh& mesh, double tolerance) {
   Mesh result;
   result.project = mesh.project;
   result.normal = mesh.normal;
-  // Buckets as large as the tolerance; a neighbour may be in an adjacent one.
+  // Buckets are as large as the tolerance, so coincident vertices are in the same or in adjacent
+  // buckets.
   const double bucket = tolerance > 0.0 ? tolerance : 1.0;
   std::map<std::array<double, 3>, std::vector<int>> known;
   std::vector<int> index;
@@ -127,7 +128,7 @@ class MarchingTetrahedra {
     return found->second;
   }
 
-  /// Six tetrahedra around the diagonal of a cell, one per order of the three axes.
+  /// Divides a cell into six tetrahedra around its diagonal, one for each order of the three axes.
   void add_cell(const std::array<int, 3>& cell) {
     static constexpr int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2},
                                          {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};

@@ -25,7 +25,7 @@ std::vector<double> roots(const Cone& cone, const Vector3d& a, const Vector3d& b
   return result;
 }
 
-/// The part left (sign 1) or right (−1) of the line through a and b.
+/// The part of a polygon to the left (sign 1) or right (sign −1) of the line from a to b.
 Polygon clipped(const Polygon& polygon, const Plane& a, const Plane& b, double sign) {
   Polygon result;
   const auto side = [&](const Plane& p) { return sign * cross(b - a, p - a); };
@@ -145,7 +145,7 @@ void Region::arc(const Plane& a, const Plane& b, int depth, Polygon& result) con
   const double distance = reach(from, outward);
   if (!(distance < 4.0)) return;  // nearly flat: the chord suffices
   Plane middle = from + distance * outward;
-  // Roots on the smooth surface may be off the conic of the linear normals.
+  // Roots on the smooth surface need not lie on the conic that linear normals define.
   middle = middle.cwiseMax(0.0);
   if (middle.sum() > 1.0) middle /= middle.sum();
   arc(a, middle, depth - 1, result);

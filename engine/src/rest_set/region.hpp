@@ -10,7 +10,7 @@
 
 namespace statejump::rest_set::detail {
 
-/// Friction cone of one force: f = −F/|F|, G(n) = μ² (f·n)² − |n − (f·n) f|².
+/// Friction cone of one force F, with f = −F/|F| and G(n) = μ² (f·n)² − |n − (f·n) f|².
 struct Cone {
   Eigen::Vector3d axis;
   double mu;
@@ -26,7 +26,8 @@ inline double cone_angle(const Eigen::Vector3d& axis, const Eigen::Vector3d& n) 
   return std::atan2(axis.cross(n).norm(), axis.dot(n));
 }
 
-/// Part of [0, 1] for which a + s (b − a) is in the cone; empty if first > second.
+/// Interval of s within [0, 1] in which a + s (b − a) is in the cone. It is empty if first >
+/// second.
 struct Span {
   double a = 1.0, b = 0.0;
   bool empty() const { return a > b; }
@@ -34,7 +35,7 @@ struct Span {
 
 Span span_of(const Cone& cone, const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
-/// A point of a triangle: its weights for vertices 1 and 2.
+/// A point of a triangle, given by its weights for vertices 1 and 2.
 using Plane = Eigen::Vector2d;
 using Polygon = std::vector<Plane>;
 
@@ -44,11 +45,12 @@ inline double cross(const Plane& a, const Plane& b) {
 
 double area_of(const Polygon& polygon);
 
-/// Divides a convex polygon by a convex region: the part inside, and convex pieces of the rest.
+/// Divides a convex polygon by a convex region into the part inside the region, and convex pieces
+/// outside it.
 void cut(const Polygon& polygon, const Polygon& region, double least, Polygon& inside,
          std::vector<Polygon>& outside);
 
-/// The convex region of a triangle in which the interpolated normal is in a cone.
+/// The convex region of a triangle in which the interpolated normal lies in a friction cone.
 class Region {
  public:
   Region(const Cone& cone, const std::array<Eigen::Vector3d, 3>& normals)
@@ -58,17 +60,20 @@ class Region {
     return n_[0] + p.x() * (n_[1] - n_[0]) + p.y() * (n_[2] - n_[0]);
   }
 
-  /// Point where the normal is parallel to the cone's axis, if it is unique in the triangle.
+  /// Finds the point whose normal is parallel to the cone's axis. False if it does not exist or is
+  /// not unique.
   bool axis_point(Plane& point) const;
 
   /// @param spans of the sides 0-1, 1-2, 2-0
   Polygon polygon(const std::array<Span, 3>& spans) const;
 
  private:
-  /// Distance from a point inside to the boundary of the cone, in units of the direction.
+  /// Distance along a direction from a point inside the cone to its boundary, in multiples of the
+  /// direction vector.
   double reach(const Plane& from, const Plane& direction) const;
 
-  /// Appends points of the conic strictly between a and b; it lies to the right of a → b.
+  /// Appends points of the conic strictly between a and b. The conic lies to the right of the line
+  /// a → b.
   void arc(const Plane& a, const Plane& b, int depth, Polygon& result) const;
 
   Cone cone_;

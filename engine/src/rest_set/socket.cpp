@@ -38,7 +38,7 @@ struct CapCircle {
   }
 };
 
-/// An arc of a cap's circle on the boundary of a union or an intersection.
+/// An arc of a cap's circle that is part of the boundary of a union or an intersection of caps.
 struct BoundaryArc {
   std::size_t circle;
   Interval psi;
@@ -60,7 +60,7 @@ class Caps {
   RestSet all() const;
 
  private:
-  /// Part of circle i inside cap j: cos(psi - psi_j) >= tan(gamma/2)/tan(alpha).
+  /// Part of circle i that lies inside cap j: cos(psi - psi_j) >= tan(gamma/2)/tan(alpha).
   Intervals inside(std::size_t i, std::size_t j) const {
     Intervals result = circle_set();
     const double gamma = angle_between(circles_[i].axis, circles_[j].axis);
@@ -89,7 +89,7 @@ class Caps {
     return best;
   }
 
-  /// Angle between the directions of two arcs of different circles at their common point.
+  /// Angle between the tangents of two arcs of different circles at their common point.
   double corner(const BoundaryArc& arc, const BoundaryArc& following) const {
     const Vector3d point = end(arc);
     return angle_between(circles_[arc.circle].axis.cross(point),
@@ -177,7 +177,8 @@ RestSet Caps::any() const {
       if (angle <= largest) continue;
       largest = angle;
       result.diameter = 2.0 * c_ * std::sin(0.5 * angle);
-      // Along the great circle through both axes, outwards; opposite points if that is too far.
+      // Farthest points are on the great circle through both axes, on the outer sides, or opposite
+      // each other.
       const CapCircle& a = circles_[i];
       const double psi = i == j ? 0.0 : a.angle_of(-circles_[j].axis);
       const Vector3d first = a.at(psi);
@@ -221,8 +222,7 @@ RestSet Caps::all() const {
     middle += circles_[arcs[k].circle].at(0.5 * (arcs[k].psi.a + arcs[k].psi.b));
   }
   part.area = c_ * c_ * std::max(0.0, area);
-  // A farthest point is a corner, or it is on an arc, opposite its partner relative to the arc's
-  // centre.
+  // Each farthest point is a corner, or lies on an arc whose centre is between both points.
   const std::size_t corners = candidates.size();
   for (std::size_t i = 0; i < n; ++i) {
     const auto add = [&](double psi) {

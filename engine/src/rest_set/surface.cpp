@@ -132,7 +132,7 @@ class Cutter {
     return (1.0 - p.x() - p.y()) * normals_[t[0]] + p.x() * normals_[t[1]] + p.y() * normals_[t[2]];
   }
 
-  /// Moves a root of the linear normals to the root of the smooth surface.
+  /// Moves a root s found with linearly interpolated normals to the root on the smooth surface.
   double refined(const Cone& cone, const EdgeKey& edge, double s) const {
     if (!mesh_.normal || s <= 0.0 || s >= 1.0) return s;
     const Vector3d &a = mesh_.vertices[edge.first], &b = mesh_.vertices[edge.second];
@@ -207,9 +207,10 @@ class Cutter {
     }
   }
 
-  /// Nodes are (triangle, sort).
-  /// @param sort_of sort of a piece by its mask, −1: not in the set
-  /// @param linked whether sort k is connected through an edge with the given forces
+  /// Connects pieces to a rest set. Graph nodes are pairs (triangle, sort).
+  /// @param sort_of returns the sort of a piece from its mask of forces; −1: not in the set
+  /// @param linked returns whether pieces of sort k are connected through an edge with the given
+  /// forces
   template <class SortOf, class Linked>
   RestSet described(int sorts, SortOf&& sort_of, Linked&& linked, bool every = false) const {
     const std::size_t triangles = mesh_.triangles.size();
@@ -261,7 +262,7 @@ class Cutter {
       const Vector3d b = place(piece.triangle, Plane(0, 1)) - p0;
       to.part.area += area_of(piece.polygon) * a.cross(b).norm();
       const auto consider = [&](const Plane& p) {
-        // With several forces: the worst of the forces under which the component rests.
+        // Largest cone angle over all forces under which the piece allows rest.
         double worst = 0.0;
         for (std::size_t k = 0; k < cones_.size(); ++k) {
           if (!piece.mask[k]) continue;

@@ -11,8 +11,8 @@ namespace statejump::spring_slider {
 
 namespace {
 
-/// Segment that contains `time`: start_time <= time < end_time, or the last one after the end.
-/// `hint`, the result for the previous time, is tried first because times usually ascend. Throws
+/// Segment with start_time <= time < end_time; after the end, the last segment. `hint` is the index
+/// found for the previous time. It is tried first, because times usually ascend. Throws
 /// std::invalid_argument for a time in an omitted cycle.
 const Segment& segment_at(const std::vector<Segment>& segments, double time, std::size_t& hint) {
   const auto holds = [&](std::size_t i) {

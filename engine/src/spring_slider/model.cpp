@@ -36,8 +36,8 @@ void SpringSlider::validate() const {
 
 namespace {
 
-/// Position [m] at ΔT = 0 where friction balances a load [N], or at the stop if it is reached
-/// before.
+/// Position [m] at ΔT = 0 in which friction balances a load [N]. If a stop is in its way, the
+/// position is there.
 double rest_under(const SpringSlider& model, double load) {
   const double stiffness = link_stiffness(model, 0.0) + model.preload_stiffness;
   const double excess = -model.preload_force - load;
@@ -128,7 +128,8 @@ double sliding_displacement(const SpringSlider& model, double temperature_change
 }
 
 double sliding_temperature(const SpringSlider& model, double displacement, int direction) {
-  // E A (x_T − x) = g l_T with g = s f + P + k_p x is linear in ΔT: x_T = l0 α ΔT, l_T = l0 + x_T.
+  // The equation E A (x_T − x) = g l_T with g = s f + P + k_p x is linear in ΔT, because x_T = l0 α
+  // ΔT and l_T = l0 + x_T.
   const double rigidity = model.axial_rigidity();
   const double force = direction * model.friction_force + model.preload_force +
                        model.preload_stiffness * displacement;

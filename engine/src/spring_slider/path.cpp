@@ -20,8 +20,8 @@ int sign(double value) {
   return (value > 0.0) - (value < 0.0);
 }
 
-/// Follows the program branch by branch and writes the path. Its state is the open segment, the
-/// last event and the direction of the last slide.
+/// Follows the program branch by branch and writes the path. Its state consists of the segment not
+/// yet ended, the last event and the direction of the last slide.
 class PathFollower {
  public:
   /// `kept`: the cycles to keep, ascending.
@@ -52,7 +52,7 @@ class PathFollower {
     const int heating = sign(branch.end - branch.start);
     if (heating != heating_) close();
     heating_ = heating;
-    // The link pushes the block towards +x while its unloaded length grows.
+    // While its unloaded length grows, the link pushes the block towards +x.
     drive_ = heating * sign(model_.thermal_expansion);
     branch_ = &branch;
     if (drive_ != 0) {
@@ -72,7 +72,8 @@ class PathFollower {
     ++open_.cycle;
   }
 
-  /// Includes the force at the end of the last segment, after which no segment starts.
+  /// Ends the path: records the force at the end of the last segment, which no next segment
+  /// records.
   void end() {
     const Segment& last = path_.segments.back();
     note_force(last, last.end_time);
@@ -86,7 +87,7 @@ class PathFollower {
     open_.end_displacement = displacement(model_, open_, temperature_change);
   }
 
-  /// Ends the open segment and starts the next one in the same stage.
+  /// Ends the current segment and starts the next segment in the same stage.
   void close() {
     const double end = open_.end_temperature_change;
     const double work = thermal_work(model_, open_, end);
@@ -161,9 +162,11 @@ class PathFollower {
     enter(kind, drive_ == first_slide_ ? Stage::S2 : Stage::S5, BlockMotion::slide, drive_);
   }
 
-  /// @param friction_sign direction in which friction is at its limit there; 0: the play is open
+  /// @param friction_sign direction in which friction is at its limit when the stop is loaded; 0:
+  /// the play is open
   void load_stop(int friction_sign) {
-    // Set exactly, so that x is the clearance itself and leaving the stop is an exact comparison.
+    // x is set to the clearance without rounding, so that an exact comparison shows when the block
+    // leaves the stop.
     open_.end_displacement = drive_ * model_.clearance(drive_);
     enter(EventKind::stop_reached, stage_at_stop(drive_), BlockMotion::stop, drive_);
     open_.friction_sign = friction_sign;
@@ -188,7 +191,8 @@ class PathFollower {
     enter(EventKind::play_closed, stage, BlockMotion::stick, 0);
   }
 
-  /// Moves the block to the edge of a soft stop and changes its region.
+  /// Passes the edge of a soft stop: switches between the models inside and outside the stop, see
+  /// in_region().
   void pass_soft_stop(int side) {
     open_.end_displacement = side * model_.clearance(side);
     enter(open_.region == 0 ? EventKind::stop_reached : EventKind::stop_left, open_.stage,
@@ -196,7 +200,8 @@ class PathFollower {
     open_.region = open_.region == 0 ? side : 0;
   }
 
-  /// ΔT at which the block starts to slide from x, or its force on a stop falls below that value.
+  /// ΔT at which a block at x starts to slide in `direction`. At a stop: ΔT at which the stop force
+  /// vanishes.
   double onset_from(double x, int direction) const {
     return sliding_temperature(in_region(model_, open_.region), x, direction);
   }
@@ -217,13 +222,14 @@ class PathFollower {
     return last_slide_ * force >= 0.0 ? Stage::S3 : Stage::S4;
   }
 
-  /// Whether ΔT is before the end of the branch, or already passed. False for NaN: no such event.
+  /// Whether an event at ΔT occurs before the end of the branch. False for NaN, which means no
+  /// event.
   bool is_due(double temperature_change) const {
     return heating_ * (branch_->end - temperature_change) > 0.0;
   }
 
-  /// Extends the segment to the event's ΔT. An event that rounding or a corner of the program puts
-  /// before the current ΔT happens now.
+  /// Extends the segment to the event's ΔT. If rounding or a corner of the program puts the event
+  /// before the current ΔT, the event happens at the current ΔT.
   void move_to_event(double temperature_change) {
     const double now = open_.end_temperature_change;
     if (heating_ * (temperature_change - now) > 0.0) {
@@ -231,8 +237,8 @@ class PathFollower {
     }
   }
 
-  /// Processes the next event of the branch. False if there is none. In one branch the motion only
-  /// passes through loaded stop → stick → play → stick → slide → stop, so the loop ends.
+  /// Processes the next event of the branch. Returns false if there is none. A branch only passes
+  /// through loaded stop → stick → play → stick → slide → stop, so events end.
   bool pass_next_event() {
     if (open_.motion == BlockMotion::stop) return pass_end_of_stop();
     return open_.moves() ? pass_end_of_motion() : pass_end_of_stick();
@@ -254,7 +260,7 @@ class PathFollower {
     return true;
   }
 
-  /// ΔT at which a moving block arrives at the next stop, or separates from a soft one.
+  /// ΔT at which a moving block arrives at the next stop, or separates from a soft stop.
   double arrival_at(int side) const {
     const double clearance = model_.clearance(side);
     if (open_.region == drive_ || std::isinf(clearance)) return never;
@@ -284,7 +290,8 @@ class PathFollower {
     const double x = open_.end_displacement;
     // A play opens when friction reaches zero.
     const int limit = has_play() && held_ != drive_ ? 0 : drive_;
-    // Without friction every force moves the block: no rounded onset and no tiny stick segment.
+    // Without friction every force moves the block. A rounded onset would cause a tiny stick
+    // segment.
     const double onset =
         model_.friction_force == 0.0 ? open_.end_temperature_change : onset_from(x, limit);
     const double zero = force_zero();
@@ -306,8 +313,8 @@ class PathFollower {
     return true;
   }
 
-  /// ΔT at which the axial force of a stick after a slide passes zero, x_T = x; NaN if it moves
-  /// away from zero.
+  /// ΔT at which the axial force passes zero (x_T = x) during a stick after a slide. NaN if the
+  /// force moves away from zero.
   double force_zero() const {
     const Stage towards_zero = drive_ == last_slide_ ? Stage::S4 : Stage::S3;
     if (open_.stage != towards_zero) return never;
@@ -363,7 +370,7 @@ double Path::jump_after_cycle(int cycle) const {
 
 namespace {
 
-/// Follows the program and keeps these cycles. Does not check model and program.
+/// Follows the program and keeps the given cycles. Model and program are not checked.
 void follow(const SpringSlider& model, const thermal::Program& program,
             const std::vector<int>& kept, Path& path) {
   require_positive_length(model, program);
@@ -375,7 +382,7 @@ void follow(const SpringSlider& model, const thermal::Program& program,
   path.largest_compression = path.largest_compression_temperature_change = 0.0;
   path.largest_axial_force = path.largest_compression_time = 0.0;
   path.reported.reset();
-  // A cycle that touches both stops has 12 events, with a play 16; only tables with many reversals
+  // A cycle that touches both stops has 12 events, with a play 16. Only tables with many reversals
   // have more.
   path.segments.reserve(16 * kept.size());
   path.events.reserve(16 * kept.size());
@@ -389,8 +396,8 @@ void follow(const SpringSlider& model, const thermal::Program& program,
   follower.end();
 }
 
-/// Cycles that contain `times`, with their neighbours because t/P is rounded, and the first two and
-/// the last.
+/// Cycles that sample() needs: those that contain `times`, their neighbours (because t/P is
+/// rounded), the first two and the last.
 std::vector<int> cycles_of(const thermal::Program& program,
                            const Eigen::Ref<const Eigen::VectorXd>& times) {
   const int last = program.cycles - 1;
@@ -441,8 +448,8 @@ PathPoint point_at(const SpringSlider& model, const thermal::Program& program,
       std::minmax(segment.start_temperature_change, segment.end_temperature_change);
   const double change = std::clamp(program.temperature_change(time), lowest, highest);
   const double x = displacement(model, segment, change);
-  // During sliding the force on the block is exactly the friction limit; the difference of x and
-  // x_T is less accurate.
+  // In a slide, equilibrium with friction at its limit gives the force. The difference of x and x_T
+  // is less accurate.
   if (segment.moves()) {
     const SpringSlider pressed = in_region(model, segment.region);
     return {change, x,
@@ -480,8 +487,8 @@ double thermal_work(const SpringSlider& model, const Segment& segment, double te
     const double length = free_length(model, at);
     double strain = 0.0;  // (x − x_T)/l_T
     if (segment.moves()) {
-      // Written out: the difference of x and x_T would lose the digits that the energy balance
-      // needs.
+      // The strain is computed from equilibrium, because the difference of x and x_T would lose the
+      // digits that the energy balance needs.
       strain = -(segment.friction_sign * model.friction_force + pressed.preload_force +
                  pressed.preload_stiffness * thermal_displacement(model, at)) /
                (model.axial_rigidity() + pressed.preload_stiffness * length);

@@ -14,7 +14,7 @@ namespace statejump::truss {
 
 namespace {
 
-/// Setting this many numbers to zero takes about ten times as long as starting a thread.
+/// Setting this many numbers to zero takes one thread about ten times as long as starting a thread.
 constexpr std::size_t numbers_at_once = 500000;
 
 }  // namespace
@@ -32,7 +32,7 @@ void Assembly::clear() {
 }
 
 void Assembly::record() {
-  // A million joints write some 1e8 positions, so only their rows are stored besides them, column
+  // A million joints write some 1e8 positions. To save memory, only rows are stored besides, column
   // by column.
   const Eigen::Index n = residual.size();
   std::vector<std::size_t> next(static_cast<std::size_t>(n) + 1, 0);
@@ -194,7 +194,7 @@ VectorXd System::slide_rates(const VectorXd& z, double time, const StepStart& st
     JointWriter to_heated(of_heated);
     to_moving.places = to_heated.places = places;
     to_moving.first_force = to_heated.first_force = forces_from;
-    // Evaluates the slide row of the sticking contact: its rate is the slip rate.
+    // Evaluates the slide row as if the contact stuck: its rate is the slip rate.
     Trial at = trial(i, z, time, start, JointModel::friction, 1.0);
     at.unslipped = true;
     const double warming =

@@ -6,7 +6,7 @@
 
 namespace statejump::truss::detail {
 
-/// The frictional contact problem of the step from `start` to the equilibrium z.
+/// Returns the frictional contact problem of the step from the state `start` to the equilibrium z.
 LocalProblem local_problem(const System& system, const VectorXd& z, double time,
                            const StepStart& start, const Statuses& statuses);
 

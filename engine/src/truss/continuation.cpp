@@ -12,19 +12,20 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Most joints that a failure names; those that slide fastest come first.
+/// Largest number of joints that a failure names. The joints that slide fastest come first.
 constexpr std::size_t most_named = 3;
-/// Displacement over the size of the truss below which a jump cannot be distinguished from the
-/// error of Newton's method: the geometric mean of rounding and 1.
+/// Ratio of a displacement to the size of the truss below which a jump cannot be distinguished from
+/// the error of Newton's method.
 const double jump_share = std::sqrt(std::numeric_limits<double>::epsilon());
-/// Multiples of the tangent step at which the index is checked after a failed step. If the path
-/// reverses at a limit point like a parabola, a point beyond the fold lies within these multiples.
+/// After a failed step, the index of the equations is checked at these multiples of the tangent
+/// step. If the path reverses at a limit point like a parabola, one of them lies beyond the limit
+/// point.
 constexpr double tangent_steps[] = {1.0, 2.0, 4.0};
 
 }  // namespace
 
-/// Whether a joint slips, also partially. If none does, a negative index means buckling, which is
-/// checked at the corners of the programs.
+/// Whether any joint slips fully or partially. If no joint slips, a negative index means buckling,
+/// which is checked at the corners of the programs.
 bool PathFollower::any_slips(const Statuses& statuses) const {
   return system.slips_smoothly() || std::any_of(statuses.begin(), statuses.end(), is_slip);
 }
@@ -44,9 +45,9 @@ void PathFollower::fail_continuation(FailureKind kind, double when, std::vector<
   throw Failure(std::move(fields));
 }
 
-/// Decides a step of the shortest length in which an event occurs.
+/// Decides how the path continues after a step of the shortest length in which an event occurs.
 /// @param first how the first solve over the step ended
-/// @param to, statuses its unknowns and statuses
+/// @param to, statuses unknowns and statuses from that solve
 /// @returns how the last solve ended, with updated `to` and `statuses`
 /// @throws Failure if the path ends here or has several continuations
 SolveReport PathFollower::continue_from_event(double target, VectorXd& to, Statuses& statuses,
@@ -60,7 +61,8 @@ SolveReport PathFollower::continue_from_event(double target, VectorXd& to, Statu
     }
     return first;
   }
-  // Rates of partial slip depend on the path, so the equations are not linear on fixed statuses.
+  // Rates of partial slip depend on the path, so the rate equations are not linear for fixed
+  // statuses.
   if (system.slips_smoothly()) {
     if (converged && newton.stability_index() < 0) {
       fail_continuation(FailureKind::no_continuation, target, {});
@@ -71,17 +73,19 @@ SolveReport PathFollower::continue_from_event(double target, VectorXd& to, Statu
       rates.solve(z, target, origin, converged ? statuses : Statuses(), first.joints);
   const bool undecided =
       answer.count == Continuation::none || answer.count == Continuation::several;
-  // An opening contact may leave a mechanism or jump across its play. The step itself detects that.
+  // A contact that opens may leave a mechanism or jump across its play. The next step detects this
+  // itself.
   if (undecided && answer.opens) return first;
   if (undecided && !answer.singular.empty()) {
     refuse_mechanism(target, answer.singular, JointModel::friction);
   }
-  // Dependent constraints falsify the signs of all sets, but not a solution nearby.
+  // Dependent constraints make the signs of all sets wrong. A solution near the last state is still
+  // valid.
   const double moved = converged ? length_of(to - z, system.displacements())
                                  : std::numeric_limits<double>::infinity();
   const bool near = moved <= jump_share * system.size();
-  // At a smooth extremum of a program, displacements are within the tolerance in which two
-  // solutions coincide; continuations do not differ.
+  // At a smooth extremum of a program, displacements are smaller than the tolerance of a solution,
+  // so several continuations do not differ.
   const bool rests = moved <= 2.0 * system.rounding(z).length;
   const bool is_solution =
       answer.count == Continuation::several ? rests : answer.count == Continuation::none && near;
@@ -117,7 +121,8 @@ SolveReport PathFollower::continue_from_event(double target, VectorXd& to, Statu
   return first;
 }
 
-/// Rates of the programs just before `target`, which may be a corner [K/s].
+/// Rates of the temperature programs [K/s] just before the time `target`, which may be a corner of
+/// a program.
 std::vector<double> PathFollower::program_rates_before(double target) const {
   std::vector<double> rates_before;
   for (const thermal::Program& program : model.programs) {
@@ -127,10 +132,10 @@ std::vector<double> PathFollower::program_rates_before(double target) const {
   return rates_before;
 }
 
-/// Lets joints continue to slide that the solve found sticking, if their rates require it. Slides
-/// of a short step may be below the error of Newton's method, which is larger in a slender truss.
-/// The signs of such slides are not reliable.
-/// @param to, statuses converged solution, replaced by the final one
+/// If the solve found that a slipping joint sticks, but its rates require that it slides, the joint
+/// continues to slide. The slide of a short step may be below the error of Newton's method,
+/// especially in slender trusses; its sign is then unreliable.
+/// @param to, statuses converged solution; replaced by the final solution
 /// @param first how the first solve ended
 SolveReport PathFollower::slide_on(double target, bool is_short, VectorXd& to, Statuses& statuses,
                                    SolveReport first) {
@@ -172,8 +177,8 @@ SolveReport PathFollower::slide_on(double target, bool is_short, VectorXd& to, S
   return solve_on(statuses);
 }
 
-/// Whether a converged step passes an instability by slip: at its end with the final statuses, or
-/// at its start with these statuses.
+/// Whether slip is unstable in a converged step: at its end with the final statuses, or at its
+/// start with the given statuses.
 bool PathFollower::passes_instability(const Statuses& statuses) {
   if (!any_slips(statuses)) return false;
   if (newton.stability_index() < 0) return true;
@@ -181,9 +186,9 @@ bool PathFollower::passes_instability(const Statuses& statuses) {
   return newton.stability_index(rates.equations(z, time, origin, statuses), statuses) < 0;
 }
 
-/// Whether the rates at both ends of a step without events explain the displacement. A path that
-/// jumps from a limit point to another equilibrium moves farther. A step with a similarly large
-/// curvature is too long to decide.
+/// Whether the rates at both ends of a step without events explain the displacement. If the path
+/// jumps from a limit point to another equilibrium, the displacement is larger. A step with equally
+/// large curvature is too long to decide.
 bool PathFollower::follows_its_rates(const Ends& ends) const {
   if (ends.start.statuses != ends.statuses) return true;
   const Eigen::Index n = system.displacements();

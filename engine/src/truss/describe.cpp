@@ -14,8 +14,8 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Integrating the work of this many elements, or describing this many items, takes about ten times
-/// as long as starting a thread.
+/// Integrating the work or writing the outputs of this many elements takes about ten times as long
+/// as starting a thread.
 constexpr std::size_t parts_at_once = 5000;
 
 }  // namespace
@@ -35,8 +35,8 @@ void System::describe(const VectorXd& z, double time, const StepStart& now, Stat
     state.load_potential -= model.nodes[index(i)].load.dot(moved.col(i));
   }
   state.elastic_energy = 0.0;
-  // Energies are added in the order of the items, so that sums do not depend on the number of
-  // threads.
+  // Energies are added in the order of the elements, so that the sum does not depend on the number
+  // of threads.
   const auto add_energies = [&](const auto& parts, std::size_t at_once, auto&& energy_of) {
     VectorXd energies(size(parts));
     each_in_parallel(parts.size(), at_once, [&](std::size_t i) {
@@ -134,7 +134,7 @@ void System::note_slides(const Way& way, const std::optional<Halves>& halves,
     if (after.statuses[index(i)] != JointStatus::stick) return;
     const Vector3d foreseen = start.foreseen(i, way.to_time);
     if (halves) {
-      // The error of the two halves together is a quarter of the error of the whole step.
+      // The two halves together have a quarter of the error that the whole step has.
       after.lost.col(i) =
           4.0 / 3.0 *
           (lag(i, halves->middle, halves->time, start) + lag(i, way.to, way.to_time, halves->half) -
@@ -148,7 +148,8 @@ void System::account(const Way& way, const std::optional<Halves>& halves, const 
                      const StepStart& after, const VectorXd& slips, State& state) const {
   VectorXd dissipated = heat(way.to, way.to_time, start, after, slips);
   if (halves && (dissipated.array() > 0.0).any()) {
-    // Extrapolation of the results of both halves and of the whole step to zero step length.
+    // Extrapolates the result to zero step length, from the results with both halves and with the
+    // whole step.
     const auto& [middle, then, half, whole] = *halves;
     const VectorXd by_halves =
         heat(middle, then, start, half, this->slips(middle, then, start, half)) +

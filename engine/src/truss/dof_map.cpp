@@ -15,12 +15,13 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Copying this many displacements takes about ten times as long as starting a thread.
+/// Copying the displacements of this many nodes takes about ten times as long as starting a thread.
 constexpr std::size_t nodes_at_once = 50000;
-/// Motion of a node by a dof below which it counts as zero, as in moves_along() [-].
+/// If a unit displacement of a dof moves a node by less than this, the motion counts as zero, as in
+/// moves_along() [-].
 constexpr double least_motion = 1e-9;
 
-/// For every node, whether an element at it has 6 dofs per node.
+/// Whether an element with 6 dofs per node is attached to a node, for every node.
 std::vector<bool> rotating_nodes(const Model& model) {
   std::vector<bool> rotates(model.nodes.size(), false);
   const auto ask = [&]<class Type>(const std::vector<Type>& elements) {

@@ -16,28 +16,29 @@ struct DofTerm {
   int row;
   double factor;
 };
-/// The translations of a node along its free directions, each as a sum of dofs.
+/// The translations of a node along its free directions, each expressed as a sum of dofs.
 using DofSums = std::array<std::vector<DofTerm>, 3>;
 
 /// Degrees of freedom of one node: translations along the first `freedoms` of its free directions,
-/// then rotations. The default has none and represents the ground.
+/// then rotations. A default object has no dofs and represents the ground.
 struct NodeDofs {
   int row = 0;       ///< Index of its first own dof.
   int freedoms = 0;  ///< Number of translations.
   const Eigen::Matrix3d* directions = nullptr;
   int rotations = 0;  ///< 3 where an element has 6 dofs per node, else 0.
-  /// Translations as sums of dofs, for a node with constraints; null: all translations are its own
-  /// dofs.
+  /// Translations of a node with constraints as sums of dofs. Null: each translation is a dof of
+  /// the node.
   const DofSums* sums = nullptr;
 
-  /// Whether a translation is itself a dof, not a sum or a multiple of dofs.
+  /// Whether a translation is itself a dof, and not a sum or a multiple of dofs.
   bool is_own(int direction, int dof) const {
     if (sums == nullptr) return true;
     const auto& terms = (*sums)[static_cast<std::size_t>(direction)];
     return terms.size() == 1 && terms.front().row == dof && terms.front().factor == 1.0;
   }
 
-  /// Calls `use(row, factor)` for the dofs that a translation along a free direction depends on.
+  /// Calls `use(row, factor)` for every dof that contributes to a translation along a free
+  /// direction.
   template <class Use>
   void each_term(int direction, Use&& use) const {
     if (sums == nullptr) return use(row + direction, 1.0);
@@ -73,9 +74,9 @@ class DofMap {
   void displacements(const Eigen::VectorXd& z, Eigen::Matrix3Xd& moved) const;
   /// The dofs for displacements of all nodes that satisfy the constraints.
   Eigen::VectorXd dofs_at(const Eigen::Matrix3Xd& moved) const;
-  /// Adds a force on a node to the forces on the dofs [N].
+  /// Adds a force [N] on a node to `to`, the vector of forces on the dofs.
   void add_force(int node, const Eigen::Vector3d& force, Eigen::VectorXd& to) const;
-  /// Whether some motion of the dofs changes the distance of two nodes along a direction.
+  /// Whether any dof moves two nodes relative to each other along a direction.
   bool moves_apart(int first, int second, const Eigen::Vector3d& direction) const;
   /// Translations of a node along its free directions at unknowns z.
   static Eigen::Vector3d along_directions(const NodeDofs& at, const Eigen::VectorXd& z);

@@ -10,16 +10,16 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// A sum that cancels to less than this fraction of its larger term counts as zero. Each term is a
-/// sum of at most some thousand products with a rounding of 1e-16.
+/// If two terms cancel to less than this fraction of the larger one, their sum counts as zero.
+/// Terms are sums of at most some thousand products with a rounding of 1e-16.
 constexpr double rounding_fraction = 1e-12;
 /// Factors equal up to rounding count as equally large pivots.
 constexpr double equal_fraction = 1.0 - rounding_fraction;
 
 using Sum = std::map<int, double>;
 
-/// Adds a value to a factor.
-/// @returns whether the displacement is still in the sum
+/// Adds a value to the factor of a displacement in a sum.
+/// @returns false if the factor cancels and the displacement is removed from the sum
 bool add(Sum& sum, int place, double value) {
   const auto [at, is_new] = sum.try_emplace(place, value);
   if (is_new) return true;
@@ -53,7 +53,8 @@ class Eliminating {
   Elimination take() && { return std::move(made_); }
 
  private:
-  /// The terms of a constraint, with sums in place of dependent displacements.
+  /// The terms of a constraint, in which sums of independent displacements replace the dependent
+  /// ones.
   Sum independent(const Constraint& constraint) const {
     Sum sum;
     for (const ConstraintTerm& term : constraint.terms) {

@@ -13,11 +13,11 @@ inline int place_of(int node, int direction) {
   return 3 * node + direction;
 }
 
-/// The displacements that constraints determine, as sums of independent ones.
+/// Displacements that constraints determine, expressed as sums of independent displacements.
 ///
 /// Dependent displacements are eliminated: all displacements are T q, and the matrices of the
-/// solver are TᵀKT and TᵀMT. Lagrange multipliers would keep K and M unchanged. But each would add
-/// a row without stiffness and mass to every matrix, with these effects:
+/// solver are TᵀKT and TᵀMT. Lagrange multipliers would keep K and M unchanged. But each multiplier
+/// would add a row without stiffness and mass to every matrix, with these effects:
 ///
 /// - the number of negative pivots would no longer be that of unstable modes,
 /// - the proximal terms of slack trusses and the shifts of the search for mechanisms would need
@@ -28,14 +28,15 @@ inline int place_of(int node, int direction) {
 /// hold to rounding at every state. The cost is fill: a constraint of n terms makes a block of n²
 /// entries for each element at its dependent node.
 struct Elimination {
-  /// For the index of each dependent displacement: indices and factors of the independent ones.
+  /// Sum of each dependent displacement, by its index: indices and factors of independent
+  /// displacements.
   std::map<int, std::map<int, double>> sums;
   std::vector<int> redundant;  ///< Indices of constraints that follow from others.
 };
 
-/// Gauss–Jordan elimination, one constraint after another. The pivot is the largest factor, so that
-/// no factor grows. Among equal factors the pivot is the one used in the fewest sums, so that
-/// chains stay sparse.
+/// Eliminates one constraint after another by Gauss–Jordan elimination. The pivot is the
+/// displacement with the largest factor, so that factors do not grow. Among equal factors it is the
+/// one in the fewest sums, so that chains remain sparse.
 Elimination eliminate(const Model& model);
 
 }  // namespace statejump::truss::detail

@@ -26,14 +26,15 @@ struct Cubic {
   double linear() const { return 6.0 * (last - first) - 4.0 * first_rate - 2.0 * last_rate; }
   double square() const { return 3.0 * (first_rate + last_rate) - 6.0 * (last - first); }
   double rate(double share) const { return first_rate + share * (linear() + share * square()); }
-  /// Fraction inside the step at which the rate is smallest; empty if the minimum is at an end.
+  /// Fraction of the step at which the rate is smallest. It is empty if the minimum is at the start
+  /// or the end.
   std::optional<double> slowest() const {
     if (!(square() > 0.0)) return std::nullopt;
     const double share = -0.5 * linear() / square();
     return share > 0.0 && share < 1.0 ? std::optional(share) : std::nullopt;
   }
-  /// First fraction in (0, end] at which the rate becomes 0. Requires a positive rate at 0 and a
-  /// rate <= 0 at `end`.
+  /// First fraction in (0, end] at which the rate becomes 0. The rate must be positive at 0 and <=
+  /// 0 at `end`.
   double turn(double end) const {
     double before = 0.0;
     for (int halving = 0; halving < 60; ++halving) {

@@ -14,16 +14,17 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Limit of a displacement over the size of the truss. A deployed structure whose loads move it
-/// farther in one step is not the modelled one.
+/// Largest displacement in one load step, divided by the size of the truss. A deployed structure
+/// that loads move farther is not the modelled one.
 constexpr double near_share = 0.05;
-/// Smallest step of the load fraction: the limit load is known to six digits.
+/// Smallest step of the load fraction. It determines the limit load to six digits.
 constexpr double least_step = 1e-6;
-/// Stiffness of displacements that only friction at its limit resists, over that of the stiffest
-/// element. It limits the step of an iteration, but does not affect the solution.
+/// Proximal stiffness, over that of the stiffest element, of displacements that only friction at
+/// its limit resists. It limits the step of an iteration, not the solution.
 constexpr double proximal_share = 1e-6;
 
-/// The truss with a fraction of its loads and misfits; 0: stress-free reference configuration.
+/// Copy of the truss with a fraction of its loads and misfits. With fraction 0 the reference
+/// configuration is stress-free.
 Model loaded(Model model, double fraction) {
   scale_misfits(model, fraction);
   for (Node& node : model.nodes) node.load *= fraction;
@@ -32,7 +33,8 @@ Model loaded(Model model, double fraction) {
 
 }  // namespace
 
-/// Whether loads and misfits do work on one of these displacements of the reference configuration.
+/// Whether loads and misfits do work on at least one of the displacements `shapes` from the
+/// reference configuration.
 bool PathFollower::are_loaded(const std::vector<VectorXd>& shapes) const {
   Assembly at = Assembly::without_jacobian(system.unknowns());
   const VectorXd drawn = VectorXd::Zero(system.unknowns());
@@ -53,9 +55,10 @@ bool PathFollower::is_near(const VectorXd& moved) const {
   return system.size() == 0.0 || farthest <= near_share * system.size();
 }
 
-/// Increases loads and misfits from zero to their full values in steps with small displacements,
-/// each from the last equilibrium. A joint at its friction limit slides to the next equilibrium if
-/// that is near: to a stop, or to a position in which another element takes the load.
+/// Increases loads and misfits from zero to their full values in steps with small displacements.
+/// Each step starts from the last equilibrium. A joint at its friction limit slides to the next
+/// equilibrium if this is near: at a stop, or in a position in which another element takes the
+/// load.
 /// @returns the point at which the load increase stalled; empty at full load or if the caller
 /// stopped
 std::optional<Stall> PathFollower::follow_loads() {
@@ -101,7 +104,7 @@ std::optional<Stall> PathFollower::follow_loads() {
   return Stall{1.0, last, origin.statuses, z};
 }
 
-/// Throws the reason why the load increase stalled: buckling, or joints that slip at or beyond it.
+/// Throws a failure with the reason of the stall: buckling, or joints that slip at or beyond it.
 void PathFollower::refuse_overload(const Stall& at) {
   std::set<int> exhausted(at.report.joints.begin(), at.report.joints.end());
   Statuses beyond = at.statuses;

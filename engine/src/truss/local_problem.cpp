@@ -14,10 +14,11 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-/// Smallest stiffness of the truss without its contacts, over that of the stiffest element. Below
-/// it the truss counts as a mechanism. W contains the inverse stiffness, so this bounds its error.
+/// If the truss without its contacts is softer than this fraction of the stiffest element, it
+/// counts as a mechanism. W contains the inverse stiffness, so this bounds its error.
 constexpr double soft_share = 1e-9;
-/// Initial fraction of the proximal term: the softest generated trusses have 1e-4.
+/// Initial proximal stiffness over that of the stiffest element. The softest generated trusses have
+/// 1e-4.
 constexpr double proximal_share = 1e-3;
 
 /// The unknowns in two groups: contacts, and all others (the structure).
@@ -28,7 +29,7 @@ struct Groups {
   int others = 0;
 };
 
-/// Block of the Jacobian for one group of rows and one group of columns.
+/// Block of the Jacobian with the rows of one group and the columns of one group.
 Sparse block(const Sparse& jacobian, const Groups& of, bool contact_rows, bool contact_columns) {
   Triplets entries;
   for (int column = 0; column < jacobian.outerSize(); ++column) {
@@ -45,7 +46,8 @@ Sparse block(const Sparse& jacobian, const Groups& of, bool contact_rows, bool c
   return made;
 }
 
-/// Whether all displacements are constrained, with rows as stiff as the stiffest element.
+/// Whether every displacement has a positive stiffness. Constraint rows count as springs as stiff
+/// as the stiffest element.
 bool is_stable(const Sparse& structure, int displacements, double scale, double proximal) {
   const int rows = static_cast<int>(structure.rows()) - displacements;
   const Sparse full = structure.block(0, 0, displacements, displacements);
@@ -118,7 +120,8 @@ LocalProblem local_problem(const System& system, const VectorXd& z, double time,
     compliance.col(j) += rows * factor.solve(VectorXd(columns.col(j)));
   }
 
-  // Blocks of two. A given normal force has an artificial gap that this force closes.
+  // Each contact has a normal and a friction row. A given normal force has an artificial gap that
+  // it closes.
   const auto count = static_cast<Eigen::Index>(contacts.size());
   std::vector<Eigen::Index> row_of;
   for (Eigen::Index k = 0; k < count; ++k) {

@@ -15,14 +15,14 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Modes softer than this fraction of the stiffest element count as free. Rounding of the stiffness
-/// is 1e-16; the softest mode of a ring of 100 000 bays is 1e-12.
+/// A mode softer than this fraction of the stiffest element counts as free. Rounding is 1e-16 of
+/// that stiffness; the softest mode of a ring of 100 000 bays has 1e-12.
 constexpr double free_share = 1e-13;
 constexpr int most_modes = 6;
 
-/// Penalty stiffness of closed joints in the stability check, relative to the stiffest element.
-/// Their compliance is a hundredth of that of this element, and rounding stays below the fraction
-/// of free modes.
+/// Penalty stiffness of closed joints in the stability check, relative to the stiffest element. The
+/// joints then have a hundredth of this element's compliance, and rounding remains below
+/// free_share.
 constexpr double stiff_joint = 100.0;
 
 /// The nodes that move most in a mode.
@@ -54,8 +54,8 @@ struct Modes {
 };
 
 Modes lowest_modes(const Eigen::SparseMatrix<double>& matrix, const Factors& factors, int most) {
-  // Inverse iteration on a block: in each round, free modes grow at least 20 times as much as the
-  // others.
+  // Inverse iteration on a block of vectors. In each round, free modes grow at least 20 times as
+  // much as all other modes.
   const Eigen::Index n = matrix.rows();
   const Eigen::Index count = std::min<Eigen::Index>(most, n);
   Eigen::MatrixXd block(n, count);
@@ -72,8 +72,8 @@ Modes lowest_modes(const Eigen::SparseMatrix<double>& matrix, const Factors& fac
   return {found.eigenvalues(), block * found.eigenvectors()};
 }
 
-/// The stiffness of the truss with penalty springs in its joints, see penalty_stiffness(), plus a
-/// fraction of that of its stiffest element on the diagonal.
+/// Stiffness matrix of the truss with penalty springs in its joints, see penalty_stiffness(). A
+/// fraction of the stiffness of the stiffest element is added to the diagonal.
 Eigen::SparseMatrix<double> shifted_stiffness(const System& system, const VectorXd& z, double time,
                                               const Statuses& statuses, JointModel joints,
                                               double held, double slack, double share) {
@@ -111,9 +111,9 @@ std::pair<FoundModes, bool> free_modes(const System& system, const VectorXd& z, 
   if (factors.info() != Eigen::Success) return {FoundModes{}, false};
   const double least = free_share * system.stiffness_scale();
   const bool pushed = (factors.vectorD().array() < 0.0).any();
-  // One vector shows whether there is a free mode. After five rounds from any start, the Rayleigh
-  // quotient is below ten times the largest eigenvalue that counts as free. This holds with some
-  // 1e6 other modes just above that, and a start with a hundredth of the usual part of a free mode
+  // One vector shows whether there is a free mode. If there is one, five rounds reduce the Rayleigh
+  // quotient below ten times the largest eigenvalue that counts as free. This holds with some 1e6
+  // other modes just above it, and with a hundredth of the usual start component of a free mode
   // (6e9 · 10⁻⁹ < 10).
   const Modes first = lowest_modes(shifted, factors, 1);
   if (std::abs(first.eigenvalues[0]) > 10.0 * least) return {FoundModes{}, pushed};
@@ -127,8 +127,8 @@ FoundModes mechanism(const System& system, const VectorXd& z, double time, const
   if (system.displacements() == 0) return {};
   const auto [found, pushed] = free_modes(system, z, time, statuses, joints);
   if (found || !pushed || !z.isZero()) return found;
-  // Forces of the reference configuration may push a mechanism along its free mode. Without them
-  // the mode is free.
+  // Stresses in the reference configuration may give the free mode of a mechanism a stiffness.
+  // Without them it is free.
   Model unstressed = system.model();
   scale_misfits(unstressed, 0.0);
   return free_modes(System(unstressed), z, time, statuses, joints).first;

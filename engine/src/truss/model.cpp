@@ -65,7 +65,8 @@ bool allows(Allowed allowed, double value) {
   }
 }
 
-/// Checks the ranges in the table of parameters of an element or a joint.
+/// Checks that the parameters of an element or a joint are within the ranges of its parameter
+/// table.
 template <class Type>
 void check_parameters(const Type& one, const Model& model) {
   const std::string item = named(Type::kind, one.name);
@@ -127,8 +128,8 @@ void check_constraint(const Constraint& constraint, const Model& model) {
   }
 }
 
-/// Refuses joints that constrain nodes along a direction in which they cannot move apart: two
-/// forces would constrain one direction.
+/// Rejects a joint that constrains its nodes along a direction in which supports or constraints
+/// already prevent their relative motion. Otherwise two forces would constrain one direction.
 void check_held_directions(const Model& model) {
   const detail::DofMap dofs(model);
   for (const Joint& joint : model.joints) {

@@ -27,8 +27,8 @@ inline std::size_t index(int i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Vector drawn + moved, its length, and the growth of its length. The growth is computed without
-/// the difference of two lengths.
+/// The vector drawn + moved between two nodes, its length, and the increase of its length. No
+/// difference of two lengths is used.
 struct Lengths {
   Vector3d along;
   double drawn;
@@ -55,9 +55,9 @@ struct PlanarAngle {
   Eigen::Matrix2d hessian;
 };
 
-/// Angle by which a direction rotates if its end moves [rad]. If its tangent t is below 1e-3, three
-/// terms of the series of the arc tangent are used. Their relative error is t⁶/7 < 1.5e-19, and
-/// they take a tenth of the time of atan2.
+/// Angle by which a vector rotates if its end moves [rad]. If the tangent t of the angle is below
+/// 1e-3, three terms of the arc tangent series are used. Their relative error is t⁶/7 < 1.5e-19,
+/// and they need a tenth of the time of atan2.
 inline double turn_by(const Vector2d& direction, const Vector2d& moved) {
   const double across = cross(direction, moved);
   const double along = direction.dot(direction + moved);
@@ -78,7 +78,7 @@ inline AngleDerivatives angle_derivatives(const Vector2d& v, const Matrix32& pla
   return {plane * flat.gradient, plane * flat.hessian * plane.transpose()};
 }
 
-/// Two unit vectors that form a right-handed frame with the axis; x and y for the z axis.
+/// Two unit vectors that form a right-handed frame with the axis. For the z axis they are x and y.
 inline Matrix32 plane_of(const Vector3d& axis) {
   Matrix32 plane;
   const Vector3d a = axis.normalized();

@@ -69,26 +69,29 @@ namespace {
 
 /// Consecutive steps that ended before a predicted change without approaching it.
 constexpr int most_unconfirmed = 8;
-/// Steps from one state that end before a predicted change without approaching it.
+/// Allowed number of consecutive attempts from one state whose predictions of a change do not
+/// converge.
 constexpr int most_foreseen = 4;
-/// Located status changes of one joint per increment. After more of them only the energy balance
-/// limits the steps.
+/// Largest number of located status changes of one joint per increment. After more changes, only
+/// the energy balance limits the steps.
 constexpr int most_located = 32;
-/// Located status changes of all joints per increment while elements are slack: elements on
-/// dashpots make and lose contact repeatedly, without significant forces.
+/// Largest number of located status changes of all joints per increment while elements are slack.
+/// Such elements make and lose contact repeatedly without significant forces.
 constexpr int most_located_with_slack = 8;
-/// Steps since the last change after which changes are no longer located while elements are slack.
+/// While elements are slack, changes are no longer located after this many steps since the last
+/// change.
 constexpr int most_steps_with_slack = 256;
 /// Steps after a failed one before a longer step is attempted.
 constexpr int most_held = 4;
-/// If repeated steps pass a change, the distance to it must shrink by this factor.
+/// The predicted time to a change must decrease to this fraction with every step; otherwise the
+/// change counts as unconfirmed.
 constexpr double nearer = 0.95;
 
-/// Corners of all programs [s]. Corners closer than Model::same_time of the duration are merged,
-/// because times such as 3 · 0.1 s and 0.3 s differ by rounding.
+/// Times of the corners of all programs [s]. Corners closer than Model::same_time of the duration
+/// are merged, because times such as 3 · 0.1 s and 0.3 s differ by rounding.
 std::vector<double> corners(const Model& model) {
-  // Corners of the first program take precedence, so that its cycles end exactly. The last corner
-  // is the latest end of all programs.
+  // If corners are merged, the time of the first program's corner is used, so that its cycles end
+  // exactly. The last corner is the latest end of all programs.
   std::vector<double> own{0.0};
   std::set<double> others;
   for (std::size_t i = 0; i < model.programs.size(); ++i) {
@@ -170,25 +173,28 @@ Path solve(const Model& model, const Options& options) {
     // longest step for which Newton's method is expected to converge [s]
     double convergent = length;
     for (int k = 0; k <= options.increments_per_branch; ++k) {
-      // k = 0: short first step, in which slips turn into sticks after the corner.
+      // k = 0 is a short first step after the corner of the programs, in which slipping joints
+      // start to stick.
       const double target = k == 0 ? times[b] + tolerance
                             : k == options.increments_per_branch
                                 ? times[b + 1]
                                 : times[b] + length * k / options.increments_per_branch;
       std::size_t counted = follower.path.events.size();
       std::fill(changes.begin(), changes.end(), 0);
-      // Divides the rest of the increment equally, with steps not longer than balanced_step.
+      // Step length that divides the remaining increment into equal steps, each not longer than
+      // balanced_step.
       const auto balanced = [&] {
         const double left = target - follower.time;
         return left / std::ceil(std::max(1.0, left / follower.balanced_step));
       };
       double stride = std::min(balanced(), convergent);
       bool locating = false;
-      // Consecutive steps from one state that end before a predicted change without approaching it.
+      // Consecutive attempts from one state whose predictions of a change did not converge.
       int foreseen_from_here = 0;
       double short_by_before = 1.0;  // fraction of the last step beyond the predicted change
       int steps = 0;                 // since the last change
-      // Predicted time until the next change, and its minimum since the last change [s].
+      // Predicted time until the next change [s], and the minimum of this time since the last
+      // change.
       double ahead = length, least_ahead = length;
       bool foresaw = false;
       int unconfirmed = 0;
@@ -212,9 +218,9 @@ Path solve(const Model& model, const Options& options) {
           held = std::max(0, held - 1);
           foreseen_from_here = 0;
           short_by_before = 1.0;
-          // While a change is located, the next one may be near, and passing it costs a pivot for
-          // every joint that it affects. If a predicted change did not occur, the tangent of a long
-          // step is not reliable. In both cases steps grow gradually.
+          // Steps grow gradually in two cases. While a change is located, the next change may be
+          // near, and a step past it costs a pivot for every affected joint. If a predicted change
+          // did not occur, the tangent of a long step is not reliable.
           const bool unchanged =
               follower.path.events.size() - counted == follower.idle_changes.size();
           const bool creeps = locating && (!options.locate_events || unchanged);
@@ -222,7 +228,7 @@ Path solve(const Model& model, const Options& options) {
           if (foresaw) unconfirmed = ahead >= nearer * least_ahead ? unconfirmed + 1 : 0;
           if (foresaw) least_ahead = std::min(least_ahead, ahead);
           foresaw = false;
-          // Changes of a joint whose status alternates do not reset the counters.
+          // The counters are not reset by changes of a joint whose status alternates.
           if (!unchanged && !follower.flickers) {
             steps = unconfirmed = unstable = swinging = 0;
             least_ahead = length;
@@ -234,19 +240,20 @@ Path solve(const Model& model, const Options& options) {
             const bool are_many = follower.has_slack() && ++located > most_located_with_slack;
             follower.flickers = follower.flickers || is_often || are_many;
           }
-          // Changes that recede with every step, or of joints whose status alternates, are not
-          // located.
+          // Two types of changes are not located: those whose predicted time recedes with every
+          // step, and those of joints whose status alternates.
           follower.locates = !follower.flickers && unconfirmed < most_unconfirmed;
         } else if (end == StepEnd::stopped) {
           follower.path.complete = false;
         } else if (end == StepEnd::imprecise) {
           stride = std::max(balanced(), tolerance);
         } else {
-          // Next step: to half a tolerance before the predicted change. If predictions from this
-          // state do not approach, half the distance; without a prediction, an eighth of the step.
+          // The next step ends half a tolerance before the predicted change. If predictions do not
+          // converge, it covers half of the distance; without a prediction, an eighth of the failed
+          // step.
           const bool foreseen = end == StepEnd::event_inside && follower.event_share < 1.0;
           const double tried = goal - from;
-          // At a true change, the predicted distance more than halves with every step.
+          // If the change is real, every attempt more than halves the part of the step beyond it.
           const double short_by = 1.0 - follower.event_share;
           foreseen_from_here = short_by > 0.5 * short_by_before ? foreseen_from_here + 1 : 0;
           short_by_before = short_by;

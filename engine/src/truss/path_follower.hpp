@@ -27,7 +27,7 @@ FailureFields failure_at(FailureKind kind, const Model& model, double time);
 [[noreturn]] void fail_modes(FailureFields fields, FoundModes found);
 [[noreturn]] void fail_joint(FailureFields fields, FailureJoint joint);
 
-/// How a step ended. Only `done` changes the state; otherwise the state is that before the step.
+/// Result of a step. Only a step with the result `done` changes the state.
 enum class StepEnd : unsigned char { done, event_inside, not_converged, imprecise, stopped };
 
 /// Both ends of a converged step.
@@ -53,8 +53,8 @@ struct Stall {
   VectorXd z;
 };
 
-/// Amplification of a motion within the play of a joint: largest displacement of a node over that
-/// motion. Estimated as size of the structure over length of its shortest bar.
+/// Ratio of the largest displacement of any node to the motion within the play of a joint that
+/// causes it. Estimate: size of the structure over length of its shortest bar.
 double lever_of(const Model& model, double size);
 
 /// State of a path while solve() follows it.
@@ -74,43 +74,43 @@ struct PathFollower {
   double time = 0.0;
   /// Fraction of the last attempted step at which its first event occurs; 1: unknown.
   double event_share = 1.0;
-  /// Whether dashpots hold open joints also in long steps, because nothing else determines their
-  /// positions.
+  /// Whether dashpots act on open joints in long steps too, because nothing else determines the
+  /// positions of these joints.
   bool is_slack = false;
   /// Result of the last note_slack(): whether elements are slack.
   bool is_loose = false;
-  /// Dashpots soften no further than to this level in the present increment, because steps with
-  /// softer ones had no solution.
+  /// Lowest level of the dashpots in the present increment. Steps with softer dashpots had no
+  /// solution.
   double softest_level = 0.0;
   bool flickers = false;     ///< Whether changes of status in this increment are no longer located.
   double slack_level = 0.0;  ///< Level of the dashpots, see System::slack_stiffness().
   /// Decrease of the dashpot level after a step.
   static constexpr double softer = 0.25;
-  /// Joints that changed their status in the last step with contact forces not above dashpot
-  /// forces, see System::is_idle().
+  /// Joints that changed their status in the last step while their contact forces did not exceed
+  /// the dashpot forces, see System::is_idle().
   std::set<int> idle_changes = {};
   double snap_travel = 0.0;  ///< Sum of all snaps since the last corner [m].
-  /// Statuses at the present state that a longer step predicted; empty: none.
+  /// Statuses for the present state that a longer step predicted; empty if there is no prediction.
   Statuses changed_at_start = {};
-  /// Whether longer steps predict statuses at the start. Disabled until the next event if a short
-  /// step did not confirm a prediction.
+  /// Whether longer steps predict the statuses at their start. This is disabled until the next
+  /// event if a short step did not confirm a prediction.
   bool looks_at_start = true;
-  /// Whether the tangent of a longer step predicted a change at its start.
+  /// Whether the tangent of a longer step predicted a status change at the start of that step.
   bool expects_at_start = false;
   /// Whether the last step was rejected because slip at its end is unstable.
   bool slip_is_unstable = false;
-  /// Whether steps end at predicted events; otherwise they pass them, see most_unconfirmed.
+  /// True: steps end at predicted events. False: steps pass these events, see most_unconfirmed.
   bool locates = true;
   /// Largest number of steps per increment for the energy balance.
   static constexpr double most_parts = 64.0;
-  /// Longest step for which the energy balance is expected to hold [s]; infinity: unknown.
+  /// Longest step whose energy error is expected to be within its tolerance [s]; infinity: unknown.
   double balanced_step = std::numeric_limits<double>::infinity();
   double shortest_balanced = 0.0;  ///< Lower limit of steps shortened for the energy balance [s].
   int steps_to_hold = 0;           ///< Steps before a longer one is attempted.
   double largest_work = 0.0;       ///< Largest work of the temperature so far [J].
   double energy_gained = 0.0;      ///< Accumulated error of the energy balance [J].
   double slack_work = 0.0;         ///< Work of the dashpots in the last step [J].
-  /// Energy error of the last step if it was rejected for it [J].
+  /// Energy error of the last step if it was rejected for it [J]; otherwise infinity.
   double refused_loss = std::numeric_limits<double>::infinity();
   /// Rates of the unknowns at `time`; empty: unknown.
   VectorXd rate = {};
@@ -144,7 +144,7 @@ struct PathFollower {
   void seat_at(double opened, double opening, const std::vector<int>& with_play,
                VectorXd& there) const;
   SolveReport open_seated(const std::vector<int>& with_play, JointModel contact);
-  /// Pin forces below this are rounding of the force in the stiffest element [N].
+  /// Pin forces below this value are rounding errors of the force in the stiffest element [N].
   double seat_rounding() const { return 1e-14 * system.stiffness_scale() * system.size(); }
   void note(NoteKind kind, double when, const std::vector<int>& joints, double value = 0.0);
   bool note_slack(double when, const VectorXd& at, const Statuses& statuses);

@@ -58,9 +58,8 @@ Eigen::SparseMatrix<double> System::penalty_stiffness(const VectorXd& z, double 
   const linear::SparseView jacobian = at.jacobian();
   const Eigen::Index n = displacements_;
   const ByRows above = jacobian.block(0, 0, n, n).triangularView<Eigen::StrictlyUpper>();
-  // Joint forces are condensed: a constrained direction becomes a penalty spring. Rows without a
-  // constraint have no entries. Gradients of closures in metres are of order one, for any lever
-  // arm.
+  // Joint forces are condensed, which turns every constrained direction into a penalty spring. Rows
+  // without a constraint have no entries. Gradients of closures in metres are of order one.
   const ByRows holds = jacobian.block(n, 0, unknowns_ - n, n);
   const double stiffness = held * stiffness_scale_;
   Column column(n);

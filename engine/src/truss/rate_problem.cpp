@@ -17,7 +17,8 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Most joints at a limit for which a converged step is checked for other continuations.
+/// Largest number of joints at a limit for which a converged step is checked for other
+/// continuations.
 constexpr std::size_t most_joints = 8;
 /// Largest number of entries of the dense response matrix: 1 GiB.
 constexpr std::size_t most_numbers = std::size_t{1} << 27;
@@ -35,8 +36,8 @@ double farthest(const System& system, const VectorXd& z, const VectorXd& step) {
   return std::sqrt(share) * system.size();
 }
 
-/// The complementarity matrix if every candidate has two statuses, stick and slip in one direction,
-/// that differ in one row.
+/// The complementarity matrix. It exists only if every candidate has exactly two statuses, stick
+/// and slip in one direction, which differ in one row.
 std::optional<Eigen::MatrixXd> complementarity_matrix(const Branches& of) {
   const auto n = static_cast<Eigen::Index>(of.candidates.size());
   std::vector<Eigen::Index> row(static_cast<std::size_t>(n));
@@ -59,8 +60,8 @@ std::optional<Eigen::MatrixXd> complementarity_matrix(const Branches& of) {
     if (differs < 0) return std::nullopt;
     row[static_cast<std::size_t>(i)] = differs;
   }
-  // Complementary variables, both >= 0: slide in the slip direction, and friction limit less
-  // friction.
+  // The complementary variables, both >= 0, are the slide in the slip direction, and the friction
+  // limit minus friction.
   Eigen::MatrixXd matrix(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j < n; ++j) {
@@ -118,8 +119,8 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
         {joint, {start.statuses[index(joint)]}, system_->force_row(joint), rows, 0});
     return candidates.back();
   };
-  // Returns whether the status is new. An open joint has no normal, so the base uses a closed
-  // status.
+  // Adds a status to a candidate; returns whether it is new. The base (first status) must be
+  // closed: an open joint has no normal.
   const auto add = [](Candidate& to, JointStatus status) {
     if (to.has(status)) return false;
     to.branches.push_back(status);
@@ -136,7 +137,7 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
     if (!found.empty() && candidates.size() > most_joints) return answer;
   }
   for (const int joint : changing) candidate(joint);
-  // Every round adds at least one status of one of the joints.
+  // The loop ends, because every round adds at least one status to one of the joints.
   for (;;) {
     std::size_t numbers = 0;
     for (const Candidate& one : candidates) numbers += index(one.rows);
@@ -174,7 +175,8 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
       }
       if (all.back().singular) answer.singular = asking.statuses(*all.back().singular);
     }
-    // A contact in tension while it sticks and in penetration while it is open may slip.
+    // If a contact would be in tension while it sticks, and would penetrate while it is open, it
+    // may slip.
     for (std::size_t g = 0; g < groups.size() && !widened; ++g) {
       if (!all[g].motions.empty()) continue;
       for (const std::size_t i : groups[g]) {
@@ -186,7 +188,8 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
     }
     if (widened) continue;
 
-    // Continuations of one group with the first one of all others, to check the remaining joints.
+    // Combines a motion of one group with the first motion of every other group, to check the
+    // joints that are not candidates.
     const auto together = [&](std::size_t special, const Motion& with) {
       Motion whole{Choice(of->candidates.size(), 0), with.step, with.index};
       for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -210,8 +213,8 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
     }
     if (widened) continue;
 
-    // Groups with no continuation, or with several, determine the result; their joints are
-    // reported.
+    // Groups without a continuation (`stopped`) or with several (`parting`) determine the result.
+    // Their joints are reported.
     std::vector<int> stopped, parting;
     bool parts_only = true;
     bool examined = true;
@@ -221,9 +224,8 @@ RateAnswer RateProblem::solve(const VectorXd& z, double target, const StepStart&
       const auto count = std::count_if(motions.begin(), motions.end(),
                                        [](const Motion& one) { return one.index >= 0; });
       if (count == 0 && !all[g].examined) examined = false;
-      // The indices of all solutions add up to one (degree of the equations). Several stable
-      // solutions are therefore one up to rounding, if none is unstable and no set leaves a
-      // mechanism.
+      // The indices of all solutions sum to one (degree of the equations). Without unstable
+      // solutions and mechanisms, several stable solutions are therefore equal up to rounding.
       const bool is_one =
           count == 1 || (count > 1 && count == std::ssize(motions) && !all[g].singular);
       if (is_one) {

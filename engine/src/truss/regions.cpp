@@ -14,8 +14,8 @@ namespace {
 
 using numerics::Lists;
 
-/// Smallest number of items of a region: assembling them takes about ten times as long as starting
-/// a thread.
+/// Smallest number of elements and joints in a region. Their assembly takes about ten times as long
+/// as starting a thread.
 constexpr std::size_t least_parts = 2000;
 /// Largest number of regions: even distribution, and few items between regions.
 constexpr std::size_t most_regions = 64;
@@ -29,7 +29,7 @@ std::set<int> moving_with(const DofMap& dofs, const NodeDofs& at) {
   return found;
 }
 
-/// The free nodes of every item: elements type by type, then joints.
+/// The free nodes of every element (type by type), then of every joint.
 Lists moving_nodes(const DofMap& dofs, const ElementFrames& elements,
                    const std::vector<JointFrame>& joints) {
   Lists made;
@@ -52,8 +52,8 @@ Lists moving_nodes(const DofMap& dofs, const ElementFrames& elements,
   return made;
 }
 
-/// Region of every node; −1: fixed node. A breadth-first search orders the nodes, and the order is
-/// divided into parts with equal numbers of items.
+/// Assigns every node to a region; −1: fixed node. A breadth-first search orders the nodes. This
+/// order is divided into parts with equal numbers of elements and joints.
 std::vector<int> cut(const Lists& nodes_of, std::size_t nodes, std::size_t regions) {
   const Lists parts_of = nodes_of.inverted(nodes);
   std::vector<int> region(nodes, -1);

@@ -10,16 +10,16 @@
 
 namespace statejump::truss::detail {
 
-/// Items of a truss, by their indices in the model, each list in ascending order.
+/// Part of a truss: indices of its elements and joints in the model, in ascending order.
 struct Region {
   std::vector<int> loaded;                               ///< Nodes with a load.
   std::array<std::vector<int>, element_types> elements;  ///< Of each type.
   std::vector<int> joints;
 };
 
-/// Division of a truss for parallel assembly: regions without common free nodes, and the items
-/// between them, which are assembled afterwards. The division, and with it the order of sums in a
-/// row, depends on the truss alone. Results therefore do not depend on the number of threads.
+/// Division of a truss for parallel assembly: regions that share no free nodes, and the elements
+/// and joints between them, which are assembled afterwards. The division, and thus the order of
+/// sums, depends only on the truss, not on the number of threads.
 struct Regions {
   std::vector<Region> apart;  ///< Regions; a small truss has none.
   Region between;

@@ -15,17 +15,19 @@ namespace {
 
 /// Most steps of a snap; a longer motion counts as unstable.
 constexpr int most_snap_steps = 200;
-/// Increase of the dashpot level after a step without solution. Stiffer dashpots allow steps on a
-/// path with negative stiffness.
+/// Increase of the dashpot level after a step without solution. With stiffer dashpots, steps
+/// converge even if the truss has a negative stiffness.
 constexpr double stiffer = 0.5;
-/// Initial level: as stiff as the stiffest element. Highest level: motion is negligible.
+/// Initial dashpot level, as stiff as the stiffest element, and highest level, with negligible
+/// motion.
 constexpr double first_level = 4.0;
 constexpr double stiffest = 6.0;
-/// A snap has ended if a step contributes less than this fraction of it.
+/// A snap has ended if a step adds less than this fraction of its motion.
 constexpr double at_rest = 1e-6;
-/// Failed steps after which the softest convergent dashpots are not softened further.
+/// After this many failed steps, the softest dashpots with which steps converged are not softened
+/// further.
 constexpr int most_refused = 3;
-/// Steps at level 0 with decreasing motion after which the motion counts as slow.
+/// After this many steps at level 0 with decreasing motion, the motion counts as slow.
 constexpr int most_slower = 16;
 /// Most joints that a snap note names.
 constexpr std::size_t most_named = 3;
@@ -54,7 +56,7 @@ double largest_play(const Model& model) {
   return largest;
 }
 
-/// Motion of a softly held element due to rounding of the forces [m].
+/// Motion that rounding errors of the forces cause in an element that only soft dashpots hold [m].
 double moved_by_rounding(const System& system, const VectorXd& z) {
   return 8.0 * system.force_rounding(z) / system.slack_stiffness(0.0);
 }
@@ -72,13 +74,13 @@ double lever_of(const Model& model, double size) {
 
 /// Moves journals within their play, damped by dashpots while they slip, until they are at rest.
 ///
-/// Every step is a proximal point step of the potential with the present friction cones. Dashpots
-/// are at first as stiff as the stiffest element. They become softer while steps converge and
-/// stiffer if they do not; at the end their forces are negligible. They do not stabilise an
-/// instability beyond the play.
-/// @param step takes one step with dashpots of a level; returns its motion [m], or nothing if it
-/// has no solution and the state is unchanged
-/// @param drift motion of a step without any instability [m]
+/// Every step is a proximal point step on the potential with the present friction cones. At first
+/// dashpots are as stiff as the stiffest element. They become softer while steps converge, and
+/// stiffer if steps fail; at the end their forces are negligible. They do not stabilise an
+/// instability whose motion exceeds the play.
+/// @param step takes one step with dashpots of the given level. Returns the motion [m], or nothing
+/// if there is no solution; the state is then unchanged
+/// @param drift motion in a step if nothing is unstable [m]
 bool PathFollower::come_to_rest(const std::function<std::optional<double>(double level)>& step,
                                 double drift) {
   const double most_carried = system.slack_stiffness(0.0) * largest_play(model);
@@ -114,11 +116,12 @@ bool PathFollower::come_to_rest(const std::function<std::optional<double>(double
 
 /// Follows unstable slip within the play of the joints until it comes to rest.
 ///
-/// A journal that slips from an unstable position snaps to a stable one within its play. Statics
-/// does not describe this motion. Dashpots in joints with play do, as for slack elements, at a
-/// nearly constant temperature. An instability beyond the play remains a failure.
-/// @param until the snap ends before this time [s]
-/// @returns false if dashpots do not stabilise it or no joint has play; the state is then unchanged
+/// A journal that slips from an unstable position snaps to a stable position within its play.
+/// Statics does not describe this motion. Dashpots in joints with play describe it at a nearly
+/// constant temperature. An instability that exceeds the play remains a failure.
+/// @param until time before which the snap must end [s]
+/// @returns false if dashpots do not stabilise the slip, or if no joint has play; the state is then
+/// unchanged
 bool PathFollower::follow_snap(double until, double tolerance) {
   const double plays = sum_of_plays(model) * lever;
   if (plays == 0.0 || !options.locate_events) return false;

@@ -12,7 +12,7 @@ namespace {
 
 /// Smallest step of the opened fraction of the clearances.
 constexpr double least_opening = 1e-4;
-/// First step of that fraction, and the step after a difficult one.
+/// Step of the opened fraction, at first and after a difficult step.
 constexpr double first_opening = 0.125;
 
 }  // namespace
@@ -95,14 +95,15 @@ void PathFollower::start() {
   note(NoteKind::large_start, 0.0, {}, length_of(z, system.displacements()));
 }
 
-/// Throws if the truss has free modes with these statuses. Free modes of slack elements that no
-/// load moves are permitted.
+/// Throws a failure if the truss has free modes with the given statuses. Free modes of slack
+/// elements on which loads do no work are permitted.
 void PathFollower::refuse_mechanism(double when, const Statuses& statuses,
                                     JointModel joints) const {
   FoundModes modes = mechanism(system, z, when, statuses, joints);
   if (!modes || (any_open(statuses) && !are_loaded(modes.shapes))) return;
   FailureFields fields = failure_at(FailureKind::mechanism, model, when);
-  // If the truss is no mechanism with all joints fixed, friction is at its limit everywhere.
+  // If the truss is a mechanism only because joints slip, the failure is that friction is
+  // exhausted.
   if (!mechanism(system, z, when, held_but_open(statuses), JointModel::pins)) {
     fields.kind = FailureKind::friction_exhausted;
     fields.joints = slipping(statuses);
@@ -118,9 +119,9 @@ std::vector<FailureJoint> PathFollower::slipping(const Statuses& statuses) const
   return found;
 }
 
-/// Throws if the state is unstable even with all closed joints fixed.
+/// Throws a failure if the state is unstable even with all closed joints fixed.
 void PathFollower::refuse_buckled(double when) {
-  // The factors below need as much memory as those of the rates.
+  // Makes room: the factors of the stability check need as much memory as these.
   rates.release();
   for (;;) {
     const double slack = system.slack_stiffness(slack_level);
@@ -132,7 +133,7 @@ void PathFollower::refuse_buckled(double when) {
   }
 }
 
-/// Adds a note about the joints that no note of this kind has named so far.
+/// Adds a note about those of the joints that no note of this kind has named before.
 void PathFollower::note(NoteKind kind, double when, const std::vector<int>& joints, double value) {
   Note made{kind, when, model.temperature_change(0, 1.0, when), {}, value};
   for (const int i : joints) {
@@ -142,8 +143,8 @@ void PathFollower::note(NoteKind kind, double when, const std::vector<int>& join
   path.notes.push_back(std::move(made));
 }
 
-/// Notes open joints if their elements are slack.
-/// @returns whether they are
+/// Adds a note about open joints if their elements are slack.
+/// @returns whether elements are slack
 bool PathFollower::note_slack(double when, const VectorXd& at, const Statuses& statuses) {
   std::vector<int> open;
   for (int i = 0; i < static_cast<int>(statuses.size()); ++i) {
@@ -154,8 +155,8 @@ bool PathFollower::note_slack(double when, const VectorXd& at, const Statuses& s
   return is_loose;
 }
 
-/// Raises the level of the dashpots of slack joints; false: no joint is open, or the level is
-/// highest.
+/// Raises the level of the dashpots of slack joints. Returns false if no joint is open, or if the
+/// level is already the highest.
 bool PathFollower::stiffen_slack(const Statuses& statuses) {
   if (!any_open(statuses) || slack_level >= System::most_slack_level) return false;
   slack_level = std::min(slack_level + 1.0, System::most_slack_level);
@@ -163,8 +164,8 @@ bool PathFollower::stiffen_slack(const Statuses& statuses) {
   return true;
 }
 
-/// Lets dashpots hold all joints with play, or stiffens them, if elements are slack and steps have
-/// no solution; false: no element is slack, or the level is highest.
+/// If elements are slack and steps have no solution: adds dashpots to all joints with play, or
+/// stiffens them. Returns false if no element is slack or the level is highest.
 bool PathFollower::damp() {
   if (!has_slack() || slack_level >= System::stiffest_level) return false;
   softest_level = slack_level + 2.0 * softer;
@@ -174,7 +175,7 @@ bool PathFollower::damp() {
   return true;
 }
 
-/// Notes sticking joints with dependent constraints, if the last solve found any.
+/// Adds a note about sticking joints with dependent constraints, if any were found.
 void PathFollower::note_not_unique(double when) {
   if (newton.regularisation() != Regularisation::reactions) return;
   note(NoteKind::not_unique, when, newton.dependent_joints());
@@ -189,8 +190,8 @@ void PathFollower::open_clearances() {
   const VectorXd pinned_z = z;
   const Statuses pinned = origin.statuses;
   SolveReport last;
-  // Journals first move without friction to where their contact force balances. Many lightly loaded
-  // journals have no such position nearby; they then stay where their pin force pushes them.
+  // First, journals move without friction until contact forces balance. If many lightly loaded
+  // journals have no such position nearby, friction then holds them where pin forces push them.
   for (const JointModel contact : {JointModel::frictionless, JointModel::friction}) {
     z = pinned_z;
     origin = system.begin(z, 0.0, pinned, 1.0);
@@ -217,7 +218,7 @@ void PathFollower::open_clearances() {
   if (opens) refuse_buckled(0.0);
 }
 
-/// Brings every journal into contact in the direction of its pin force. A journal without pin force
+/// Puts every journal into contact, in the direction of its pin force. A journal without pin force
 /// starts open in the middle of its play.
 void PathFollower::seat(const std::vector<int>& with_play, JointModel contact) {
   for (const int i : with_play) {
@@ -231,10 +232,10 @@ void PathFollower::seat(const std::vector<int>& with_play, JointModel contact) {
   }
 }
 
-/// Opens the clearances in steps, each from the last equilibrium, because links rotate meanwhile.
-/// Steps grow while they converge.
-/// @returns how the last solve ended; if it converged, `z` and the statuses are those of the full
-/// clearances
+/// Opens the clearances in steps, because links rotate while clearances open. Each step starts from
+/// the last equilibrium. The step size grows while steps converge.
+/// @returns how the last solve ended; if it converged, `z` and the statuses are those with fully
+/// open clearances
 SolveReport PathFollower::open_seated(const std::vector<int>& with_play, JointModel contact) {
   SolveReport report;
   double opened = 0.0;
@@ -278,8 +279,8 @@ SolveReport PathFollower::open_seated(const std::vector<int>& with_play, JointMo
   return report;
 }
 
-/// Moves journals without an equilibrium nearby to one, damped by dashpots, at partly open
-/// clearances.
+/// Moves journals that have no equilibrium nearby until they reach one, with partly open
+/// clearances. Dashpots damp the motion.
 /// @returns false if they do not come to rest; the state is then unchanged
 bool PathFollower::come_to_rest_at(double opening, JointModel contact,
                                    const std::vector<int>& with_play, double opened) {
@@ -311,7 +312,7 @@ bool PathFollower::come_to_rest_at(double opening, JointModel contact,
   return false;
 }
 
-/// Moves journals in contact as the clearances open, in the direction of their forces.
+/// Moves journals in contact along their forces by as much as the clearances open.
 void PathFollower::seat_at(double opened, double opening, const std::vector<int>& with_play,
                            VectorXd& there) const {
   for (const int i : with_play) {

@@ -32,7 +32,8 @@ Joint without_friction(const LatchHinge& joint) {
   return loose;
 }
 
-/// All springs of the joint end in sliders: without friction it is a prismatic joint.
+/// All springs of an Iwan joint end in friction sliders, so without friction it is a prismatic
+/// joint.
 Joint without_friction(const IwanJoint& joint) {
   Slider loose;
   loose.name = joint.name;
@@ -56,7 +57,8 @@ Model without_friction(const Model& model) {
   return loose;
 }
 
-/// Status with which friction begins: a slipping joint sticks; a stop or an open joint stays so.
+/// Status with which friction begins. A slipping joint without play sticks; no other status
+/// changes.
 JointStatus begins(const Joint& joint, JointStatus status) {
   if (status == JointStatus::open) return status;
   if (std::visit([](const auto& one) { return one.has_play(); }, joint)) return status;
@@ -75,8 +77,8 @@ void begin(const IwanJoint& joint, const Trial& trial, JointStatus, double* now)
   std::fill_n(now, joint.history(), joint.axis.dot(trial.moved[0] - trial.moved[1]));
 }
 
-/// Its memory is the accumulated slip, which is the whole slide at zero force. With play, the
-/// joint's own start applies.
+/// Memory of other joints: the accumulated slip, which is the whole slide at zero force. A joint
+/// with play starts as usual.
 template <class Type>
 void begin(const Type& joint, const Trial& trial, JointStatus status, double* now) {
   joint.begin(trial, status, now);

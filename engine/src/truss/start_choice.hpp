@@ -5,10 +5,10 @@
 
 namespace statejump::truss::detail {
 
-/// Moves a path follower from the reference configuration to the first equilibrium, according to
-/// Options::start_friction. With StartFriction::frictionless the equilibrium is that of a truss
-/// without friction, and slides are counted from there. Fails like PathFollower::start(); without
-/// friction a truss may be a mechanism under its loads.
+/// Moves a path follower from the reference configuration to its first equilibrium, as
+/// Options::start_friction specifies. With StartFriction::frictionless the equilibrium is that of a
+/// truss without friction, and slides are counted from there. Throws like PathFollower::start().
+/// Without friction, a truss may be a mechanism under its loads.
 void start_as_chosen(PathFollower& follower);
 
 }  // namespace statejump::truss::detail

@@ -14,7 +14,8 @@
 
 namespace statejump::truss::detail {
 
-// Enumeration of the statuses of joints at a limit, with the factors of one set; see RateProblem.
+// Enumeration of the statuses of joints at a limit. All sets of statuses use the factors of one
+// set; see RateProblem.
 
 /// A joint at a limit and its possible statuses; the first one is a closed status.
 struct Candidate {
@@ -49,7 +50,8 @@ struct Branches {
 /// Largest displacement [m].
 double length_of(const VectorXd& step, int displacements);
 
-/// Factors the base and evaluates the other statuses; empty if the base is singular.
+/// Factors the base (first status of every candidate) and evaluates the other statuses. Empty if
+/// the base is singular.
 std::optional<Branches> prepare(const System& system, const VectorXd& z, double target,
                                 const StepStart& start, std::vector<Candidate> candidates,
                                 Assembly& at, linear::SparseFactor& factor);
@@ -59,8 +61,7 @@ using Choice = std::vector<std::size_t>;
 /// Indices of some candidates.
 using Group = std::vector<std::size_t>;
 
-/// Step for one choice of the statuses in a group, with the other candidates on the base, and the
-/// index of that choice.
+/// One choice of statuses in a group, with its step and index while other candidates keep the base.
 struct Motion {
   Choice choice;
   VectorXd step;
@@ -70,7 +71,7 @@ struct Motion {
 /// Groups of candidates that influence each other, directly or through others.
 std::vector<Group> groups_of(const Branches& of);
 
-/// Evaluates a motion: its end, and the statuses that the joints request there.
+/// Evaluates the state at the end of a motion, and the statuses that the joints request there.
 class Asking {
  public:
   Asking(const System& system, const VectorXd& z, double target, const StepStart& start,
@@ -116,7 +117,7 @@ class Asking {
   double near_;
 };
 
-/// Candidate and the status that it requests, not yet among its statuses.
+/// Index of a candidate, and a requested status that is not yet among its statuses.
 using RequestedStatus = std::pair<std::size_t, JointStatus>;
 
 /// Admissible motions of a group; equal motions are listed once.
@@ -128,7 +129,7 @@ struct Found {
   std::optional<Choice> singular;  ///< Statuses for which the equations are singular.
 };
 
-/// All motions of a small group, or the one that pivoting finds in a large group.
+/// All admissible motions of a small group, or the one motion that pivoting finds in a large group.
 Found motions_of(const Branches& of, const Group& group, const Asking& asking);
 
 }  // namespace statejump::truss::detail

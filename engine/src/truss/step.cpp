@@ -16,17 +16,17 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Fraction of the remaining error allowance for events that one step may use.
+/// One step may use this fraction of the energy error that is still allowed for events.
 constexpr double share_of_an_event = 0.02;
-/// Steps before a longer one is attempted after an energy error. Failed attempts cost a tenth at
-/// most.
+/// Number of steps after an energy error until a longer step is attempted. Failed attempts then add
+/// at most a tenth to the cost.
 constexpr int most_held_steps = 10;
 
 }  // namespace
 
 /// Whether a joint that stopped sliding before `target` may have slid by more than rounding before
-/// it stopped. That slide is lost when a step ends in a stick. If a joint comes to rest smoothly,
-/// the lost slide is too small to justify a shorter step.
+/// it stopped. This slide is lost if the joint sticks at the end of the step. If a joint comes to
+/// rest smoothly, the lost slide is too small to justify a shorter step.
 bool PathFollower::slide_at_stake(int i, JointStatus before, double target,
                                   const Rounding& rounding) const {
   if (before == JointStatus::open) return true;
@@ -37,8 +37,8 @@ bool PathFollower::slide_at_stake(int i, JointStatus before, double target,
   return std::abs(slide_rate[i]) * (target - time) > least;
 }
 
-/// Fraction of a step to `to` at which a stiffness first jumps; 1: none does. Linear interpolation
-/// of the step.
+/// Fraction of the step to `to`, interpolated linearly, at which a stiffness first jumps; 1: none
+/// jumps.
 double PathFollower::first_edge(double target, const VectorXd& to, const StepStart& begin,
                                 const Rounding& rounding) const {
   const VectorXd before = system.beyond_edges(z, time, origin);
@@ -52,10 +52,10 @@ double PathFollower::first_edge(double target, const VectorXd& to, const StepSta
   return share;
 }
 
-/// Whether the energy balance of a step is accurate enough. A step is also accepted if shortening
-/// it did not halve the error, which is then rounding. Half of the allowed error is distributed
-/// over time; each step may use a small fraction of the other half, so that single events need no
-/// short steps. Work absorbed by the dashpots of slack joints is no error.
+/// Whether the energy balance of a step is accurate enough. If a shorter step did not halve the
+/// error, it is rounding, and the step is accepted. Half of the allowed error is distributed over
+/// time. Each step may use a small fraction of the other half, so that single events do not need
+/// short steps. Work absorbed by dashpots of slack joints is no error.
 bool PathFollower::balances(const State& next, const VectorXd& to, double step, double taken) {
   const double duration = model.programs.front().duration();
   const double heat = next.joint_dissipation.sum();
@@ -63,8 +63,9 @@ bool PathFollower::balances(const State& next, const VectorXd& to, double step, 
   const double unbalanced = work - (next.elastic_energy - state.elastic_energy) -
                             (next.load_potential - state.load_potential) -
                             (heat - state.joint_dissipation.sum());
-  // Dashpot forces jump to zero at the start of a step. The trapezoidal rule for the work of the
-  // bars attributes up to the mean dashpot force of both steps times the motion to the dashpots.
+  // Dashpot forces jump to zero at the start of a step. The trapezoidal rule for the bars thus
+  // assigns to the dashpots at most their mean force in this and the previous step times the
+  // motion.
   const double by_dashpots = 0.5 * (taken + std::sqrt(taken * slack_work));
   const double gained = std::min(0.0, unbalanced) + std::max(0.0, unbalanced - by_dashpots);
   largest_work = std::max(largest_work, std::abs(next.thermal_work));
@@ -73,12 +74,14 @@ bool PathFollower::balances(const State& next, const VectorXd& to, double step, 
   const double half = 0.5 * options.energy_tolerance * scale;
   const double lost = std::abs(gained);
   const double stored = std::abs(next.elastic_energy) + std::abs(next.load_potential) + heat;
-  // Rounding of the energies, and work of the rounding error of bar forces in this step.
+  // Rounding error of the energies, plus the work that the rounding errors of bar forces do in this
+  // step.
   double rounding =
       4.0 * std::numeric_limits<double>::epsilon() * (stored + std::abs(next.thermal_work)) +
       system.force_rounding(to) * length_of(to - z, system.displacements()) *
           std::sqrt(static_cast<double>(model.links.size()));
-  // If parts expand freely, all work is rounding, or the error of the chords of the path.
+  // If parts expand freely, all work is rounding, or an error caused by the replacement of the path
+  // by chords.
   if (stored < lost) rounding += system.force_rounding(to) * system.reach(to);
   const double by_time = half * step / duration;
   const double by_event = share_of_an_event * std::max(0.0, half - std::abs(energy_gained));
@@ -100,20 +103,22 @@ bool PathFollower::balances(const State& next, const VectorXd& to, double step, 
   return true;
 }
 
-/// Attempts one step. Commits it if it converged and contains no event, or is not longer than
-/// `tolerance`; otherwise leaves the state unchanged.
+/// Attempts one step. The step is committed if it converges, and either contains no event or is not
+/// longer than `tolerance`. Otherwise the state is unchanged.
 StepEnd PathFollower::step_to(double target, double tolerance) {
   slip_is_unstable = false;
   // The sum time + tolerance is rounded.
   const bool is_short = target - time <= 1.5 * tolerance;
-  // A joint that opens may leave a mechanism, which only a short step detects.
+  // A joint that opens may leave a mechanism. Only a short step can detect this, so short steps
+  // have dashpots.
   origin.slack_stiffness = is_short || is_slack ? system.slack_stiffness(slack_level) : 0.0;
   origin.is_loose = is_loose;
   VectorXd trial = z;
   Statuses trial_statuses =
       is_short && !changed_at_start.empty() ? changed_at_start : origin.statuses;
   const StepStart& begin = origin;
-  // Event detection: the solve ends at the first change, or passes it if it is not to be located.
+  // For event detection, the solve ends at the first status change, or passes it if changes are not
+  // to be located.
   std::optional<EventSearch> search;
   if (!is_short) {
     search = EventSearch{time, tolerance / (target - time), options.locate_events && locates,
@@ -175,7 +180,8 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
       return StepEnd::event_inside;
     }
   }
-  // A joint that was predicted to slip but ends in another status has slid in between.
+  // If a joint was predicted to slip but has another status at the end of the step, it has slid in
+  // between.
   const auto slid_between = [&](const std::pair<int, JointStatus>& left) {
     return is_slip(left.second) && left.second != trial_statuses[index(left.first)] &&
            system.remembers_when(left.first, left.second, trial_statuses[index(left.first)]);
@@ -186,7 +192,7 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
   }
   const double idle_force = system.idle_force(trial, target, begin, trial_statuses);
   const auto is_idle = [&](int i) { return system.is_idle(i, z, trial, idle_force); };
-  // Whether the time of a joint's status change in the step affects the state.
+  // Whether the time at which a joint changes its status within the step affects the state.
   const auto matters = [&](int i) {
     const JointStatus before = origin.statuses[index(i)];
     const JointStatus after = trial_statuses[index(i)];
@@ -195,13 +201,15 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
                                                    : options.locate_events;
   };
   if (!is_short && locates && system.first_joint(matters) >= 0) {
-    // The behaviour of a contact after it closes does not determine how it closes.
+    // If a contact closes, its status at the end of the step does not show with which status it
+    // closes.
     const int closes = system.first_joint([&](int i) {
       return origin.statuses[index(i)] == JointStatus::open &&
              trial_statuses[index(i)] != JointStatus::open;
     });
     if (options.locate_events && looks_at_start && closes < 0 && !report.leaving) {
-      // All changes seem to occur at the start. In a short step rounding hides which joints change.
+      // All changes seem to occur at the start. Their statuses are stored, because rounding hides
+      // them in a short step.
       changed_at_start = trial_statuses;
       event_share = 0.0;
     }
@@ -236,8 +244,8 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
     ++path.solves;
     return StepEnd::event_inside;
   }
-  // Partial slip has no located events. The start and end of full sliding are reported for the step
-  // in which they are found.
+  // Events of partial slip are not located. The start and end of full sliding are reported for the
+  // step in which they are found.
   const Statuses decided = trial_statuses;
   system.settle(trial, target, begin, trial_statuses);
   for (int i = 0; i < joints; ++i) {
@@ -249,7 +257,8 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
   const std::vector<double> program_rates = program_rates_before(target);
   VectorXd rate_after;
   VectorXd slide_rate_after = VectorXd::Zero(joints);
-  // On a smooth part of the path the rates are nearly those of the parabola through both ends.
+  // On a smooth part of the path, a good guess of the rates is that of the parabola through both
+  // ends.
   const bool follows = !is_short && rate.size() > 0 && trial_statuses == origin.statuses;
   const VectorXd guess =
       follows ? VectorXd(2.0 / (target - time) * (trial - z) - rate) : VectorXd();
@@ -263,8 +272,8 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
   const VectorXd slips = system.slips(trial, target, begin, after);
   const Ends ends{time, target,     begin,      trial_statuses,   z,    trial,
                   rate, rate_after, slide_rate, slide_rate_after, slips};
-  // The cubics describe at most a joint's own change, and without location a step may contain many
-  // changes.
+  // The cubics are valid only if at most one joint changes its status. Without event location, a
+  // step may contain many changes.
   const bool told = options.locate_events || events.size() <= 1;
   if (!is_short && told && rate.size() > 0 && rate_after.size() > 0) {
     event_share = locates ? first_turn(ends) : 1.0;
@@ -282,7 +291,8 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
   const std::optional<System::Halves> halves = system.halves_of(way, begin, trial_statuses);
   system.note_slides(way, halves, begin, after);
   if (halves && begin.last_step == 0.0 && !after.lost.isZero(0.0)) {
-    // The first step of a smooth part has no predicted quadrature error: repeat it with one.
+    // The first step of a smooth part had no predicted quadrature error. It is repeated with the
+    // error found.
     ++path.solves;
     origin.lost = after.lost;
     origin.last_step = way.step();
@@ -326,9 +336,9 @@ StepEnd PathFollower::step_to(double target, double tolerance) {
   return StepEnd::done;
 }
 
-/// Takes a step. If it has no solution, the dashpots of slack or opening joints are stiffened, and
-/// finally a snap is followed.
-/// @param until corner of the programs that a snap does not pass [s]
+/// Takes a step. Without a solution, dashpots of slack or opening joints are stiffened; finally a
+/// snap is followed.
+/// @param until time of the next corner of the programs, before which a snap must end [s]
 StepEnd PathFollower::step_with_slack(double target, double until, double tolerance) {
   const Statuses before = origin.statuses;
   for (;;) {

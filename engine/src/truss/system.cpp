@@ -296,7 +296,7 @@ void System::apply(int joint, const Seat& seat, VectorXd& z) const {
     const double along = place.directions->col(i).dot(seat.moved);
     double squared = 0.0;
     place.each_term(i, [&](int, double factor) { squared += factor * factor; });
-    // Smallest change of the dofs that moves the node by this distance.
+    // Changes the dofs by the smallest amount that moves the node by this distance.
     place.each_term(i, [&](int row, double factor) { z[row] += factor / squared * along; });
   }
   for (int k = 0; k < frame.forces; ++k) z[force_row_[index(joint)] + k] = seat.force[index(k)];

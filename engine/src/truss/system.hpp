@@ -43,12 +43,12 @@ inline Statuses held_but_open(Statuses statuses) {
   return statuses;
 }
 
-/// State at the start of a step. Slides are counted from here.
+/// State at the start of a step. Slides in the step are measured from this state.
 struct StepStart {
   Statuses statuses;
   VectorXd history;   ///< Memory of all joints, one after the other.
   double time = 0.0;  ///< [s]
-  /// Quadrature error of the last step's slide that this step corrects [m]; see
+  /// Quadrature error of the slide in the last step, which this step corrects [m]; see
   /// System::note_slides(). Empty: no joint rolls.
   Eigen::Matrix3Xd owed;
   Eigen::Matrix3Xd lost;   ///< Quadrature error of the slide in the last step [m].
@@ -60,8 +60,8 @@ struct StepStart {
   bool is_loose = false;  ///< Whether elements are slack: only dashpots determine their positions.
   double dashpot_force = 0.0;  ///< Sum of all dashpot forces of joints in the last step [N].
 
-  /// Expected quadrature error of a slide in the step to time `to` [m]: that of the last step,
-  /// scaled with the third power of the step length. It is not extrapolated to longer steps.
+  /// Expected quadrature error of a slide in the step to the time `to` [m]. It is the error of the
+  /// last step times the third power of the ratio of step lengths. This ratio is limited to 1.
   Vector3d foreseen(int joint, double to) const {
     if (!(last_step > 0.0)) return Vector3d::Zero();
     const double share = std::min(1.0, (to - time) / last_step);
@@ -73,8 +73,8 @@ struct StepStart {
   }
 };
 
-/// Tolerance of closures over System::reach(): some hundred roundings. A distance below it from the
-/// bound of an inequality counts as zero.
+/// Tolerance of closures divided by System::reach(); it is some hundred roundings. A smaller
+/// distance from the bound of an inequality counts as zero.
 constexpr double closure_tolerance = 1e-13;
 
 /// Tolerances of lengths [m] and forces [N] for inequalities.
@@ -89,8 +89,8 @@ ElementFrames frames_of_elements(const Model& model);
 /// Equations of a truss: layout of the unknowns, residual, Jacobian, inequalities. Elements and
 /// joints contribute through their interfaces; this class does not depend on their types.
 ///
-/// Unknowns z: free displacements of the nodes [m], then the forces of the joints [N]. Rows have
-/// the same order.
+/// Unknowns z: free displacements of the nodes [m], then joint forces [N]. Rows have the same
+/// order.
 class System {
  public:
   /// The model must outlive the system and be valid.
@@ -108,20 +108,22 @@ class System {
     });
   }
 
-  /// Evaluates residual and Jacobian of one joint; lists the entries of the Jacobian.
+  /// Evaluates residual and Jacobian of one joint. The entries of the Jacobian are listed without
+  /// sums.
   void evaluate_joint(int joint, const VectorXd& z, double time, const StepStart& start,
                       JointStatus status, JointModel model, double opening, Assembly& to) const;
 
   /// Parts of a truss that are evaluated.
   enum class Parts : unsigned char { all, elements, joints };
 
-  /// Storage for residual and Jacobian of these parts, with the fixed sparsity pattern.
+  /// Creates storage for residual and Jacobian of the given parts, with their fixed sparsity
+  /// pattern.
   Assembly assembly(Parts parts = Parts::all) const {
     return parts == Parts::all ? pattern_ : recorded(parts);
   }
 
   /// Evaluates residual and Jacobian at z with the given statuses.
-  /// @param opening open fraction of the clearances (start)
+  /// @param opening opened fraction of the clearances
   void evaluate(const VectorXd& z, double time, const StepStart& start, const Statuses& statuses,
                 JointModel joints, double opening, Assembly& to) const;
   /// Evaluates elements and loads only.
@@ -130,25 +132,28 @@ class System {
   void evaluate_joints(const VectorXd& z, double time, const StepStart& start,
                        const Statuses& statuses, Assembly& to) const;
 
-  /// Partial derivative of the residual with respect to time, from the rates of the programs [K/s].
+  /// Partial derivative of the residual with respect to time, caused by the rates of the
+  /// temperature programs [K/s].
   VectorXd heating(const VectorXd& z, double time, const StepStart& start, const Statuses& statuses,
                    const std::vector<double>& program_rates) const;
 
   /// Slip rates of all slipping joints at z [m/s]; 0 for the others.
-  /// @param rate of the unknowns
-  /// @param program_rates of the programs [K/s]
+  /// @param rate rates of the unknowns
+  /// @param program_rates rates of the temperature programs [K/s]
   VectorXd slide_rates(const VectorXd& z, double time, const StepStart& start,
                        const Statuses& statuses, const VectorXd& rate,
                        const std::vector<double>& program_rates) const;
 
-  /// Calls `work(joint)` for every joint, in several threads. It may write only data of its joint.
+  /// Calls `work(joint)` for every joint, in several threads. `work` may write only data of its own
+  /// joint.
   template <class Work>
   void each_joint(Work&& work) const {
     each_in_parallel(model_->joints.size(), joints_at_once,
                      [&](std::size_t i) { work(static_cast<int>(i)); });
   }
 
-  /// Lowest joint for which `is(joint)` holds, evaluated in several threads; −1: none.
+  /// Lowest index of a joint for which `is(joint)` returns true; −1: none. Several threads evaluate
+  /// it.
   template <class Is>
   int first_joint(Is&& is) const {
     constexpr int none = std::numeric_limits<int>::max();
@@ -164,7 +169,7 @@ class System {
   Statuses all_stick() const { return Statuses(model_->joints.size(), JointStatus::stick); }
 
   /// Status that the inequalities of a joint require, given the status whose rows hold at z.
-  /// @param moved displacements at z
+  /// @param moved displacements at z [m]
   JointStatus decide(int joint, const VectorXd& z, const Eigen::Matrix3Xd& moved, double time,
                      const StepStart& start, JointModel joints, double opening, JointStatus status,
                      const Rounding& rounding) const;
@@ -172,14 +177,14 @@ class System {
                      JointModel joints, double opening, JointStatus status,
                      const Rounding& rounding) const;
 
-  /// Replaces the statuses of joints whose law has one row for stick and slip by those at the end
-  /// of the step.
+  /// Sets the statuses of joints whose law has one row for stick and slip to those at the end of
+  /// the step.
   void settle(const VectorXd& z, double time, const StepStart& start, Statuses& statuses) const;
 
-  /// The state as the start of the first step, without memory of friction.
+  /// The state at z as the start of the first step, without memory of friction.
   StepStart begin(const VectorXd& z, double time, const Statuses& statuses, double opening) const;
-  /// The state as the start of the next step.
-  /// @param last start of the step that led to the state
+  /// The state at z as the start of the next step.
+  /// @param last start of the step that led to this state
   StepStart commit(const VectorXd& z, double time, const Statuses& statuses,
                    const StepStart& last) const;
 
@@ -188,31 +193,34 @@ class System {
   VectorXd slips(const VectorXd& z, double time, const StepStart& start,
                  const StepStart& after) const;
 
-  /// Distances of cables and joints beyond the edges at which their stiffness jumps [m].
+  /// Distances by which cables and joints are beyond the edges at which their stiffness jumps [m].
   VectorXd beyond_edges(const VectorXd& z, double time, const StepStart& now) const;
 
-  /// A step divided at the middle of its cubic, for Richardson extrapolation.
+  /// A step divided into two halves at the middle of its cubic interpolation, for Richardson
+  /// extrapolation.
   struct Halves {
     VectorXd middle;
     double time;      ///< Time of the middle [s].
     StepStart half;   ///< State at the middle as the start of the second half.
     StepStart whole;  ///< State at the end, reached in two halves.
   };
-  /// Empty if the course is straight, or if no joint needs the halves.
+  /// Divides a step into halves. The result is empty if the interpolation is straight, or if no
+  /// joint needs the halves.
   std::optional<Halves> halves_of(const Way& way, const StepStart& start,
                                   const Statuses& statuses) const;
   /// Stores the quadrature errors of the slides of a step in `after`. The trapezoidal rule computes
-  /// slides such as ∫ |d| dφ with a third-order error per step. The error of the last step is
-  /// estimated from its halves (Richardson) and corrected in the next step. As the next step has
-  /// nearly the same error, this error is predicted and corrected as well. The remaining error of
-  /// any state is of fourth order.
+  /// slides such as ∫ |d| dφ with a third-order error per step. The error of this step is estimated
+  /// from its halves (Richardson) and corrected in the next step. The next step has nearly the same
+  /// error; its error is predicted from that of this step and corrected too. The remaining error of
+  /// every state is of fourth order.
   void note_slides(const Way& way, const std::optional<Halves>& halves, const StepStart& start,
                    StepStart& after) const;
 
   /// Adds the heat of friction and the work of the temperature in a step to the state.
   /// @param after the state at z as the start of the next step
   /// @param slips see slips()
-  /// @param way course of the unknowns; with rates both are of fourth order, without of second
+  /// @param way interpolation of the unknowns; with rates, heat and work are fourth-order accurate,
+  /// otherwise second-order
   void account(const Way& way, const std::optional<Halves>& halves, const StepStart& start,
                const StepStart& after, const VectorXd& slips, State& state) const;
   /// Work of the temperature on elements in a step [J].
@@ -240,7 +248,7 @@ class System {
               const StepStart& start, JointModel joints, double opening) const;
 
   Vector3d displacement(int node, const VectorXd& z) const { return dofs_.displacement(node, z); }
-  /// Displacements of all nodes [m], to evaluate many joints at one state.
+  /// Computes the displacements of all nodes [m] at z once, to evaluate many joints at this state.
   void displacements(const VectorXd& z, Eigen::Matrix3Xd& moved) const {
     dofs_.displacements(z, moved);
   }
@@ -250,58 +258,60 @@ class System {
     return moved;
   }
 
-  /// Symmetric stiffness of elements at z plus penalty stiffness of closed joints, to search for
-  /// mechanisms and instability. Lower triangle, free displacements only. Open joints, and slipping
-  /// directions, contribute no penalty.
-  /// @param held penalty stiffness of a constrained direction, over that of the stiffest element
+  /// Symmetric stiffness of the elements at z plus penalty stiffness of the closed joints, to
+  /// search for mechanisms and instability. Lower triangle for free displacements only. Open joints
+  /// and slipping directions have no penalty stiffness.
+  /// @param held penalty stiffness of a constrained direction, divided by the stiffness of the
+  /// stiffest element
   /// @param slack stiffness of an open joint [N/m]
   Eigen::SparseMatrix<double> penalty_stiffness(const VectorXd& z, double time,
                                                 const Statuses& statuses, JointModel joints,
                                                 double held, double slack) const;
-  /// Reference displacement for rounding at z [m]: the largest displacement, at least path_scale()
-  /// and at most the size of the truss. The lower bound matters if a truss returns to its reference
-  /// configuration: displacements and forces vanish there, but rounding errors of the path do not.
-  /// The upper bound matters if an iteration diverges: its displacements must not loosen the
+  /// Displacement that scales rounding errors at z [m]. It is the largest displacement, but at
+  /// least path_scale() and at most the size of the truss. The lower bound matters if a truss
+  /// returns to its reference configuration, where displacements and forces vanish but rounding
+  /// errors of the path do not. The upper bound keeps a diverging iteration from loosening the
   /// tolerances.
   double reach(const VectorXd& z) const;
   /// Displacement expected from the model before a solution is known [m]. It is the larger of two
-  /// values: largest thermal strain of a program times the size of the truss, and largest force of
-  /// a load, a spring or a misfit over the stiffness of the stiffest element.
+  /// values. They are the largest thermal strain times the size of the truss, and the largest force
+  /// of a load, spring or misfit over the largest element stiffness.
   double path_scale() const { return path_scale_; }
-  /// Stiffness of the dashpots that resist the motion of an open joint in a step [N/m].
+  /// Stiffness, as springs, of the dashpots that resist the motion of an open joint in a step
+  /// [N/m].
   ///
-  /// Statics does not determine the position of an element with an open joint: it is slack.
-  /// Dashpots in the pins select one: over a step Δt they act as springs c/Δt on the motion since
-  /// its start. As c goes to zero their forces vanish, and the element moves to the admissible
-  /// position nearest to the last one: a proximal point step (R. T. Rockafellar, SIAM J. Control
-  /// Optim. 14 (1976) 877-898). Level 0, 1e-8 of the stiffest element, approximates this limit in
-  /// floating point. A motion by the play then causes 1e-8 of the force that it would cause in the
-  /// stiffest element, and rounding of the forces moves a slack element by less than 1e-6 of the
-  /// largest displacement.
+  /// If statics does not determine the position of an element with an open joint, the element is
+  /// slack. Dashpots in the joints then select a position. Over a step Δt a dashpot c acts as a
+  /// spring c/Δt on the motion since its start. As c goes to zero, dashpot forces vanish, and the
+  /// element moves to the admissible position nearest to its last one: a proximal point step (R. T.
+  /// Rockafellar, SIAM J. Control Optim. 14 (1976) 877-898). Level 0, with 1e-8 of the stiffness of
+  /// the stiffest element, approximates this limit in floating point. A motion by the play then
+  /// causes 1e-8 of the force that it would cause in the stiffest element. Rounding of the forces
+  /// moves a slack element by less than 1e-6 of the largest displacement.
   ///
-  /// Each level is a hundred times as stiff as the one before, up to a hundredth of the stiffest
-  /// element at most_slack_level. Higher levels serve elements that compression moves away from
-  /// their last position, and chains so long that rounding decides. The work of these dashpots is
-  /// accounted.
+  /// Each level is a hundred times as stiff as the previous level, up to a hundredth of the
+  /// stiffest element at most_slack_level. Higher levels serve elements that compression moves away
+  /// from their last position, and chains so long that rounding decides. The energy balance
+  /// includes the work of the dashpots.
   double slack_stiffness(double level) const {
     return 1e-8 * std::pow(100.0, level) * stiffness_scale_;
   }
   static constexpr double most_slack_level = 3.0;
-  /// Level of dashpots that hold a path while steps with softer ones have no solution: as stiff as
-  /// the stiffest element, so that delayed motions complete within a few steps.
+  /// Highest dashpot level, used while steps with softer dashpots have no solution. Dashpots are
+  /// then as stiff as the stiffest element, so that delayed motions complete within a few steps.
   static constexpr double stiffest_level = 4.0;
-  /// Rounding error of the force balance at a node at z [N]: about 64 terms are added, each a
-  /// stiffness times a displacement.
+  /// Rounding error of the force balance of a node at z [N]. The balance adds about 64 terms, each
+  /// a stiffness times a displacement.
   double force_rounding(const VectorXd& z) const;
   /// Rounding of a displacement at z [m].
   double length_rounding(const VectorXd& z) const {
     return 4.0 * std::numeric_limits<double>::epsilon() * reach(z);
   }
-  /// Tolerance of a converged solution at z: closure_tolerance of a displacement, and the force
-  /// that it causes in the stiffest element.
+  /// Tolerances of a converged solution at z: a length, which is closure_tolerance times reach(),
+  /// and the force that it causes in the stiffest element.
   Rounding rounding(const VectorXd& z) const;
-  /// Rounding error of a joint's slide less its elastic deflection [m].
-  /// @param by rounding(z), which reads all of z and is therefore computed once for many joints
+  /// Rounding error of a joint's slide minus its elastic deflection [m].
+  /// @param by result of rounding(z), computed once for many joints
   double slide_rounding(int joint, const VectorXd& z, double time, const StepStart& start,
                         const Rounding& by) const;
   /// Node of a free displacement.
@@ -310,13 +320,14 @@ class System {
   /// First unknown of a joint's forces.
   int force_row(int joint) const { return force_row_[index(joint)]; }
   int force_count(int joint) const { return frames_[index(joint)].forces; }
-  /// Whether the state depends on the time in a step at which a joint changed its status.
+  /// Whether the state at the end of a step depends on the time at which a joint changed its status
+  /// within it.
   bool remembers_when(int joint, JointStatus before, JointStatus after) const;
-  /// Whether a change of status is an event. A slip without friction that reverses is none.
+  /// Whether a change of status is an event. A reversal of slip without friction is not an event.
   bool is_event(int joint, JointStatus before, JointStatus after) const {
     return !(is_slip(before) && is_slip(after)) || remembers_when(joint, before, after);
   }
-  /// Sum of the magnitudes of the dashpot forces of slack elements in a step [N].
+  /// Sum of the magnitudes of all dashpot forces on slack elements in a step [N].
   double dashpot_force(const VectorXd& z, double time, const StepStart& start,
                        const Statuses& statuses) const;
   /// The larger dashpot_force() of this step and the one before [N].
@@ -325,12 +336,13 @@ class System {
     return std::max(start.dashpot_force, dashpot_force(z, time, start, statuses));
   }
   /// Whether the force of a joint with play is at most `force` at both ends of a step. With `force`
-  /// = idle_force() the time of its status change is irrelevant: without dashpots its force would
-  /// vanish.
+  /// = idle_force() the time of a status change is then irrelevant: without dashpots the joint
+  /// force would vanish.
   bool is_idle(int joint, const VectorXd& from, const VectorXd& to, double force) const;
   /// Whether a joint has partial slip.
   bool slips_smoothly() const { return slips_smoothly_; }
-  /// Slide of a step less the elastic deflection, without corrections, of a joint that rolls [m].
+  /// Slide of a step minus the elastic deflection, without corrections of the slip error [m]; for a
+  /// joint that rolls.
   Vector3d lag(int joint, const VectorXd& z, double time, const StepStart& start) const;
   double stiffness_scale() const { return stiffness_scale_; }
   double size() const { return size_; }  ///< Largest extent of the reference configuration [m].
@@ -344,14 +356,14 @@ class System {
   }
 
  private:
-  /// Work of the temperature in a step on joints whose parts expand [J].
+  /// Work that the temperature does in a step on joints whose parts expand [J].
   double work_on_joints(const Way& way, const StepStart& start) const;
-  /// Heat of every joint in a step [J], for a straight course of the unknowns.
+  /// Heat of every joint in a step [J], if the unknowns are interpolated linearly.
   VectorXd heat(const VectorXd& z, double time, const StepStart& start, const StepStart& after,
                 const VectorXd& slips) const;
   void assemble(Parts parts, const VectorXd& z, double time, const StepStart& start,
                 const Statuses& statuses, JointModel joints, double opening, Assembly& to) const;
-  /// Calls `write(region, strand)` for all regions, in parallel for those without common nodes.
+  /// Calls `write(region, strand)` for all regions. Regions without common nodes run in parallel.
   template <class Write>
   void write_regions(Assembly& to, Write&& write) const;
   /// @param changes ΔT of the programs [K]
@@ -376,7 +388,7 @@ class System {
                : model_->temperature_change(frame.program, frame.temperature_fraction, time);
   }
 
-  /// Evaluating this many joints takes about ten times as long as starting a thread.
+  /// Evaluating this many joints takes one thread about ten times as long as starting a thread.
   static constexpr std::size_t joints_at_once = 2000;
 
   const Model* model_;

@@ -12,7 +12,7 @@
 
 namespace statejump::truss::detail {
 
-/// Quadrature points of a step, for the work of a program's temperature.
+/// Quadrature points of a step, for the work done by the temperature of one program.
 struct Quadrature {
   struct Point {
     double share;
@@ -33,7 +33,8 @@ struct Quadrature {
   }
 };
 
-/// Quadrature of every program: the trapezoidal rule for a straight path, else a fourth-order rule.
+/// Quadrature of every program: the trapezoidal rule if the unknowns are interpolated linearly,
+/// otherwise a fourth-order rule.
 std::vector<Quadrature> quadratures(const Way& way, const Model& model);
 
 /// A step in which elements integrate the work of the temperature.

@@ -13,8 +13,8 @@ namespace statejump::truss::detail {
 
 enum class StepEnd : unsigned char;
 
-/// Sends the iterations of a path to the trace sink of its options. A record is sent when the next
-/// one begins, because it also reports the end of the solve and of the step.
+/// Sends the iterations of a path to the trace sink of its options. A record also reports whether
+/// the solve and the step ended. It is therefore sent only when the next record begins.
 class Tracer {
  public:
   Tracer(const Model& model, TraceSink sink) : model_(&model), sink_(std::move(sink)) {}
@@ -49,8 +49,8 @@ struct SolveView {
   const long& factorizations;         ///< Since the start of the path.
 };
 
-/// One solve of a trace. It compares the variables of the solve at the beginning of successive
-/// iterations, so the solver passes two numbers only. Without a tracer it does nothing.
+/// Traces one solve. It compares the solver's variables at the beginning of successive iterations,
+/// so the solver needs to pass only two numbers. Without a tracer it does nothing.
 class TracedSolve {
  public:
   TracedSolve(Tracer* tracer, const SolveView& view) : tracer_(tracer), view_(view) {

@@ -8,9 +8,9 @@
 
 namespace statejump::truss::detail {
 
-/// Fraction of a step after which the first joint reverses within it; 1: none does. A joint
-/// reverses if it slips backwards for a while, or leaves its status and returns. Unknowns and
-/// slides are cubics through both ends of the step with their rates.
+/// Fraction of a step at which a joint first reverses; 1: no joint reverses. A joint reverses if it
+/// slips backwards for a while, or leaves its status and returns. Cubics through the values and
+/// rates at both ends interpolate unknowns and slides.
 double PathFollower::first_turn(const Ends& ends) const {
   const Rounding rounding = system.rounding(ends.to);
   VectorXd turn = VectorXd::Ones(static_cast<Eigen::Index>(model.joints.size()));

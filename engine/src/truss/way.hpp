@@ -5,7 +5,7 @@
 
 namespace statejump::truss::detail {
 
-/// Course of the unknowns in a step: straight, or cubic if the rates at both ends are known.
+/// Interpolation of the unknowns in a step: linear, or cubic if the rates at both ends are known.
 struct Way {
   const Eigen::VectorXd& from;
   double from_time;

@@ -36,7 +36,8 @@ struct Options {
   int most_sweeps = 5000;  ///< Largest number of Gauss-Seidel sweeps, >= 0.
   /// Initial reactions; zero if empty.
   std::optional<Eigen::VectorXd> guess = {};
-  /// Progress callback with the best merit so far; false cancels the solve.
+  /// Progress callback that receives the best merit so far. If it returns false, the solve is
+  /// cancelled.
   std::function<bool(double)> progress = {};
 };
 
@@ -59,12 +60,12 @@ struct Solution {
 
 /// Solves a local frictional contact problem.
 ///
-/// If W is rank-deficient, the velocities are better determined than the reactions; one of several
-/// solutions is returned. `automatic` starts with Gauss-Seidel and continues with Newton. It falls
-/// back to the interior point, then sweeps on. In planar problems it also tries Lemke, before or
-/// after the interior point depending on the size.
-/// @throws kernel::OutOfRange as validate(); for a tolerance <= 0, sweeps < 0, a guess of another
-/// size or that is not finite, Lemke in dimension 3
+/// If W is rank-deficient, several reactions may give nearly the same velocities; solve() returns
+/// one of them. The method `automatic` starts with Gauss-Seidel sweeps and continues with Newton.
+/// If that fails, it tries the interior point, then further sweeps. In planar problems it also
+/// tries Lemke: in small ones before the interior point, in larger ones after it.
+/// @throws kernel::OutOfRange as validate(); also for a tolerance <= 0, sweeps < 0, a guess of
+/// wrong size or with values that are not finite, and Lemke in dimension 3
 Solution solve(const Problem& problem, const Options& options = {});
 
 }  // namespace statejump::complementarity

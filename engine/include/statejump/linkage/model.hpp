@@ -10,8 +10,9 @@
 
 namespace statejump::linkage {
 
-/// A uniform link pinned to the frame at one end. With uniform axial strain its kinetic energy is
-/// T = 1/2 (m/3)(L² θ̇² + L̇²): a point mass m/3 at the tip of a massless spring k_T = E A/l_T (4).
+/// A uniform link pinned to the frame at one end. With uniform axial strain its kinetic energy is T
+/// = 1/2 (m/3)(L² θ̇² + L̇²), that of a point mass m/3 at the tip of a massless spring k_T = E
+/// A/l_T (equation 4).
 struct ThermalLink {
   double stress_free_length = 0.0;  ///< l0 at ΔT = 0 [m], > 0
   double mass = 0.0;                ///< m of the whole link [kg], > 0
@@ -21,25 +22,26 @@ struct ThermalLink {
   double poisson_ratio = 0.3;       ///< ν [-], in (-1, 0.5]; also of its half of the joint
 };
 
-/// One rib of the umbrella antenna, deployed: the paper's section 4 (Figs 10 and 11).
+/// One deployed rib of the umbrella antenna: section 4 of the paper (Figs 10 and 11; equation
+/// numbers in parentheses).
 ///
-/// Links AB and BC are pinned to the frame at A = (0, 0) and C = (a, 0), ideal pins. At B the
+/// Links AB and BC are attached to the frame by ideal pins at A = (0, 0) and C = (a, 0). At B the
 /// journal (radius R1) of BC moves with play in the bearing (radius R2) of AB. With d = r_journal −
 /// r_bearing (11), δ = |d| − (R2 − R1) (12) and n = d/|d| (13), the normal force of the chosen law,
-/// for example F_N = K δ^1.5 (6) to (8), pushes the bearing along +n. The coordinates are the two
-/// Cartesian tip positions, without trigonometry. With m/3 at each tip this is the same ODE as (5)
-/// in the paper's six coordinates.
+/// for example F_N = K δ^1.5 (6) to (8), pushes the bearing along +n. The coordinates are the
+/// Cartesian positions of both tips, which need no trigonometry. With m/3 at each tip, the ODE is
+/// equivalent to (5) in the paper's six coordinates.
 ///
-/// Each link pulls its tip towards its pin with k_T (L − l_T) + c (L̇ − l̇_T), c = 2 ζ sqrt(k m/3)
-/// with k at ΔT = 0. A couple M on a link acts on its tip as the transverse force M/L. The couples
-/// are the pins' −c_p θ̇, the torsion spring's ±K_M (α − α0) (17) with the flare angle α = θ4 − θ2,
-/// and the friction moment arm × F. Friction acts at the one contact point half-way between the two
-/// of eq. (14), with the velocity of the material there. With the tangential velocity law `paper`
-/// there is no such moment, see kernel::laws::PaperVelocity.
+/// Each link pulls its tip towards its pin with k_T (L − l_T) + c (L̇ − l̇_T), c = 2 ζ sqrt(k m/3),
+/// where k is k_T at ΔT = 0. A couple M on a link acts on its tip as the transverse force M/L. The
+/// couples are −c_p θ̇ of each pin, the torsion spring's ±K_M (α − α0) (17) with the flare angle α
+/// = θ4 − θ2, and the friction moment arm × F. Friction acts half-way between the two contact
+/// points of eq. (14), with the velocity of the material there. The tangential velocity law `paper`
+/// has no friction moment, see kernel::laws::PaperVelocity.
 ///
-/// Angles: θ2 of AB from A to B, θ4 of BC from C to B, anticlockwise from AC.
-/// Limits: planar, small strain, no bending; B above AC; limits of the laws. A plain value; call
-/// validate() once.
+/// Angles: θ2 of AB from A to B, θ4 of BC from C to B, anticlockwise from AC. Limits: planar, small
+/// strain, no bending; B above AC; limits of the laws. Linkage is a plain value; call validate()
+/// once.
 struct Linkage {
   double frame_length = 0.0;               ///< a = |AC| [m], > 0; the frame does not expand
   ThermalLink link_ab;                     ///< has the bearing
@@ -52,10 +54,12 @@ struct Linkage {
   double axial_damping_ratio = 0.0;        ///< ζ of both links [-], >= 0
   double pin_damping = 0.0;                ///< c_p at A and at C [N m s/rad], >= 0
   double torsion_stiffness = 0.0;          ///< K_M [N m/rad], >= 0
-  /// α0 [rad], in (0, π); NaN, the default, means the flare angle of the ideal position.
+  /// Flare angle α0 [rad] at which the torsion spring is unloaded, in (0, π). NaN, the default,
+  /// means the flare angle of the ideal position.
   double torsion_free_angle = std::numeric_limits<double>::quiet_NaN();
 
-  /// Throws std::invalid_argument that names the first field out of range, its value and the range.
+  /// Throws std::invalid_argument whose message names the first field out of range, its value and
+  /// the range.
   void validate() const;
 
   double radial_clearance() const { return bearing_radius - journal_radius; }  ///< c [m]
@@ -65,14 +69,15 @@ struct Linkage {
   double free_angle() const;
 };
 
-/// Positions and velocities of the two tips, and the friction history. World frame, A at zero.
+/// Positions and velocities of the two tips in the world frame with origin A, and the friction
+/// history.
 struct State {
   Eigen::Vector2d bearing_centre = Eigen::Vector2d::Zero();    ///< tip of AB [m]
   Eigen::Vector2d journal_centre = Eigen::Vector2d::Zero();    ///< tip of BC [m]
   Eigen::Vector2d bearing_velocity = Eigen::Vector2d::Zero();  ///< [m/s]
   Eigen::Vector2d journal_velocity = Eigen::Vector2d::Zero();  ///< [m/s]
-  /// Of a friction law with memory. Its tangential_force is (force on the journal along (−n_y,
-  /// n_x), 0, 0) [N]; as a planar force it rotates with the contact.
+  /// History of a friction law with memory. Its tangential_force is (force on the journal along
+  /// (−n_y, n_x), 0, 0) [N]; as a planar force it rotates with the contact.
   kernel::ContactHistory contact;
   double impact_speed = 0.0;  ///< approach speed when the contact began [m/s]; 0: out of contact
 };
@@ -91,7 +96,7 @@ struct Coordinates {
 Coordinates coordinates(const Linkage& model, const State& state);
 
 /// Initial motion of the links. `rest`: all velocities zero, as in the paper; the links then
-/// vibrate. `matched`: L̇ = l̇_T, no vibration.
+/// vibrate. `matched`: L̇ = l̇_T, so that the links do not vibrate.
 enum class Start : unsigned char { rest, matched };
 
 /// Unstrained links at ΔT = 0 with the journal at `eccentricity` d [m] from the bearing's centre;
@@ -109,8 +114,8 @@ struct Joint {
   bool slipping;             ///< at Coulomb's limit; false for a law without memory
 };
 
-/// `temperature_rate` [K/s] matters only for laws that depend on velocities, if the radii expand.
-/// Throws std::domain_error if the depth is outside the normal law's range.
+/// State of the joint. `temperature_rate` [K/s] matters only if the radii expand and the law
+/// depends on velocities. Throws std::domain_error if the depth is outside the normal law's range.
 Joint joint_state(const Linkage& model, const State& state, double temperature_change,
                   double temperature_rate);
 
@@ -128,9 +133,9 @@ Energy energy(const Linkage& model, const State& state, double temperature_chang
 
 /// ΔT_c = c/(α a) [K] of first contact during heating from the concentric position. Both links have
 /// the expansion α and only their lengths change: l_T1 u2 − l_T2 u4 = (1 + α ΔT) AC, so the centres
-/// move apart along AC by α ΔT a. With expanding radii it is the root of α ΔT a = R2 (1 + α2 ΔT) −
-/// R1 (1 + α1 ΔT). Infinity if there is none at ΔT > 0. Throws std::invalid_argument if the links
-/// expand differently.
+/// move apart along AC by α ΔT a. If the radii expand, ΔT_c is the root of α ΔT a = R2 (1 + α2 ΔT)
+/// − R1 (1 + α1 ΔT). Returns infinity if there is no contact at ΔT > 0. Throws
+/// std::invalid_argument if the links expand differently.
 double first_contact_temperature(const Linkage& model);
 
 }  // namespace statejump::linkage

@@ -14,7 +14,7 @@ struct RunOptions {
   int sample_every = 0;  ///< Steps between samples, >= 0; 0: only the start and the end
 };
 
-/// Work and heat since the start [J]: thermal_work = change of Energy + dissipation().
+/// Work and heat since the start [J]. thermal_work equals the change of Energy plus dissipation().
 struct Account {
   double thermal_work = 0.0;
   double axial_dissipation = 0.0;
@@ -44,31 +44,33 @@ struct Run {
   std::optional<FirstContact> first_contact;
   int contacts = 0;  ///< Number of steps that end in contact after one that did not
   long steps = 0;    ///< Steps taken
-  /// thermal work − change of energy − dissipation at the end [J]; see simulate().
+  /// Error of the energy balance at the end [J]: thermal work − change of energy − dissipation; see
+  /// simulate().
   double energy_residue = 0.0;
 };
 
 /// Integrates a Linkage over a thermal program by the classical Runge-Kutta method with fixed
-/// steps. Corners of the program are always on a step.
+/// steps. A step ends at every corner of the program.
 ///
-/// Thermal work and dissipation are further components of the same ODE. The thermal power is
-/// ∂V/∂l_T l̇_T = −(N + N²/(2 E A)) l̇_T with N = k_T (L − l_T), minus the dashpot's c (L̇ − l̇_T)
-/// l̇_T. If radii expand, F_N times the rate of −c_T and ∂V/∂R Ṙ are added.
+/// Thermal work and dissipation are integrated as further components of the ODE. The thermal power
+/// is ∂V/∂l_T l̇_T = −(N + N²/(2 E A)) l̇_T with N = k_T (L − l_T), minus the dashpot term c (L̇ −
+/// l̇_T) l̇_T. If radii expand, F_N times the rate of −c_T and ∂V/∂R Ṙ are added.
 ///
-/// Order: 4 while the force is smooth, 5 for the energy of the vibrating links. Hertz's δ^1.5 has
-/// no second derivative at δ = 0, so a step across the edge of contact has an error of order h^2.5.
+/// The order of accuracy is 4 while the force is smooth, and 5 for the energy of the vibrating
+/// links. Hertz's δ^1.5 has no second derivative at δ = 0, so a step in which contact begins or
+/// ends has an error of order h^2.5.
 ///
-/// For a friction law with memory, the slide ∫ v_t dt is a component of the ODE. A stage applies
-/// the law to a copy of the history at the step's start with the slide so far; the accepted step
-/// updates the history once. The order is 4 in stick at constant normal load. It is 1 while the
-/// load changes, because the slide of a step uses the stiffness at its end. The friction heat is
-/// that of kernel::mindlin_step(), whose work follows the trapezoidal rule: a further O(h²) in the
-/// energy balance.
+/// For a friction law with memory, the slide ∫ v_t dt is a component of the ODE. Each stage applies
+/// the law to a copy of the history at the start of the step. The accepted step updates the history
+/// once. The order is 4 in stick at constant normal load. It is 1 while the normal load changes,
+/// because the slide of a step uses the stiffness at its end. The friction heat is that of
+/// kernel::mindlin_step(), which integrates work by the trapezoidal rule. This adds an error O(h²)
+/// to the energy balance.
 ///
-/// A contact's dissipation is scaled by the approach speed at the start of the step in which it
-/// begins, an error of order h in its damping. Throws std::invalid_argument for a model, program or
-/// option out of range. Throws std::domain_error with time, temperature and value if a law leaves
-/// its range or the state ceases to be finite.
+/// A contact's dissipation is scaled by the approach speed at the start of the step in which
+/// contact begins. This causes an error of order h in its damping. Throws std::invalid_argument for
+/// a model, program or option out of range. Throws std::domain_error with time, temperature and
+/// value if a law leaves its range or the state ceases to be finite.
 Run simulate(const Linkage& model, const thermal::Program& program, const State& start,
              const RunOptions& options = {});
 
@@ -79,15 +81,16 @@ struct AdaptiveRunOptions {
       0;  ///< Evenly spaced samples over the whole program besides the start, >= 0; 0: end
 };
 
-/// The same ODE by the fifth-order method of Dormand and Prince with dense output (Boost.odeint),
-/// for laws without memory: friction `none` or `ambrosio`, any dissipation.
+/// Integrates the ODE of simulate() by the fifth-order method of Dormand and Prince with dense
+/// output (Boost.odeint). Only laws without memory are supported: friction `none` or `ambrosio`,
+/// any dissipation.
 ///
 /// The error of a step is kept below relative_tolerance times a scale: the play for positions, the
-/// play times the links' angular frequency for speeds, E A times the play for energies. Contacts
-/// are located on the dense output, of fourth order. No step is longer than half a radian of the
-/// stiffer link, so that no contact is missed. Corners of the program end a step. Throws as
-/// simulate(), and std::invalid_argument for a friction law with memory, whose limit is a corner of
-/// the force that defeats the error control.
+/// play times the links' angular frequency for speeds, E A times the play for energies. Starts of
+/// contact are located on the dense output, of fourth order. No step is longer than half a radian
+/// of the stiffer link, so that no contact is missed. Corners of the program end a step. Throws as
+/// simulate(), and std::invalid_argument for a friction law with memory, because at its limit the
+/// force has a corner, at which the error control fails.
 Run simulate_adaptive(const Linkage& model, const thermal::Program& program, const State& start,
                       const AdaptiveRunOptions& options = {});
 

@@ -12,9 +12,8 @@ namespace statejump::spring_slider {
 
 /// Stage of the loading process, the paper's S1 to S5 (section 3.2) and the two stops.
 ///
-/// The paper's five stages are those of one heating and cooling. For later cycles and for negative
-/// ΔT they have these meanings. "Axial force" is F, "last slide" the direction in which the block
-/// last slid:
+/// The paper defines the five stages for one heating and cooling. This table extends them to later
+/// cycles and to negative ΔT. F is the axial force:
 ///
 ///   S1  stick, the block has never slid
 ///   S2  slide in the sense of the first slide
@@ -24,11 +23,11 @@ namespace statejump::spring_slider {
 ///
 /// A second cycle therefore runs S3, S4, S2, S3, S4, S5. With a preload spring F may change sign
 /// during a slide; S3 or S4 may then be missing. If the preload presses the block on a stop, a path
-/// may start there. Between stages the block may move in its play, `in_play`.
+/// may start there. Between stages the block may move in its play; that stage is `in_play`.
 enum class Stage : unsigned char { S1, S2, S3, S4, S5, at_stop_plus, at_stop_minus, in_play };
 
 /// Motion of the block, independent of the stage. `stop`: it rests at a loaded stop. `play`: it
-/// moves in its play.
+/// moves within its play.
 enum class BlockMotion : unsigned char { stick, slide, stop, play };
 
 /// Instants at which the stage changes or ends.
@@ -52,7 +51,7 @@ const char* to_string(BlockMotion motion);
 /// "first_slip", "slip", "stop_reached", …: the enumerator's name.
 const char* to_string(EventKind kind);
 
-/// One event of a path. Both stages are equal if only the cycle ends.
+/// One event of a path. Its two stages are equal if it is only the end of a cycle.
 struct Event {
   EventKind kind;
   Stage stage_before;
@@ -63,12 +62,13 @@ struct Event {
   double axial_force;         ///< F [N], positive in compression
 };
 
-/// Part of a path without an event inside, over which ΔT rises, falls or is constant. x is a closed
-/// form of ΔT there: see displacement().
+/// Part of a path without events inside, over which ΔT rises, falls or is constant. x(ΔT) has a
+/// closed form there: see displacement().
 struct Segment {
   Stage stage;
   BlockMotion motion;
-  /// Sense of a slide or in the play, side of a stop (+1 or −1); 0 for a stick.
+  /// Direction (+1 or −1) of a slide or of the motion in the play, or side of the stop; 0 for a
+  /// stick.
   int direction;
   /// Cycle that the segment belongs to, 0, 1, …
   int cycle;
@@ -81,7 +81,8 @@ struct Segment {
   double friction_dissipation;      ///< Heat of friction from the program's start to start_time [J]
   double thermal_work;              ///< Work of the temperature over the same time [J]
   int region = 0;                   ///< Side of the soft stop that the block touches; 0: none.
-  /// Direction in which friction is at its limit, also at a loaded stop; 0: below the limit.
+  /// Direction in which friction is at its limit, also while a stop is loaded; 0 if friction is
+  /// below its limit.
   int friction_sign = 0;
   double middle = 0.0;  ///< Of the play at start_time [m].
 
@@ -93,14 +94,15 @@ struct Segment {
 struct Path {
   SpringSlider model;
   thermal::Program program;
-  /// Segments of the kept cycles, in order of time and consecutive within a cycle. The last segment
-  /// ends at program.duration(). Never empty.
+  /// Segments of the kept cycles in order of time, without gaps within a cycle. The last segment
+  /// ends at program.duration(). The list is never empty.
   std::vector<Segment> segments;
   /// Events of the kept cycles.
   std::vector<Event> events;
   /// Displacement at the end of every cycle [m], kept or not.
   std::vector<double> cycle_end_displacements;
-  /// Largest compression at the end of a segment of any cycle [N], 0 if there is none, and its ΔT.
+  /// Largest compression at the end of any segment of any cycle [N] and the ΔT at which it occurs;
+  /// 0 without compression.
   double largest_compression = 0.0;
   double largest_compression_temperature_change = 0.0;  ///< [K]
   double largest_compression_time = 0.0;                ///< [s]
@@ -113,36 +115,38 @@ struct Path {
   /// Displacement at the end minus that at the start [m].
   double state_jump() const { return cycle_end_displacements.back() - start_displacement(model); }
 
-  /// Displacement at the end of cycle `cycle`, counted from 1, minus that at the start [m].
-  /// Throws std::invalid_argument unless 1 <= cycle <= program.cycles.
+  /// Displacement at the end of cycle `cycle` (from 1) minus that at the start [m]. Throws
+  /// std::invalid_argument unless 1 <= cycle <= program.cycles.
   double jump_after_cycle(int cycle) const;
 };
 
-/// Exact path from rest at start_displacement(), ΔT = 0. Every event is the root of an equation
-/// linear in ΔT, and its time the closed-form inverse of the program, so there is no stepping or
-/// iteration. Throws std::invalid_argument if model or program is out of range, or if the program
-/// gives the link a length l_T <= 0.
-/// Limits: events are ordered by ΔT within rounding, so two coincident events may have either
-/// order. Without friction a stick has no duration: its events are at one temperature.
+/// Computes the exact path from rest at start_displacement(), ΔT = 0. The ΔT of every event is the
+/// root of a linear equation, and its time is the closed-form inverse of the program. Stepping and
+/// iteration are not needed. Throws std::invalid_argument if model or program is out of range, or
+/// if the program gives the link a length l_T <= 0. Limits: events are ordered by ΔT within
+/// rounding, so two coincident events may have either order. Without friction a stick has no
+/// duration: it starts and ends at one temperature.
 Path solve(const SpringSlider& model, const thermal::Program& program);
 
-/// The same into an existing path, whose memory is reused. On error `path` is unspecified.
+/// Writes the path of solve() into an existing object and reuses its memory. After an error the
+/// content of `path` is unspecified.
 void solve(const SpringSlider& model, const thermal::Program& program, Path& path);
 
-/// The same path, but keeps only the cycles that sample() needs at `times` [s], the first two and
-/// the last. So a long program needs memory only for the requested times and the displacement at
-/// the end of every cycle. All cycles are computed. Throws std::invalid_argument if a time is
-/// negative or not finite.
+/// Computes the path of solve(), but keeps only the first two cycles, the last, and those that
+/// sample() needs at `times` [s]. A long program needs memory only for the requested times and the
+/// displacement at the end of every cycle. All cycles are computed. Throws std::invalid_argument if
+/// a time is negative or not finite.
 Path solve(const SpringSlider& model, const thermal::Program& program,
            const Eigen::Ref<const Eigen::VectorXd>& times);
 
-/// Makes events, samples and warnings report the temperature changes of another program at their
-/// times. If the link's coefficient depends on temperature, the solved program is the strain over
-/// one coefficient, and `reported` is the temperature. Segments keep the solved values.
+/// Replaces the temperature changes in events, samples and warnings by those of the program
+/// `reported` at the same times. If the expansion coefficient depends on temperature, the solved
+/// program is thermal strain over a constant coefficient, and `reported` the temperature. Segments
+/// keep the solved values.
 void report_temperatures_of(thermal::Program reported, Path& path);
 
-/// x [m] on the segment at ΔT [K] within the segment: constant in a stick and at a stop, else
-/// sliding_displacement().
+/// Position x [m] at ΔT [K] within the segment. It is constant in a stick and at a stop; otherwise
+/// it is sliding_displacement().
 double displacement(const SpringSlider& model, const Segment& segment, double temperature_change);
 
 /// The path at one time.
@@ -152,24 +156,24 @@ struct PathPoint {
   double axial_force;         ///< F [N], positive in compression
 };
 
-/// The path at `time` [s] within a segment. The time of an event is rounded, so the program's ΔT
-/// may be outside the segment by one ulp. It is clamped to the segment, so that x stays within the
-/// stops and |F| within the friction limit.
+/// State of the path at `time` [s] within a segment. The time of an event is rounded, so the
+/// program's ΔT may be outside the segment by one ulp. ΔT is therefore clamped to the segment, so
+/// that x stays within the stops and |F| within the friction limit.
 PathPoint point_at(const SpringSlider& model, const thermal::Program& program,
                    const Segment& segment, double time);
 
-/// Work of the temperature [J] from the segment's start to ΔT [K].
+/// Thermal work [J] from the segment's start to ΔT [K].
 ///
 /// The link stores V = E A (x − x_T)²/(2 l_T). At fixed x, heating changes x_T and the stiffness:
 /// ∂V/∂l_T = −N − N²/(2 E A), with the tension N = (E A/l_T)(x − x_T). Hence the power is P = −N
-/// l̇_T − ½ (E A/l_T²)(x − x_T)² l̇_T. Five-point Gauss-Legendre integrates it over the segment's
-/// own x(ΔT). The integrand is analytic up to l_T = 0, so the relative error is below 1e-15 for |α
-/// ΔT| < 0.1. Neither the energies nor the friction enter, so the balance thermal work = elastic
-/// energy + dissipation is a check, not a definition.
+/// l̇_T − ½ (E A/l_T²)(x − x_T)² l̇_T. Five-point Gauss-Legendre quadrature integrates P along
+/// x(ΔT) of the segment. The integrand is analytic up to l_T = 0, so the relative error is below
+/// 1e-15 for |α ΔT| < 0.1. Neither the energies nor the friction enter, so the balance thermal work
+/// = elastic energy + dissipation is a check, not a definition.
 double thermal_work(const SpringSlider& model, const Segment& segment, double temperature_change);
 
-/// Warnings about a path, one sentence each: an axial force above the Euler load of an unguided
-/// link with square section. Empty if there is none.
+/// Warnings about a path, one sentence each. The function warns if an axial force exceeds the Euler
+/// load of an unguided link with square section. Otherwise the result is empty.
 std::vector<std::string> warnings(const Path& path);
 
 }  // namespace statejump::spring_slider

@@ -13,8 +13,8 @@
 
 namespace statejump::truss {
 
-/// The registry of elements: one list for each type. To add a type, change this struct only.
-/// elements/interface.hpp documents the members of a type.
+/// The registry of elements: it has one list for each type. To add a type, change this struct only.
+/// elements/interface.hpp documents the members that a type needs.
 struct Elements {
   std::vector<Bar> links;
   std::vector<Spring> springs;
@@ -48,7 +48,7 @@ constexpr void for_each_element_type(Use&& use) {
   (std::make_index_sequence<element_types>());
 }
 
-/// Type of the lists of frames that belong to lists of elements. Declared for its type only.
+/// Type of the tuple with one list of frames for each type of element. Only declared, for decltype.
 template <class... Lists>
 std::tuple<std::vector<typename std::decay_t<Lists>::value_type::Frame>...> frames_of(
     const std::tuple<Lists...>& lists);

@@ -14,7 +14,7 @@
 
 namespace statejump::truss {
 
-/// A joint of one of several types. joints/interface.hpp documents the members of a type.
+/// A joint: one of several types. joints/interface.hpp documents the members that a type needs.
 template <JointType... Types>
 using JointOf = std::variant<Types...>;
 

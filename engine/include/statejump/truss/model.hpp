@@ -13,7 +13,7 @@
 
 namespace statejump::truss {
 
-/// Three directions, the columns of a matrix. Copies share one matrix, because most nodes of a
+/// Three directions as the columns of a matrix. Copies share the matrix, because most nodes of a
 /// truss have the same directions.
 class Directions {
  public:
@@ -45,21 +45,20 @@ struct Node {
   Eigen::Vector3d load = Eigen::Vector3d::Zero();  ///< Dead load [N].
 };
 
-/// A term of a constraint: the displacement of a node along a vector, times the length of the
-/// vector.
+/// A term of a constraint: displacement of a node along a vector, times the vector's length.
 struct ConstraintTerm {
   int node = 0;                                      ///< Number.
   Eigen::Vector3d factor = Eigen::Vector3d::Zero();  ///< [-]
 };
 
-/// A constraint: the sum of all terms factor · displacement is always zero.
+/// A linear constraint: the sum of factor · displacement over all its terms is always zero.
 struct Constraint {
   std::string name;                   ///< For messages.
   std::vector<ConstraintTerm> terms;  ///< At least one.
 
   static constexpr const char* kind = "constraint";  ///< In messages.
-  /// Factors below this fraction of the largest one of their constraint are rejected [-]. Rounding
-  /// of factors that cancel in the elimination is below a thousandth of it.
+  /// Factors of a constraint below this fraction of its largest factor are rejected [-]. If factors
+  /// cancel in the elimination, their rounding is below a thousandth of this fraction.
   static constexpr double least_factor = 1e-9;
 };
 
@@ -70,14 +69,15 @@ struct Model : Elements {
   std::vector<Constraint> constraints;
   std::vector<thermal::Program> programs;  ///< At least one; all of one duration.
 
-  /// Two times closer than this fraction of the duration are equal [-]. Programs of 3 x 0.1 s and
-  /// of 1 x 0.3 s therefore have one length, and so have times typed with ten digits. The fraction
-  /// is below the default interval within which events are located.
+  /// Two times count as equal if their difference is below this fraction of the duration [-].
+  /// Programs of 3 x 0.1 s and of 1 x 0.3 s thus have the same length, also if entered with ten
+  /// digits. The fraction is smaller than the default interval within which events are located.
   static constexpr double same_time = 1e-9;
 
-  /// Throws std::invalid_argument that names the item, its value and the range: indices, numbers
-  /// out of range, links without length at some time of their program, joints whose parts do not
-  /// fit, directions that both a joint and constraints determine.
+  /// Throws std::invalid_argument whose message names the element or joint, its value and the
+  /// range. Rejected are indices and numbers out of range, links without length at some time of
+  /// their program, joints whose parts do not fit, and directions that a joint and constraints both
+  /// determine.
   void validate() const;
 
   /// Redundant constraints: those that follow from supports and earlier constraints.
@@ -92,7 +92,7 @@ struct Model : Elements {
   }
 };
 
-/// Multiplies the stress of all elements in the reference configuration by a fraction.
+/// Multiplies the stress that all elements have in the reference configuration by a fraction.
 void scale_misfits(Model& model, double fraction);
 
 }  // namespace statejump::truss

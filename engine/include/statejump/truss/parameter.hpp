@@ -23,7 +23,8 @@ enum class Allowed : unsigned char {
   count                  ///< Whole number >= 1.
 };
 
-/// One parameter of a type of element or joint. Tables, checks, bindings and messages use it.
+/// One parameter of a type of element or joint. Tables, range checks, bindings and messages use
+/// this description.
 template <class Type>
 struct Parameter {
   const char* key;    ///< Column of tables, with its unit.
@@ -36,7 +37,8 @@ struct Parameter {
   int width = 1;  ///< Number of values per item.
 };
 
-/// An output of an element or a joint at every state: a number, or a vector of three.
+/// An output that an element or a joint has at every state: a number, or a vector of three
+/// components.
 struct Output {
   const char* key;  ///< With its unit.
   int width;

@@ -19,30 +19,30 @@ struct Options {
   StartFriction start_friction = StartFriction::stuck;
   /// Increments per monotone branch of the programs, >= 1.
   int increments_per_branch = 50;
-  /// Whether every change of a joint's status is located in time. Otherwise only those changes are
-  /// located whose time affects the state; see solve(). Locating a change takes about ten solves.
+  /// Whether every change of a joint's status is located in time. If false, a change is located
+  /// only if its time affects the state; see solve(). Locating a change takes about ten solves.
   bool locate_events = true;
   /// Interval [1/branch] within which changes are located.
   double event_tolerance = 1e-9;
   /// Allowed error of the energy balance if events are located, as a fraction of the largest
-  /// possible work of the temperature (a program that always works at its largest rate). Increments
-  /// with a larger error are divided into at most 64 steps. Laws with gradual slip follow chords;
-  /// their increments are not divided.
+  /// possible thermal work (at the largest rate all the time). An increment with a larger error is
+  /// divided into at most 64 steps. Laws with gradual slip consist of chords; their increments are
+  /// not divided.
   double energy_tolerance = 2.5e-11;
   /// Store only the states at the ends of the cycles.
   bool cycle_ends_only = false;
-  /// Ascending times at which the frictional contact problem is stored [s]: that of the first step
-  /// that ends there or later.
+  /// Times, in ascending order, at which the frictional contact problem is stored [s]. It is that
+  /// of the first step that ends then or later.
   std::vector<double> problem_times;
-  /// Largest number of Newton iterations after the last change of a status. The same limit applies
-  /// to statuses that cycle.
+  /// Largest number of Newton iterations after the last change of a status. The limit also ends an
+  /// iteration whose statuses cycle.
   int most_iterations = 40;
-  /// Largest number of steps in an increment without a change of status, >= 1. One step is usually
-  /// enough, and about ten locate a change. Reaching the limit means that the path does not
-  /// progress.
+  /// Largest number of steps in an increment without a change of status, >= 1. One step per
+  /// increment is usually enough; locating a change takes about ten. If the limit is reached, the
+  /// path does not progress.
   int most_steps = 10000;
-  /// Called with the finished fraction of the program (0 to 1). If it returns false, the path ends
-  /// there, with Path::complete false.
+  /// Called with the finished fraction of the program (0 to 1). If the callback returns false, the
+  /// path ends at once and Path::complete is false.
   std::function<bool(double)> progress;
   /// Called with every iteration of Newton's method; empty: no trace.
   TraceSink trace;
@@ -92,7 +92,7 @@ struct Note {
   double value = 0.0;                ///< See NoteKind.
 };
 
-/// Outputs of the elements of a type at a state, in the order of outputs(), one column for each
+/// Outputs of all elements of one type at a state: one row per output in outputs(), one column per
 /// element.
 template <Element Type>
 Eigen::Map<const Eigen::MatrixXd> element_output(const Model& model, const State& state) {
@@ -106,7 +106,7 @@ Eigen::Map<const Eigen::MatrixXd> element_output(const Model& model, const State
   return {begin, static_cast<Eigen::Index>(output_width<Type>()), static_cast<Eigen::Index>(count)};
 }
 
-/// Output of a joint at a state, by its key in outputs(): one number or three.
+/// Value of a joint's output at a state: one number or three. `key` is its name in outputs().
 /// @throws std::out_of_range if the joint has no such output
 Eigen::VectorXd output(const Model& model, const State& state, int joint, std::string_view key);
 
@@ -127,72 +127,77 @@ struct Path {
 
 /// Quasi-static path of a truss through its temperature programs, with exact Coulomb friction.
 ///
-/// **Equations.** The unknowns are the displacements of the nodes and the contact forces of every
-/// joint: λ of a slider, normal force λ_n and friction λ_t of a revolute. Lengths and angles are
-/// exact (no small rotations). Every item expands by its total ΔT. The equations are equilibrium of
-/// the nodes and one row per contact force, that of the joint's status. The solver finds the
-/// statuses stick, slip, stop and open. The types in joints/ document their laws. One step is an
-/// implicit Euler step of this evolution. Newton's method with block pivoting between the statuses
-/// solves it (truss/newton.hpp). It has converged if every joint satisfies its status, forces
-/// balance to 1e-12 of the largest one, closures in metres to 1e-13 of System::reach() (the largest
-/// displacement, within bounds), and forces at their limits to rounding. If rounding exceeds these
-/// bounds, it has converged when its steps vanish and forces balance to 1e-9.
+/// **Equations.** The unknowns are the displacements of the nodes and the forces of every joint: λ
+/// of a slider, normal force λ_n and friction λ_t of a revolute. Lengths and angles are exact (no
+/// small rotations). Every part expands by its total ΔT. The equations are the equilibrium of the
+/// nodes, and for each joint force one row that depends on the joint's status. The solver
+/// determines these statuses: stick, slip, stop and open. The types in joints/ document the laws.
+/// One step is an implicit Euler step of this evolution. Newton's method with block pivoting
+/// between the statuses solves it (truss/newton.hpp). It has converged if every joint satisfies the
+/// inequalities of its status, and if residuals are within these bounds: forces balance to 1e-12 of
+/// the largest force, closures in metres to 1e-13 of System::reach() (the largest displacement,
+/// within bounds), and forces at their limits to rounding. If rounding exceeds these bounds, it has
+/// converged when its steps vanish and forces balance to 1e-9.
 ///
 /// **Why the result does not depend on the increment.** With fixed statuses the state is an
 /// algebraic function of temperature: stick, stops and the cone |λ_t| = μ λ_n are holonomic. A step
 /// of any length is therefore exact. Rolling is exact for rigid contacts and radii that do not
-/// expand. Otherwise it is an integral along the path, and so is the deflection of a contact with
-/// k_t. The trapezoidal rule computes these integrals, and the next step corrects the error of the
-/// last one. The remaining error in the increment is of fourth order for a revolute, of third order
-/// for a ball that sticks, and of second order for a ball that slips and for partial slip.
+/// expand. Otherwise rolling is an integral along the path, and so is the deflection of a contact
+/// with tangential stiffness k_t. The trapezoidal rule computes these integrals, and each step
+/// corrects the error of the previous step. The remaining error is of fourth order in the increment
+/// for a revolute, of third order for a ball that sticks, and of second order for a ball that slips
+/// and for partial slip.
 ///
 /// The path depends on the time of a change of status only where a slip ends in a stick, and where
-/// an open joint closes. Steps with such a change are shortened until one of these holds:
+/// an open joint closes. Steps with such a change are shortened until one of these conditions
+/// holds:
 ///
-/// - the change lies within `event_tolerance` of a branch,
-/// - the slide up to the change, at the rate at the start of the step, is below that fraction of
-///   the joint's clearance plus rounding.
+/// - the step is at most `event_tolerance` times the length of a branch of the programs,
+/// - the slide up to the change, extrapolated with the rate at the start of the step, is below
+///   `event_tolerance` times the joint's clearance, plus rounding.
 ///
-/// The first step after each corner of a program is shortened too, because slips turn into sticks
-/// there. With `locate_events` every change of status is located. A step that does not converge is
-/// shortened as well.
+/// The first step after each corner of a program is short too, because there slipping joints start
+/// to stick. With `locate_events` every change of status is located. Steps that do not converge are
+/// also shortened.
 ///
 /// **Reversals within a step.** The tangent of the last solve gives the rates of all unknowns at
-/// both ends of a step. States and rates define a cubic. A joint reverses within the step if it
-/// slips backwards somewhere on the cubic, or leaves its status there and returns by the end. The
-/// step then ends at the reversal. The work of the temperature is integrated along the same cubic.
-/// Its error is of fourth order in the increment while no status changes.
+/// both ends of a step. States and rates define a cubic interpolation. A joint reverses within the
+/// step if on the cubic it slips backwards for a while, or leaves its status and returns. The step
+/// then ends at the reversal. The work of the temperature is integrated along the same cubic. Its
+/// error is of fourth order in the increment while no status changes.
 ///
 /// **Where a path ends.** If a status changes within the shortest step, the rates of all joints at
 /// a limit are decided together (truss/rate_problem.hpp). If no slow continuation exists, slip is
-/// unstable. If several exist, statics does not determine the motion. After every step the solver
-/// evaluates the index of the equations, and checks whether the rates at both ends explain the
-/// step. Without `locate_events` an increment may step over a limit point.
+/// unstable. If several continuations exist, statics does not determine the motion. After every
+/// step the solver evaluates the index of the equations and checks whether the rates at both ends
+/// explain the displacements. Without `locate_events` an increment may step over a limit point.
 ///
 /// **Start.** The reference configuration need not be in equilibrium. It is first relaxed at ΔT = 0
 /// with bilateral pins in place of clearance joints. The pin forces determine where each journal
-/// touches. Then the clearances open with frictionless contacts, in which friction starts at zero.
-/// If this fails, they open with contacts that hold by friction. A journal without pin force, or
-/// whose contact force vanishes on the way, starts open: springs, loads and bars determine its
-/// position, or it is slack.
+/// touches. Then the clearances are opened with frictionless contacts, so that friction starts at
+/// zero. If this fails, they are opened with contacts that hold by friction. A journal without pin
+/// force, or whose contact force vanishes meanwhile, starts open. Springs, loads and bars then
+/// determine its position, or its elements are slack.
 ///
 /// If the solve under the full load fails, moves the truss far, or ends unstable, the load is
-/// increased from zero in small steps (truss/loading.cpp). A note reports a start that moves the
-/// truss by more than a twentieth of its size.
+/// increased from zero in small steps (truss/loading.cpp). If the start moves the truss by more
+/// than a twentieth of its size, a note reports this.
 ///
-/// **Slack elements.** An element that hangs in the play of its joints has no force, and statics
-/// does not determine its position. It stays at the admissible position nearest to its last one, as
-/// with vanishing dashpots in its pins (truss/system.hpp), until its clearance closes.
+/// **Slack elements.** An element that can move freely within the play of its joints has no force,
+/// and statics does not determine its position. In each step it moves to the admissible position
+/// nearest to its previous one, as if vanishing dashpots acted in its pins (truss/system.hpp),
+/// until its clearance closes.
 ///
-/// With StartFriction::stuck other joints hold by friction in the reference configuration, within
-/// their limits. With StartFriction::frictionless the start is that of a truss without friction.
-/// Slides are counted from there, so friction starts at zero.
+/// **Friction at the start.** With StartFriction::stuck, joints without clearance stick in the
+/// reference configuration within their friction limits. With StartFriction::frictionless, the path
+/// starts from the equilibrium without friction. Slides are counted from there, so friction starts
+/// at zero.
 ///
-/// Throws std::invalid_argument for a model or option out of range. Throws std::runtime_error that
-/// names joint or nodes and the temperature for these reasons:
+/// Throws std::invalid_argument for a model or option out of range. Throws std::runtime_error whose
+/// message names the joint or the nodes and the temperature. Reasons:
 ///
 /// - a mechanism, with its free modes,
-/// - loads that need more friction at the start than a joint has,
+/// - loads that at the start need more friction than a joint can supply,
 /// - an equilibrium at the start or at a corner of the programs that is unstable although every
 ///   closed joint is held (buckled), with the modes,
 /// - a revolute that jumps across its play,

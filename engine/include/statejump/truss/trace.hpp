@@ -8,7 +8,7 @@
 
 namespace statejump::truss {
 
-/// What an iteration of Newton's method did after it had evaluated the equations.
+/// Decision of Newton's method after it has evaluated the equations in an iteration.
 enum class Decision : unsigned char {
   step,           ///< Took a full step on the present set of statuses.
   halved_step,    ///< The step before was too long: went back and took a half of it.

@@ -24,7 +24,7 @@ struct Axial {
 inline Axial axial(const Bar& bar, double elongation_from_drawn, double drawn_length,
                    double change) {
   const double l0 = bar.stress_free_length;
-  // Computed from differences, because the rounding of a length would be E A times 1e-16.
+  // Differences avoid the force error 1e-16 E A that the rounding of a length would cause.
   const double stretch =
       elongation_from_drawn + (drawn_length - l0) - l0 * bar.thermal_expansion * change;
   const double stiffness = bar.axial_stiffness / thermal::length(l0, bar.thermal_expansion, change);
@@ -35,7 +35,7 @@ inline Lengths lengths(const std::array<int, 2>& nodes, const ElementState& stat
   return lengths(state.drawn_between(nodes[0], nodes[1]), state.moved_between(nodes[0], nodes[1]));
 }
 
-/// Adds forces and derivatives of an element with a tension along its direction.
+/// Adds the forces and derivatives of an element whose only force is a tension along its direction.
 inline void write_axial(const std::array<int, 2>& nodes, const Lengths& length, const Axial& axial,
                         ElementWriter& writer) {
   const int first = nodes[0];
@@ -45,7 +45,7 @@ inline void write_axial(const std::array<int, 2>& nodes, const Lengths& length, 
   writer.force(second, axial.tension * direction);
   writer.carries(axial.tension);
   if (writer.residual_only()) return;
-  // Stiffness along the element, and geometric stiffness of its tension across it.
+  // Stiffness along the element, plus the geometric stiffness across it due to its tension.
   const double across = axial.tension / length.now;
   const double more = axial.stiffness - across;
   const auto own = [&](int node, const Vector3d& along) {

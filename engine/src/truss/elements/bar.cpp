@@ -131,8 +131,8 @@ void Bar::mass(const Frame& frame, const Inertia& inertia, std::size_t i,
   const double rotary = inertia.link_moment.size() == 0
                             ? mass / 12.0
                             : inertia_of(inertia.link_moment, i) / std::pow(stress_free_length, 2);
-  // The centre of mass moves by (1 − G) v1 + G v2. G rotates and stretches the plane. The body
-  // rotates by the remaining part of v2 − v1.
+  // The centre of mass moves with (1 − G) v1 + G v2, where the matrix G rotates and stretches
+  // vectors in the plane. The remaining part of v2 − v1 rotates the body.
   Eigen::Matrix3d to_second = 0.5 * Eigen::Matrix3d::Identity();
   if (inertia.link_centre.size() != 0) {
     const auto centre = inertia.link_centre.col(static_cast<Eigen::Index>(i));

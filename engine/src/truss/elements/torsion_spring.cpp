@@ -32,7 +32,7 @@ struct Arms {
   double angle = 0.0;  ///< From the reference configuration [rad].
 };
 
-/// The angle from the first bar to the second; for a single bar from the ground.
+/// The bars and their angle: from the first bar to the second, or from the ground to a single bar.
 Arms arms_of(const TorsionSpring::Frame& frame, const ElementState& state) {
   Arms found;
   const bool single = frame.nodes[2] < 0;

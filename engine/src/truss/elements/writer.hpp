@@ -25,8 +25,8 @@ class ElementWriter {
       to_->residual(dofs, i, dofs.directions->col(i).dot(value));
     }
   }
-  /// Derivative of a node's force with respect to another node's displacement: `value(direction of
-  /// the force, direction of the displacement)`.
+  /// Adds the derivative of one node's force with respect to another node's displacement. `value(i,
+  /// j)`: direction i of the force, direction j of the displacement.
   template <class Value>
   void block(int row_node, int column_node, Value&& value) {
     to_->block(at(row_node), at(column_node), value);
@@ -35,7 +35,7 @@ class ElementWriter {
   Eigen::Vector3d seen(int node, const Eigen::Vector3d& vector) const {
     return at(node).directions->transpose() * vector;
   }
-  /// Includes a force in the scale of rounding and force balance [N].
+  /// Includes a force [N] in the largest force, which scales rounding and force balance.
   void carries(double force) { to_->carries(force); }
   /// Reports the active branch of a piecewise law.
   void piece(std::size_t which) { to_->piece(which); }

@@ -12,8 +12,8 @@
 
 namespace statejump::truss::detail {
 
-// Kinematics of a ball in its socket: a state, and the changes since the start of the step. Numbers
-// are doubles, or dual numbers with derivatives.
+// Kinematics of a ball in its socket: the present state, and the changes since the start of the
+// step. Numbers are doubles, or dual numbers with derivatives.
 
 /// Variables: displacements of four nodes, three forces, the temperature.
 constexpr int ball_variables = 3 * most_joint_nodes + most_joint_forces + 1;
@@ -41,12 +41,12 @@ constexpr std::size_t socket = 1;
 constexpr std::size_t ball_far = 2;    ///< Far end of the link that rotates the ball.
 constexpr std::size_t socket_far = 3;  ///< Far end of the link that rotates the socket.
 
-/// Memory of a ball joint; with partial slip the memory of the contact follows it.
+/// Memory of a ball joint in history(). With partial slip, the contact's memory follows.
 struct BallMemory {
   Eigen::Vector3d offset;  ///< Ball minus socket [m].
-  /// Ball minus far node of the ball's link [m]; zero without link.
+  /// Vector from the far node of the ball's link to the ball [m]; zero without link.
   Eigen::Vector3d ball_direction;
-  /// Socket minus far node of the socket's link [m]; zero without link.
+  /// Vector from the far node of the socket's link to the socket [m]; zero without link.
   Eigen::Vector3d socket_direction;
   Eigen::Vector3d friction;  ///< t [N].
   Eigen::Vector3d axis;  ///< Reference direction of the slip memory in the tangent plane; or zero.
@@ -74,7 +74,8 @@ struct BallMemory {
   }
 };
 
-/// A ball joint at one state. If the ball is exactly in the middle, its normal is zero.
+/// A ball joint at one state. If the ball is exactly in the middle of the socket, its normal is
+/// zero.
 template <class Number>
 struct BallState {
   Vector<Number> offset;
@@ -125,7 +126,7 @@ BallState<Number> ball_state(const BallJoint& joint, const Vector<Number>& force
   return s;
 }
 
-/// An angle divided by its sine, as a function of its cosine.
+/// The ratio of an angle to its sine, as a function of the cosine of the angle.
 inline ByNormal arc_over_sine(double cosine) {
   const double x = 1.0 - cosine;
   // The series with four terms is exact to rounding.
@@ -137,8 +138,8 @@ inline ByNormal arc_over_sine(double cosine) {
   return {value, (cosine * value - 1.0) / (x * (1.0 + cosine))};
 }
 
-/// Smallest rotation from one direction to another, as axis times angle [rad]; zero if there is
-/// none.
+/// Smallest rotation from one direction to another, as axis times angle [rad]. It is zero if the
+/// directions are equal or undefined.
 template <class Number>
 Vector<Number> turned(const Eigen::Vector3d& before, const Vector<Number>& now) {
   using std::sqrt;
@@ -153,8 +154,8 @@ Vector<Number> turned(const Eigen::Vector3d& before, const Vector<Number>& now) 
   return turn;
 }
 
-/// Rotates a vector in the tangent plane of one unit normal into the plane of another, by the
-/// smallest rotation.
+/// Rotates a vector from the tangent plane of one unit normal into that of another, by the smallest
+/// rotation between the normals.
 template <class Number>
 Vector<Number> carried(const Vector<Number>& tangential, const Vector<Number>& from,
                        const Vector<Number>& to) {
@@ -171,7 +172,7 @@ Vector<Number> spun(const Vector<Number>& tangential, const Vector<Number>& norm
   return tangential * Number(cos(angle)) + normal.cross(tangential) * Number(sin(angle));
 }
 
-/// Slide, rotations and friction of a step, in the tangent plane at its end.
+/// Slide and rotations of a step, and friction at its start, in the tangent plane at its end.
 template <class Number>
 struct BallSlide {
   Vector<Number> slide;  ///< σ [m].
@@ -208,7 +209,7 @@ BallSlide<Number> ball_slide(const BallState<Number>& now, const BallMemory& sta
   return found;
 }
 
-/// Elastic predictor of a step: deflection of the contact if it sticks.
+/// Elastic predictor of a step: the tangential deflection that the contact has if it sticks.
 template <class Number>
 struct BallBend {
   BallSlide<Number> moved;
@@ -243,11 +244,11 @@ BallBend<Number> ball_bend(const BallJoint& joint, const BallState<Number>& now,
 
 /// Direction of friction at the end of a step in which the contact slips.
 ///
-/// Friction t rotates towards a straight slide s by dϑ/ds = −(k_t/|t|) sin ϑ, with the angle ϑ
-/// between both. This is a tractrix: tan(ϑ/2) falls as E = exp(−∫ k_t ds/|t|). With the directions
-/// t and s, c = t·s and q = (1 − c)/(1 + c) = tan²(ϑ/2) at the start, t ends along (1 − E)(1 + q E)
-/// s + E (1 + q) t. If slip begins within the step, or nearly reverses, t is projected onto the
-/// cone.
+/// Friction t rotates towards a straight slide s by dϑ/ds = −(k_t/|t|) sin ϑ, where ϑ is the angle
+/// between t and s. This is a tractrix: tan(ϑ/2) falls as E = exp(−∫ k_t ds/|t|). Let t and s be
+/// unit vectors, and c = t·s and q = (1 − c)/(1 + c) = tan²(ϑ/2) at the start. Then friction ends
+/// along (1 − E)(1 + q E) s + E (1 + q) t. If slip begins within the step, or if the slide nearly
+/// reverses, the trial force is projected onto the cone instead.
 /// @param slipped whether the contact slipped at the start of the step
 /// @pre `bend.pull` is not zero
 template <class Number>

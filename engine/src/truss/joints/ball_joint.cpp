@@ -29,7 +29,7 @@ using Eigen::Vector3d;
 namespace {
 
 /// Cosine of the largest angle by which a contact may move around its socket in one step, 0.5 rad.
-/// A larger angle within a located instant is a jump.
+/// A larger angle in a step of the shortest length is a jump.
 constexpr double most_turned = 0.8775825618903728;
 
 constexpr int first_force = 3 * most_joint_nodes;
@@ -92,7 +92,7 @@ struct Response {
   std::size_t piece = 0;
 };
 
-/// Adds a moment on a part, as a couple of transverse forces on the ends of its link.
+/// Adds a moment on a part to the forces on its link: a couple of transverse forces on both ends.
 void add_moment(const Vector<Dual>& moment, const Vector<Dual>& direction, Vector<Dual>& at,
                 Vector<Dual>& far) {
   const Vector<Dual> across = moment.cross(direction) / direction.squaredNorm();
@@ -104,8 +104,8 @@ kernel::PartialSlipMemory slip_memory(const double* history) {
   return detail::read_partial_slip(history + BallMemory::size, 2);
 }
 
-/// One step of the partial-slip law.
-/// @param memory at the start of the step; out: at its end
+/// Applies the partial-slip law to the step.
+/// @param memory on input at the start of the step, on output at its end
 kernel::PartialSlipResponse rub(const BallJoint& joint, const Trial& trial, bool open,
                                 kernel::PartialSlipMemory& memory) {
   const BallState<double> now = state_of(joint, trial);
@@ -116,9 +116,9 @@ kernel::PartialSlipResponse rub(const BallJoint& joint, const Trial& trial, bool
                                    {by.along_first, by.along_second}, memory);
 }
 
-/// Residual of the tangential law, zero if the joint satisfies its status [m]. For stick: slide
-/// less elastic deflection. For slip: excess of friction over its limit, times the compliance. A
-/// vector in the tangent plane.
+/// Residual of the tangential law, zero if the joint satisfies its status [m]. In stick it is slide
+/// minus elastic deflection; in slip, friction in excess of its limit, times the compliance. The
+/// vector lies in the tangent plane.
 Vector<Dual> tangential_row(const BallJoint& joint, const Trial& trial, const BallState<Dual>& now,
                             JointStatus status) {
   const BallMemory start = BallMemory::of(trial.history);
@@ -127,12 +127,12 @@ Vector<Dual> tangential_row(const BallJoint& joint, const Trial& trial, const Ba
   if (trial.model != JointModel::friction || joint.friction_coefficient == 0.0) return -carries;
   if (!is_slip(status) || bend.pull.squaredNorm().value() == 0.0) return bend.pull - carries;
   const Dual bound = joint.friction_coefficient * now.normal_force * bend.compliance;
-  // A trial force below half of the friction limit is doubled instead of scaled to the limit.
-  // Rounding dominates the direction of a tiny slide, and friction at its limit along this
+  // If the trial force is below half of the friction limit, it is doubled instead of scaled to the
+  // limit. The direction of a tiny slide is mostly rounding; friction at its limit along this
   // direction would reverse in every iteration.
   if (bend.pull.squaredNorm() < 0.25 * bound * bound) return bend.pull * Dual(2.0) - carries;
-  // With dashpots the trial force is only projected onto the cone: the direction rotates little in
-  // a step and must be a smooth function of it.
+  // With dashpots the trial force is only projected onto the cone. Its direction rotates little in
+  // a step, and friction must be a smooth function of the slide.
   const bool turns = is_slip(trial.before) && !trial.damps_contact;
   return detail::slip_direction(joint, now, start, bend, turns) * bound - carries;
 }
@@ -145,7 +145,7 @@ Response respond(const BallJoint& joint, const Trial& trial, JointStatus status)
   made.force[socket] = -now.force;
   const bool open = status == JointStatus::open;
   if (open || trial.model == JointModel::pins) {
-    // An open joint has no force. A ball exactly in the middle has no normal.
+    // An open joint has no force. The normal is not used: a ball exactly in the middle has none.
     for (int k = 0; k < 3; ++k) {
       const Vector<Dual> along = Vector3d(trial.frame.axes.col(k)).cast<Dual>();
       made.is_balance[index(k)] = open || !trial.frame.holds[index(k)];
@@ -164,7 +164,7 @@ Response respond(const BallJoint& joint, const Trial& trial, JointStatus status)
   }
   const Dual depth =
       detail::chain(now.normal_force, contact_of(joint).depth(now.normal_force.value()));
-  // The depth is scaled with the opened fraction of the clearance, so that the start proceeds from
+  // The opened fraction of the clearance also scales the depth, so that the start proceeds from
   // pins to contacts in small steps.
   const Dual gap = now.distance - now.clearance - trial.opening * depth;
   Vector<Dual> row = now.normal * gap;
@@ -185,8 +185,8 @@ Response respond(const BallJoint& joint, const Trial& trial, JointStatus status)
   return made;
 }
 
-/// Slip since the start of the step: trial less elastic deflection, along the trial deflection. Its
-/// rate is the slip rate.
+/// Slip since the start of the step, along the trial deflection: trial deflection minus elastic
+/// deflection. The rate of this value is the slip rate.
 Dual slipped(const BallJoint& joint, const Trial& trial) {
   const BallState<Dual> now = dual_state_of(joint, trial);
   const BallBend<Dual> bend = bend_of(joint, trial, now);
@@ -290,8 +290,8 @@ JointStatus BallJoint::decide(const Trial& trial, JointStatus status) const {
     if (now.distance <= now.clearance + trial.length_rounding) return status;
     return mu > 0.0 ? JointStatus::stick : JointStatus::slip_plus;
   }
-  // A force that moves a slack element by a thousandth of its play in a step counts as zero, see
-  // System::slack_stiffness().
+  // A normal force counts as zero if it moves a slack element by at most a thousandth of the play
+  // in a step, see System::slack_stiffness().
   const double slack = 1e-3 * trial.slack_stiffness * radial_clearance;
   if (now.normal_force < -trial.force_rounding - slack) return JointStatus::open;
   if (mu == 0.0 || partial_slip) return status;  // slips freely, or one row for stick and slip
@@ -301,7 +301,7 @@ JointStatus BallJoint::decide(const Trial& trial, JointStatus status) const {
   }
   const BallBend<double> bend = bend_of(*this, trial, now);
   const double rounding = slide_rounding(trial, trial.length_rounding, trial.force_rounding);
-  // Newton's method has reversed the slide along one direction: the joint sticks.
+  // The joint sticks, because Newton's method has reversed the slide relative to friction.
   const double carried = now.friction.norm();
   if (now.normal_force > slack + trial.force_rounding && carried > trial.force_rounding &&
       bend.pull.dot(now.friction) < -rounding * carried) {
@@ -343,7 +343,8 @@ void BallJoint::commit(const Trial& trial, JointStatus status, double* after) co
   const Vector3d carried = detail::ball_slide(now, BallMemory::of(trial.history)).axis;
   if (carried.isZero(0.0)) return;
   BallMemory end = BallMemory::of(after);
-  // Keeps rounding of many steps from moving the direction out of the tangent plane.
+  // Projects the direction onto the tangent plane, because the rounding of many steps would move it
+  // out.
   end.axis = (carried - now.normal * now.normal.dot(carried)).normalized();
   end.to(after);
 }

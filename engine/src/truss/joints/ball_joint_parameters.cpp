@@ -87,8 +87,8 @@ JointFrame BallJoint::frame(const Model& model) const {
   frame.forces = 3;
   frame.program = program;
   frame.temperature_fraction = temperature_fraction;
-  // If supports prevent motion along some direction, this direction becomes one of the axes, and
-  // pins have no row along it.
+  // If supports prevent a relative motion along a direction, this direction becomes one of the
+  // axes. Pins have no row along it.
   Matrix3d free = Matrix3d::Zero();
   for (const int node : {ball_node, socket_node}) {
     const Node& part = model.nodes[index(node)];

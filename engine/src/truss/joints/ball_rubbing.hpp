@@ -6,8 +6,9 @@
 
 namespace statejump::truss::detail {
 
-// Friction of a ball with partial slip. The memory has two components: along a reference direction
-// of the tangent plane that rotates with the contact, and to the left of it, seen along the normal.
+// Friction of a ball with partial slip. The memory has components along two directions: a reference
+// direction of the tangent plane that rotates with the contact, and the direction to its left, seen
+// along the normal.
 
 /// Slide of a step [m] along both directions of the memory.
 template <class Number>
@@ -29,7 +30,7 @@ BallRub<Number> ball_rub(const BallState<Number>& now, const BallMemory& start) 
   return rub;
 }
 
-/// Any unit vector in the tangent plane; zero if no normal is defined.
+/// An arbitrary unit vector in the tangent plane; zero if the normal is undefined.
 inline Eigen::Vector3d any_across(const Eigen::Vector3d& normal) {
   return normal.isZero(0.0) ? normal : normal.unitOrthogonal();
 }

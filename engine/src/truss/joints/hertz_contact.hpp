@@ -21,9 +21,9 @@ struct HertzContact {
   double mindlin_stiffness;  ///< 8 G* √R [N/m^1.5]
   double radial_clearance;   ///< [m]
 
-  /// Normal force at which the depth is a millionth of the clearance [N]. Below it the law is
-  /// linear. A contact that just closes would otherwise have an infinite compliance, from which
-  /// Newton's method does not converge.
+  /// Normal force at which the depth is a millionth of the clearance [N]. Below this force the law
+  /// is linear. Otherwise a contact that just closes would have an infinite compliance, and
+  /// Newton's method would not converge.
   double least_force() const { return hertz_stiffness * std::pow(1e-6 * radial_clearance, 1.5); }
 
   /// Depth under a normal force [m].
@@ -55,9 +55,9 @@ struct HertzContact {
   }
 };
 
-/// Heat of micro-slip at the rim of a sticking contact [J]: work of friction less the stored
-/// energy. The force goes from F at compliance C to F' at C'. Loading, along ΔF (C + C')/2: (F² +
-/// F'²) (C − C')/4. Unloading, along F' C' − F C: F·F' (C' − C)/2.
+/// Heat of micro-slip at the rim of a sticking contact [J]: work of friction minus the change of
+/// stored energy. The force changes from F at compliance C to F' at C'. Loading: slide ΔF (C +
+/// C')/2, heat (F² + F'²) (C − C')/4. Unloading: slide F' C' − F C, heat F·F' (C' − C)/2.
 /// @param before_squared, product, squared F², F·F', F'² [N²]
 inline double rim_slip(double before_squared, double compliance_before, double product,
                        double squared, double compliance) {

@@ -16,8 +16,8 @@ double slide_of(const IwanJoint& joint, const Trial& trial) {
   return joint.axis.dot(trial.moved[0] - trial.moved[1]);
 }
 
-/// Calls use(stiffness, reach, from, to) for the sliders of every interval, then for the last ones,
-/// which have from = to = reach.
+/// Calls use(stiffness, reach, from, to) for the slider of every interval, then for the sliders at
+/// φm, which have from = to = reach.
 template <class Use>
 void for_each_element(const IwanJoint& joint, Use&& use) {
   const double last = joint.last_reach();
@@ -26,7 +26,7 @@ void for_each_element(const IwanJoint& joint, Use&& use) {
   const double whole = joint.spacing > 1.0 ? std::pow(joint.spacing, joint.elements) - 1.0
                                            : static_cast<double>(joint.elements);
   double length = (joint.spacing > 1.0 ? joint.spacing - 1.0 : 1.0) / whole;
-  // Fractions of φm, of the stiffness ∫ρ and of the force ∫φ ρ up to there.
+  // Start of the interval over φm; fractions of stiffness ∫ρ and force ∫φ ρ before it.
   double from = 0.0;
   double stiffness_before = 0.0;
   double force_before = 0.0;
@@ -44,7 +44,7 @@ void for_each_element(const IwanJoint& joint, Use&& use) {
   use(spread * joint.stiffness_ratio, last, last, last);
 }
 
-/// Total force of the elements at a slide, given the positions of their sliders before.
+/// Total force of all elements at a slide, given the previous positions of their sliders.
 struct Response {
   double force = 0.0;
   double tangent = 0.0;
@@ -53,8 +53,8 @@ struct Response {
   double beyond_minus = -std::numeric_limits<double>::infinity();  ///< Largest p − s − φ [m].
 };
 
-/// @param before position of every slider
-/// @param after receives the positions at s, if not null
+/// @param before positions of all sliders at the start of the step
+/// @param after receives the positions of all sliders at s, unless null
 Response respond(const IwanJoint& joint, double s, const double* before, double* after) {
   Response found;
   int i = 0;
@@ -91,9 +91,9 @@ std::vector<IwanJoint::Jenkins> IwanJoint::jenkins() const {
 }
 
 double IwanJoint::slack() const {
-  // The force is a polygon that touches the exact curve at both ends of an interval. The error is
-  // largest at its corner φ_i: the force ∫ (φ_i − φ) ρ of the sliders that already slip there,
-  // integrated from the start of the interval.
+  // The force–slide curve is a polygon that equals the exact curve at both ends of an interval. Its
+  // error is largest at its corner φ_i. There it is the integral ∫ (φ_i − φ) ρ dφ from the start of
+  // the interval, over the exact sliders that already slip.
   const double last = last_reach();
   const double spread = tangent_stiffness / (1.0 + stiffness_ratio);
   const auto upto = [&](double share) { return std::pow(share, exponent + 1.0); };
@@ -128,7 +128,7 @@ std::span<const Parameter<IwanJoint>> IwanJoint::parameters() {
 }
 
 std::span<const Output> IwanJoint::outputs() {
-  // Slide from the reference configuration; force on the first node, against the axis.
+  // Outputs: slide from the reference configuration; force on the first node, against the axis.
   static const Output table[] = {{"iwan_slide_m", 1}, {"iwan_force_N", 1}};
   return table;
 }
@@ -185,7 +185,8 @@ JointStatus IwanJoint::decide(const Trial& trial, JointStatus status) const {
 }
 
 void IwanJoint::begin(const Trial& trial, JointStatus, double* now) const {
-  // The start is sought from the reference configuration, in which all sliders are at zero.
+  // Memory at the start: one loading from the reference configuration, where all sliders are at
+  // zero.
   const std::vector<double> drawn(static_cast<std::size_t>(history()), 0.0);
   respond(*this, slide_of(*this, trial), drawn.data(), now);
 }

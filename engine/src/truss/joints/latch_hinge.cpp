@@ -26,7 +26,8 @@ Matrix32 plane_of(const Trial& trial) {
   return trial.frame.axes.leftCols<2>();
 }
 
-/// A link of the hinge: local nodes of its ends, and the sign of its rotation in φ.
+/// A link of the hinge: local nodes of its ends, and the sign with which its rotation contributes
+/// to φ.
 struct Arm {
   std::size_t from;
   std::size_t to;
@@ -99,7 +100,8 @@ std::span<const Parameter<LatchHinge>> LatchHinge::parameters() {
 }
 
 std::span<const Output> LatchHinge::outputs() {
-  // Rotation from the reference configuration; moment against it: preload, stiffness and friction.
+  // Outputs: rotation from the reference configuration; moment against it (preload, stiffness and
+  // friction).
   static const Output table[] = {{"hinge_rotation_rad", 1}, {"hinge_moment_N_m", 1}};
   return table;
 }
@@ -235,7 +237,7 @@ void LatchHinge::describe(const Trial& trial, double* outputs) const {
 }
 
 double LatchHinge::slide_rounding(const Trial& trial, double length, double force) const {
-  // The same displacements of its ends rotate a shorter link by a larger angle.
+  // Equal rounding errors of the end displacements rotate a shorter link by a larger angle.
   double turned = length;
   if (second_link >= 0) {
     turned *= std::max(1.0, radius_of(trial) / (trial.drawn[3] - trial.drawn[2]).norm());

@@ -12,8 +12,8 @@
 
 namespace statejump::truss::detail {
 
-/// Count of numbers that a joint stores for a contact that slides in one direction, or in two:
-/// slope of the bound, force of merged points, number of points, and their x and U.
+/// Count of numbers stored for a contact with one or two sliding directions: slope of the bound,
+/// force of merged points, number of points, x and U of each point.
 constexpr int partial_slip_history(int directions) {
   return 3 + (1 + directions) * kernel::PartialSlipMemory::capacity;
 }
@@ -61,7 +61,7 @@ inline std::size_t piece_of(const kernel::PartialSlipPlane& plane) {
 }
 
 /// Whether a contact slides as a whole at the end of a step, and in which direction.
-/// @param before status at the start of the step: a contact at rest after a slide keeps its status
+/// @param before status at the start of the step; a contact that rests after a slide keeps it
 /// @param rounding of the slide [m]
 inline JointStatus sliding(const kernel::PartialSlipLine& line, JointStatus before,
                            double rounding) {

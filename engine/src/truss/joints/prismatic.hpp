@@ -26,7 +26,7 @@ inline JointFrame prismatic_frame(const Model& model, int first, int second, con
   return frame;
 }
 
-/// Applies the first unknown of the joint as force along the axis on both nodes.
+/// Applies the joint's first unknown to both nodes, as equal and opposite forces along the axis.
 inline void push_along(const Trial& trial, const Vector3d& axis, JointWriter& writer) {
   const double force = trial.force[0];
   writer.carries(force);

@@ -29,17 +29,17 @@ using Eigen::Vector3d;
 namespace {
 
 /// Largest angle [rad] by which a contact may move around its bearing in one step. A larger angle
-/// within a located instant is a jump.
+/// in a step of the shortest length is a jump.
 constexpr double most_turned = 0.5;
 
-// Local nodes: journal, bearing, far ends of the links that rotate them.
+// Local node numbers: journal, bearing, and the far ends of the links that rotate them.
 constexpr std::size_t journal = 0;
 constexpr std::size_t bearing = 1;
 constexpr std::size_t journal_far = 2;
 constexpr std::size_t bearing_far = 3;
 
-/// Memory of a revolute; with partial slip the memory of the contact follows it. In-plane vectors
-/// are components along its two plane directions.
+/// Memory of a revolute in history(). With partial slip, the contact's memory follows. In-plane
+/// vectors are components along its two plane directions.
 struct Memory {
   Vector2d eccentricity;       ///< [m]
   Vector2d journal_direction;  ///< Journal minus far node of its link [m]; zero without link.
@@ -127,7 +127,7 @@ Geometry geometry_of(const ClearanceRevolute& joint, const Trial& trial) {
   return g;
 }
 
-/// Slide and rotation of the surfaces since the start of the step.
+/// Slide of the surfaces since the start of the step, and the rotations that cause it.
 struct Motion {
   double contact_turned = 0.0;  ///< Δφ [rad].
   double journal_turned = 0.0;  ///< [rad]
@@ -158,7 +158,8 @@ struct ElasticSlide {
   double by_friction;  ///< By friction [m/N].
 };
 
-/// Mindlin's contact: added normal load keeps the force, removed normal load keeps the deflection.
+/// Mindlin's contact: an increase of the normal load keeps the friction force, a decrease keeps the
+/// deflection.
 ElasticSlide elastic_slide(const ClearanceRevolute& joint, const Trial& trial,
                            const Memory& start) {
   if (std::isinf(joint.mindlin_stiffness)) return {0.0, 0.0, 0.0};
@@ -175,7 +176,8 @@ ElasticSlide elastic_slide(const ClearanceRevolute& joint, const Trial& trial,
   return {mean * more, 0.5 * slope * more, mean};
 }
 
-/// Friction force with partial slip after a slide, and its derivative by the normal force.
+/// Friction force with partial slip after a slide, and its derivative with respect to the normal
+/// force.
 struct Rubbing {
   kernel::PartialSlipLine line;
   double by_normal;
@@ -192,8 +194,8 @@ Rubbing rubbing(const ClearanceRevolute& joint, const Trial& trial, double slide
   return {line, line.by_limit * mu + line.by_stiffness * stiffens};
 }
 
-/// One step of the partial-slip law.
-/// @param memory at the start of the step; out: at its end
+/// Applies the partial-slip law to the step.
+/// @param memory on input at the start of the step, on output at its end
 kernel::PartialSlipResponse rub(const ClearanceRevolute& joint, const Trial& trial, bool open,
                                 kernel::PartialSlipMemory& memory) {
   const double slide = motion_of(geometry_of(joint, trial), Memory::of(trial.history)).slide;
@@ -203,8 +205,8 @@ kernel::PartialSlipResponse rub(const ClearanceRevolute& joint, const Trial& tri
                                    memory);
 }
 
-/// Gradients of the slide and of the virtual work of both forces, in the two directions of the
-/// joint's plane, with the second derivatives of that work.
+/// Derivatives with respect to in-plane displacements: gradients of the slide and of the virtual
+/// work of both forces, and second derivatives of this work.
 struct Gradients {
   std::array<Vector2d, 4> normal;
   std::array<Vector2d, 4> friction;  ///< Virtual work of friction.
@@ -235,8 +237,9 @@ void pinned(Gradients& of) {
   }
 }
 
-/// Damps the relative motion of journal and bearing, see System::slack_stiffness().
-/// @param stiffness against motion since the start of the step [N/m]
+/// Adds a force that damps the relative motion of journal and bearing, see
+/// System::slack_stiffness().
+/// @param stiffness force divided by the motion since the start of the step [N/m]
 /// @returns the force on the journal [N]
 Vector2d hold_slack(const Trial& trial, double stiffness, const Vector2d& eccentricity,
                     Gradients& of) {
@@ -249,14 +252,14 @@ Vector2d hold_slack(const Trial& trial, double stiffness, const Vector2d& eccent
   return stiffness * (eccentricity - Memory::of(trial.history).eccentricity);
 }
 
-/// @param motion of the step; zero if the derivative of the slide is not needed
-/// @param bends whether second derivatives are needed
+/// @param motion slide and rotations in the step; zero if the derivative of the slide is not needed
+/// @param bends true if second derivatives are needed
 void in_contact(const ClearanceRevolute& joint, const Trial& trial, const Geometry& g,
                 const Memory& start, const Motion& motion, bool bends, Gradients& of) {
   const double distance = g.eccentricity.norm();
   const Vector2d along = g.eccentricity / distance;
   const Vector2d left = turned_left(along);
-  // Named references instead of a structured binding, because a lambda captures one of them.
+  // Plain variables instead of a structured binding, because a lambda captures one of them.
   const double normal = trial.force[0];
   const double friction = trial.force[1];
   const double lever = 0.5 * (start.eccentricity.norm() / distance + 1.0);
@@ -276,7 +279,7 @@ void in_contact(const ClearanceRevolute& joint, const Trial& trial, const Geomet
     of.bend(journal, bearing, -bend);
     of.bend(bearing, journal, -bend);
   }
-  // The rotation of a link contributes radius times angle to the slide.
+  // If a link rotates, its radius times the angle is added to the slide.
   const auto turn = [&](std::size_t at, std::size_t far, const Vector2d& direction, double radius,
                         double mean_radius) {
     const PlanarAngle angle = planar_angle(direction);
@@ -339,7 +342,8 @@ std::span<const Parameter<ClearanceRevolute>> ClearanceRevolute::parameters() {
 }
 
 std::span<const Output> ClearanceRevolute::outputs() {
-  // Journal minus bearing centre; normal force; friction on the journal against the slide.
+  // Outputs: vector from bearing centre to journal centre; normal force; friction on the journal,
+  // against the slide.
   static const Output table[] = {
       {"eccentricity_m", 3}, {"normal_force_N", 1}, {"friction_force_N", 1}};
   return table;
@@ -408,7 +412,8 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
   Gradients of;
   Vector2d slack = Vector2d::Zero(), slack_by_normal = Vector2d::Zero();
   if (status == JointStatus::open) {
-    // An open joint has no contact forces. A journal exactly in the middle has no normal.
+    // An open joint has no contact forces. The normal is not used: a journal exactly in the middle
+    // has none.
     slack = hold_slack(trial, trial.slack_stiffness, g.eccentricity, of);
     writer.balance(0, normal);
     writer.balance(1, friction);
@@ -421,15 +426,15 @@ void ClearanceRevolute::evaluate(const Trial& trial, JointStatus status,
     slides = 1.0;
   } else {
     const Memory start = Memory::of(trial.history);
-    // The slide is not needed for a joint that slips without friction or at its limit.
+    // The slide is not needed if the joint slips without friction, or with friction at its limit.
     const bool measures =
         trial.model == JointModel::friction && (partial_slip || status == JointStatus::stick);
     const Motion motion = measures ? motion_of(g, start) : Motion{};
     in_contact(*this, trial, g, start, motion, bends, of);
     holds_normal = true;
     const ByNormal depth = contact_of(*this).depth(normal);
-    // The depth is scaled with the opened fraction of the clearance, so that the start proceeds
-    // from pins to contacts in small steps.
+    // The opened fraction of the clearance also scales the depth, so that the start proceeds from
+    // pins to contacts in small steps.
     writer.closure(0, g.eccentricity.norm() - g.clearance - trial.opening * depth.value);
     corner[0][0] = -trial.opening * depth.slope;
     const double mu = trial.model == JointModel::friction ? friction_coefficient : 0.0;
@@ -529,7 +534,8 @@ void ClearanceRevolute::warm(const Trial& trial, JointStatus status, double temp
 
 namespace {
 
-/// The slide of a step less the elastic deflection, with the slip correction [m].
+/// The slide of a step minus the elastic deflection, including the correction of the slip error
+/// [m].
 double lag_at(const ClearanceRevolute& joint, const Trial& trial, const Geometry& g) {
   const Memory start = Memory::of(trial.history);
   return motion_of(g, start).slide - elastic_slide(joint, trial, start).slide + trial.owed.x();
@@ -551,8 +557,8 @@ JointStatus ClearanceRevolute::decide(const Trial& trial, JointStatus status) co
     if (g.eccentricity.norm() <= g.clearance + trial.length_rounding) return status;
     return mu > 0.0 ? JointStatus::stick : JointStatus::slip_plus;
   }
-  // A force that moves a slack element by a thousandth of its play in a step counts as zero, see
-  // System::slack_stiffness().
+  // A normal force counts as zero if it moves a slack element by at most a thousandth of the play
+  // in a step, see System::slack_stiffness().
   const double slack = 1e-3 * trial.slack_stiffness * radial_clearance;
   if (normal < -trial.force_rounding - slack) return JointStatus::open;
   if (mu == 0.0 || partial_slip) return status;  // slips freely, or one row for stick and slip

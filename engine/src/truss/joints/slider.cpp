@@ -37,7 +37,8 @@ double slide_of(const Slider& slider, const Trial& trial) {
   return slider.axis.dot(trial.moved[0] - trial.moved[1]);
 }
 
-/// With partial slip: the slide at the start of the step, then the contact's memory.
+/// With partial slip, history() holds the slide at the start of the step, then the contact's
+/// memory.
 kernel::PartialSlipMemory memory_of(const double* history) {
   return detail::read_partial_slip(history + 1);
 }
@@ -48,8 +49,8 @@ kernel::PartialSlipLine rubbing(const Slider& slider, const double* history, dou
                                    s - history[0], memory_of(history));
 }
 
-/// One step of the partial-slip law to the slide s.
-/// @param memory at the start of the step; out: at its end
+/// Applies the partial-slip law to the step that ends at the slide s.
+/// @param memory on input at the start of the step, on output at its end
 kernel::PartialSlipResponse rub(const Slider& slider, const double* history, double s,
                                 kernel::PartialSlipMemory& memory) {
   return kernel::partial_slip_step(slider.tangential_stiffness, slider.friction_force,
@@ -75,7 +76,8 @@ double played(const Slider& slider, double bend) {
   return std::clamp(bend, -0.5 * slider.play, 0.5 * slider.play);
 }
 
-/// Forces of soft stops and play against the axis, in addition to the unknown.
+/// Forces of soft stops and play on the slider against its axis. They act in addition to the
+/// unknown λ.
 struct Springs {
   double force = 0.0;      ///< [N]
   double stiffness = 0.0;  ///< [N/m]
@@ -101,7 +103,7 @@ Springs springs_at(const Slider& slider, const Trial& trial) {
   return found;
 }
 
-/// Applies soft stops and play between the slider's nodes, for any status.
+/// Applies the forces of soft stops and play to the slider's nodes. They act for every status.
 void push_springs(const Slider& slider, const Trial& trial, JointWriter& writer) {
   const Springs found = springs_at(slider, trial);
   const Eigen::Vector3d force = found.force * slider.axis;
@@ -116,7 +118,7 @@ void push_springs(const Slider& slider, const Trial& trial, JointWriter& writer)
   writer.block(1, 0, -block);
 }
 
-/// Slide of a state [m]. At a stop the clearance itself is returned, so that rounding does not
+/// Slide at a state [m]. At a stop it is set to the clearance, so that rounding does not
 /// accumulate.
 double slide_of(const Slider& slider, const Trial& trial, JointStatus status) {
   return status == JointStatus::stop_plus    ? slider.clearance_plus
@@ -124,7 +126,7 @@ double slide_of(const Slider& slider, const Trial& trial, JointStatus status) {
                                              : slide_of(slider, trial);
 }
 
-/// Slipped part of the slide [m], without partial slip.
+/// Part of the slide that is slip [m], for a slider without partial slip.
 /// @param before memory at the start of the step
 double slipped(const Slider& slider, const Trial& trial, JointStatus status, const double* before) {
   const double s = slide_of(slider, trial, status);
@@ -135,7 +137,7 @@ double slipped(const Slider& slider, const Trial& trial, JointStatus status, con
   return s - friction_at(slider, before, s) / slider.tangential_stiffness;
 }
 
-/// Status that the inequalities require of a slider that slips in one direction.
+/// Status that the inequalities require if the slider slips in the given direction.
 JointStatus after_slip(const Slider& slider, const Trial& trial, const Sense& way) {
   const double s = slide_of(slider, trial);
   if (way.sign * s > way.clearance(slider) + trial.length_rounding) return way.stop;
@@ -160,7 +162,7 @@ JointStatus after_stop(const Slider& slider, const Trial& trial, const Sense& wa
     const bool leaves = pushed < way.sign * rubs - trial.force_rounding;
     return leaves ? JointStatus::stick : way.stop;
   }
-  // If the slider was at the stop before, friction helps to hold it there. If it arrived in this
+  // Friction helps to hold a slider that was at the stop before the step. If it arrived in this
   // step, friction acts away from the stop.
   if (trial.before == way.stop) {
     return pushed < -(f + trial.force_rounding) ? way.other_slip : way.stop;
@@ -206,8 +208,8 @@ std::span<const Parameter<Slider>> Slider::parameters() {
 }
 
 std::span<const Output> Slider::outputs() {
-  // Slide from the reference configuration; friction and stop force on the slider, against its
-  // axis.
+  // Outputs: slide from the reference configuration; friction plus stop force on the slider,
+  // against its axis.
   static const Output table[] = {{"slide_m", 1}, {"slider_force_N", 1}};
   return table;
 }
@@ -303,7 +305,7 @@ JointStatus Slider::decide(const Trial& trial, JointStatus status) const {
 }
 
 void Slider::begin(const Trial& trial, JointStatus status, double* now) const {
-  // The start is sought from the reference configuration, in which the slip is zero.
+  // Memory at the start: slide from the reference configuration, where slip is zero.
   std::vector<double> drawn(detail::index(history()), 0.0);
   Trial from = trial;
   from.history = drawn.data();
@@ -377,7 +379,8 @@ void Slider::describe(const Trial& trial, double* outputs) const {
   outputs[0] = s;
   outputs[1] = trial.force[0];
   if (play > 0.0) {
-    // Inside an open play the force is exactly zero, not the difference of two forces.
+    // While the play is open, the force is exactly zero. A difference of two forces would be
+    // rounded.
     const double bend = s - trial.history[0];
     const double inside = played(*this, bend);
     outputs[1] = inside == bend ? 0.0 : trial.force[0] - tangential_stiffness * inside;
@@ -406,8 +409,8 @@ JointStatus Slider::settled(const Trial& trial, JointStatus status) const {
 
 std::optional<LocalContact> Slider::contact(const Trial&, JointStatus status) const {
   if (partial_slip) return {};  // partial slip has no friction cone; the joint keeps its status
-  // Statics does not determine how wall and friction share a force. In contact problems a slider at
-  // a stop therefore keeps its status.
+  // A slider at a stop keeps its status in contact problems, because statics does not determine how
+  // wall and friction share a force.
   if (status == JointStatus::stop_plus || status == JointStatus::stop_minus) return {};
   return LocalContact{0, -1, 1.0, friction_limit()};
 }

@@ -20,16 +20,16 @@ namespace statejump::truss {
 /// Unit in which the residual of a row is measured.
 enum class RowUnit : unsigned char { balance, closure, force };
 
-/// Sums of residual and Jacobian of all equations. Every evaluation writes its entries in the same
-/// order. The first evaluation records their positions, so later ones look nothing up. The entries
-/// are divided into strands, see AssemblyStrand. Strands that share no position may be written at
-/// the same time.
+/// Residual and Jacobian of all equations, as sums of entries. Every evaluation writes its entries
+/// in the same order. The first evaluation records their positions, so later evaluations need no
+/// search. The entries are divided into strands, see AssemblyStrand. Strands that share no position
+/// may be written at the same time.
 class Assembly {
  public:
   explicit Assembly(Eigen::Index unknowns)
       : residual(unknowns), units(static_cast<std::size_t>(unknowns), RowUnit::balance) {}
-  /// Adds up the product of the Jacobian and a vector, instead of the Jacobian. The vector must
-  /// outlive the assembly.
+  /// Creates an assembly that sums the product of the Jacobian and a vector instead of the
+  /// Jacobian. The vector must outlive the assembly.
   explicit Assembly(const Eigen::VectorXd& along) : Assembly(along.size()) {
     along_ = &along;
     product = residual = Eigen::VectorXd::Zero(along.size());
@@ -67,7 +67,7 @@ class Assembly {
 
   Eigen::VectorXd residual;
   Eigen::Matrix3Xd moved;  ///< Displacements of all nodes at the evaluated state [m].
-  /// The Jacobian of the last evaluation that updated it. All copies have the same pattern.
+  /// The last updated Jacobian. All copies of an assembly share its pattern.
   linear::SparseView jacobian() const {
     return {residual.size(),      residual.size(),      values_.size(),
             slots_->outer.data(), slots_->inner.data(), values_.data()};
@@ -80,7 +80,7 @@ class Assembly {
 
  private:
   friend class AssemblyStrand;
-  /// Pattern of the Jacobian, and the position in it of each written entry.
+  /// Pattern of the Jacobian, and for each written entry its position in the pattern.
   struct Slots {
     std::vector<int> outer, inner;   ///< Compressed columns of the Jacobian.
     std::vector<int> entries;        ///< For every run, the index of its first entry.
@@ -99,11 +99,12 @@ class Assembly {
   Eigen::VectorXd values_;              ///< Entries of the Jacobian.
 };
 
-/// Writes one part of an assembly, always the same positions in the same order.
+/// Writes one part of an assembly. Every evaluation must write the same positions in the same
+/// order.
 class AssemblyStrand {
  public:
-  /// @param which number of the strand; while an assembly records, strands must be created in
-  /// ascending order
+  /// @param which number of the strand. In the evaluation that records positions, strands must be
+  /// created in ascending order
   AssemblyStrand(Assembly& to, std::size_t which) : to_(&to) {
     if (to.slots_ != nullptr) {
       slot_ = to.slots_->entries.data() + to.slots_->begin[which];
@@ -112,7 +113,8 @@ class AssemblyStrand {
       to.begin_.push_back(to.runs_.size());
     }
   }
-  /// Merges force scale and active branches into the assembly. Call for strands in ascending order.
+  /// Merges force scale and active branches into the assembly. Call it for strands in ascending
+  /// order.
   void end() {
     to_->largest_force = std::max(to_->largest_force, largest_force_);
     to_->pieces = to_->pieces * hash_factor_ + pieces_;
@@ -126,7 +128,7 @@ class AssemblyStrand {
     at.each_term(direction, [&](int row, double factor) { residual(row, factor * value); });
   }
   void unit(int row, RowUnit unit) { to_->units[static_cast<std::size_t>(row)] = unit; }
-  /// Includes a force in the scale of rounding and force balance [N].
+  /// Includes a force [N] in the largest force, which scales rounding and force balance.
   void carries(double force) { largest_force_ = std::max(largest_force_, std::abs(force)); }
   /// Reports the active branch of a piecewise law.
   void piece(std::size_t which) {
@@ -151,7 +153,7 @@ class AssemblyStrand {
         for (int i = 0; i < of_rows; ++i) run[i] += value(i, j);
       }
     };
-    // Most nodes are free in space or in a plane. These loops have a constant length.
+    // Most nodes are free in space or in a plane. Loops of constant length are faster.
     if (rows == 2 && columns == 2) {
       add_up(std::integral_constant<int, 2>(), std::integral_constant<int, 2>());
     } else if (rows == 3 && columns == 3) {
@@ -161,7 +163,8 @@ class AssemblyStrand {
     }
     slot_ += columns;
   }
-  /// Adds a block for the free directions of two nodes: `value(direction of rows, of columns)`.
+  /// Adds a block for the free directions of two nodes. `value(i, j)`: direction i of the row node,
+  /// j of the column node.
   template <class Value>
   void block(const NodeDofs& rows, const NodeDofs& columns, Value&& value) {
     if (rows.sums == nullptr && columns.sums == nullptr) {
@@ -186,15 +189,15 @@ class AssemblyStrand {
     }
     block(rows, columns, [](int, int) { return 0.0; });
   }
-  /// Skips the positions of a block of zeros. (A sum that begins at +0 is never −0, so adding zeros
-  /// would change nothing.)
+  /// Skips the positions of a block of zeros. Adding zeros would not change the sums, not even
+  /// their signs: a sum that begins at +0 is never −0.
   void zeros(int row, int rows, int column, int columns) {
     if (slot_ == nullptr) return block(row, rows, column, columns, [](int, int) { return 0.0; });
     if (!residual_only() && rows > 0) slot_ += columns;
   }
 
  private:
-  /// Slow case: positions are not recorded yet, or no Jacobian is needed.
+  /// Handles the slow cases: positions are not recorded yet, or no summed Jacobian is needed.
   [[gnu::noinline]] void elsewhere(int row, int column, double value) {
     if (to_->lists_) {
       to_->entries.emplace_back(row, column, value);
@@ -225,7 +228,8 @@ class AssemblyStrand {
   std::size_t hash_factor_ = 1;
 };
 
-/// Adds the contributions of a joint to the positions of its own nodes and forces.
+/// Adds the contributions of a joint to the assembly, in the rows and columns of its nodes and
+/// forces.
 class JointWriter {
  public:
   explicit JointWriter(AssemblyStrand& strand) : to_(&strand) {}
@@ -241,7 +245,7 @@ class JointWriter {
     }
   }
   bool residual_only() const { return to_->residual_only(); }
-  /// Derivative of a node's force with respect to another node's displacement [N/m].
+  /// Adds the derivative of one node's force with respect to another node's displacement [N/m].
   void block(std::size_t by_node, std::size_t of_node, const Eigen::Matrix3d& value) {
     if (to_->residual_only()) return;
     const NodeDofs& rows = places[by_node];
@@ -257,13 +261,13 @@ class JointWriter {
     const NodeDofs& at = places[node];
     to_->block(own(row), at, [&](int, int j) { return at.directions->col(j).dot(gradient); });
   }
-  /// Derivative of a node's force with respect to a force of the joint.
+  /// Adds the derivative of a node's force with respect to a force of the joint [-].
   void column(std::size_t node, int force, const Eigen::Vector3d& gradient) {
     if (to_->residual_only()) return;
     const NodeDofs& at = places[node];
     to_->block(at, own(force), [&](int i, int) { return at.directions->col(i).dot(gradient); });
   }
-  /// Derivative of a row with respect to a force of the joint.
+  /// Adds the derivative of a row with respect to a force of the joint.
   void corner(int row, int force, double value) {
     to_->add(first_force + row, first_force + force, value);
   }
@@ -271,11 +275,12 @@ class JointWriter {
   void closure(int row, double value) { set(row, value, RowUnit::closure); }
   /// Sets the residual of a row as a difference of forces [N].
   void balance(int row, double value) { set(row, value, RowUnit::force); }
-  /// Includes a force in the scale of rounding and force balance [N].
+  /// Includes a force [N] in the largest force, which scales rounding and force balance.
   void carries(double force) { to_->carries(force); }
   /// Reports the active branch of a piecewise law.
   void piece(std::size_t which) { to_->piece(which); }
-  /// Constrains the first two nodes along a direction by one of the joint's forces.
+  /// Constrains the first two nodes along a direction; one of the joint's forces enforces the
+  /// constraint.
   void hold(int row, const Eigen::Vector3d& along, double force, double apart) {
     closure(row, apart);
     this->row(row, 0, along);

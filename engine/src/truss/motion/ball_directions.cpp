@@ -8,13 +8,14 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Most iterations of the directions in a step. Directions change little, and the iteration
-/// converges quadratically.
+/// Largest number of iterations for the friction directions in a step. Directions change little,
+/// and the iteration converges quadratically.
 constexpr int most_rotations = 50;
-/// Tolerated friction across its direction, over the friction limit. Half its square is the error
-/// of the magnitude, below the tolerance at which a contact counts as slipping.
+/// Tolerated transverse component of friction, divided by the friction limit. Half its square is
+/// the relative error of the magnitude, which is below the tolerance for slip.
 constexpr double aside = 1e-4;
-/// Tolerated change of transverse friction by an updated stiffness while sticking, over the limit.
+/// Tolerated change of transverse friction if the stiffness of a sticking contact is updated,
+/// divided by the friction limit.
 constexpr double stiffened = 1e-8;
 
 }  // namespace
@@ -41,8 +42,8 @@ bool direct_balls(const System& system, const TimeStep& step, int rotations,
       statuses[cone.place + 1] = status_of(beside);
     };
     if (contact.slips_in_part) {
-      // The contact problem limits friction to `given_force`; a solve on statuses uses the law
-      // alone.
+      // The contact problem limits friction to `given_force`. A solve with given statuses uses only
+      // the law.
       if (rotations > 0 && friction.norm() < beside.given_force) continue;
       beside.given_force = std::max(given, 2.0 * friction.norm());
       if (rotations > 0 && bound > 0.0) settled = false;

@@ -31,7 +31,7 @@ void BallFriction::measure(const Trial& at) {
     point(moved.axis);
     return;
   }
-  // The direction is still unknown: that of the last step, or an arbitrary one.
+  // The friction direction is still unknown: start with that of the last step, or an arbitrary one.
   const Vector3d before = along;
   along = now.normal.isZero(0.0) ? Vector3d::Zero() : now.normal.unitOrthogonal();
   point(before);

@@ -10,12 +10,12 @@ namespace statejump::truss::detail {
 using Eigen::Vector3d;
 
 /// Friction of a ball in its socket, in the tangent plane at the middle of a step. Friction is a
-/// vector, but a contact acts along one direction, so a ball has two contacts. The first acts along
-/// `along`, the direction of friction at the end of the step, and has Coulomb's limit. The second,
-/// the transverse contact, acts across it. Its stiffness is the transverse tangent of the law,
-/// limit over deflection. Its force vanishes once the direction has converged; see direct_balls().
-/// With partial slip both contacts are components of one law, along and across a direction that
-/// rotates with the contact, and the direction is not iterated.
+/// vector, but a contact acts along one direction, so a ball has two contacts. The first contact
+/// acts in the direction `along` of friction at the end of the step, and has Coulomb's limit. The
+/// second, the transverse contact, acts perpendicular to it. Its stiffness is the law's transverse
+/// tangent, limit over deflection. Its force vanishes once the direction has converged; see
+/// direct_balls(). With partial slip both contacts are components of one law, along and across a
+/// direction that rotates with the contact, so no direction is iterated.
 struct BallFriction {
   const BallJoint* joint = nullptr;
   std::size_t place = 0;  ///< Index of its first contact; the transverse contact follows.
@@ -23,7 +23,7 @@ struct BallFriction {
   bool slips_in_part() const { return joint->partial_slip != 0; }
 
   // Memory.
-  /// State at the last update of friction: positions, directions, elastic friction.
+  /// Positions, directions and elastic friction at the last update of friction.
   BallMemory memory{none(), none(), none(), none(), none(), 0.0, 0.0, 0.0, 0.0};
 
   // Values at the middle of the current step.
@@ -32,10 +32,11 @@ struct BallFriction {
   Vector3d along = Vector3d::Zero();  ///< Unit vector; zero without a normal.
   Vector3d across() const { return now.normal.cross(along); }
 
-  /// Updates the plane to the middle of a step and rotates the stored friction into it.
+  /// Updates the tangent plane to the middle of a step, and rotates the stored friction into this
+  /// plane.
   void measure(const Trial& at);
-  /// Sets the direction in the present plane.
-  /// @param to any vector in the plane; zero: the direction is unchanged
+  /// Sets the direction of friction in the present tangent plane.
+  /// @param to vector in the plane, of any length; zero keeps the direction
   void point(const Vector3d& to);
   /// Stores the present friction.
   /// @param friction elastic [N]

@@ -12,8 +12,8 @@ namespace statejump::truss::detail {
 /// Masses and dashpots of a truss, for its independent displacements.
 class Bodies {
  public:
-  /// @pre The arguments outlive this object.
-  /// @throws kernel::OutOfRange for a wrong number of values or a negative value
+  /// @pre The arguments must outlive this object.
+  /// @throws kernel::OutOfRange if the number of values is wrong or a value is negative
   Bodies(const System& system, const Inertia& inertia);
 
   const Eigen::SparseMatrix<double>& mass() const { return mass_; }
@@ -28,16 +28,17 @@ class Bodies {
   };
   Step step(double from, double to) const;
   /// Forces of the dashpots on the independent displacements [N]. Stress-free lengths grow at the
-  /// mean rate of the step, because their rate jumps at a corner of a program.
+  /// mean rate of the step, because the actual rate jumps at corners of a program.
   VectorXd force(const VectorXd& q, const VectorXd& v, const Step& step) const;
   /// −∂force/∂v at q.
   Eigen::SparseMatrix<double> damping(const VectorXd& q) const;
-  /// The entries of the damping matrix, always in the same order. Entries at one position add up.
+  /// The entries of the damping matrix, always in the same order. Several entries at one position
+  /// are summed.
   std::vector<Eigen::Triplet<double>> damping_entries(const VectorXd& q) const;
-  /// Negative geometric stiffness of links in compression at positions and a time, with its sign
-  /// changed.
+  /// Entries of the geometric stiffness of all links in compression, at positions q and a time,
+  /// with opposite sign.
   std::vector<Eigen::Triplet<double>> compression_entries(const VectorXd& q, double time) const;
-  /// Heat of the dashpots over the step, and the work of the temperature on them [J].
+  /// Heat of the dashpots in a step, and the work that the temperature does on them [J].
   struct Work {
     double heat = 0.0;
     double thermal = 0.0;

@@ -6,13 +6,14 @@
 
 namespace statejump::truss::detail {
 
-/// Solves a step as a frictional contact problem, if its statuses are not found.
+/// Solves a step as a frictional contact problem. It is used if StatusSearch does not find the
+/// statuses.
 ///
-/// Newton's method on the bodies: at an iterate, v_free are the velocities without impulses. The
-/// velocities of the contacts are u = W r + Hᵀ v_free with the Delassus matrix W = Hᵀ A⁻¹ H.
-/// Signorini's condition and Coulomb's law on u and r are a complementarity problem, whose methods
-/// need no statuses. Elastic contacts add their compliances to W. A is factored once, at the middle
-/// of the step.
+/// Newton's method solves the equations of the bodies. At an iterate, v_free are the velocities
+/// without impulses, and the velocities of the contacts are u = W r + Hᵀ v_free with the Delassus
+/// matrix W = Hᵀ A⁻¹ H. Signorini's condition and Coulomb's law on u and r form a complementarity
+/// problem, and its solvers need no statuses. Elastic contacts add their compliances to W. A is
+/// factored once, at the middle of the step.
 class ContactProblem {
  public:
   /// @pre The arguments outlive this object.
@@ -28,7 +29,7 @@ class ContactProblem {
 
  private:
   /// Solves the contact problem of an iterate.
-  /// @param free velocities without impulses
+  /// @param free velocities of the bodies without impulses
   void solve_contacts(const TimeStep& step, const VectorXd& free, bool first,
                       StepContacts& contacts);
 
@@ -39,8 +40,8 @@ class ContactProblem {
   double largest_merit_ = 0.0;
 };
 
-/// The contact of a planar problem that violates its law most; −1 without contacts. The violation
-/// is the error of its impulses times W_nn [m/s].
+/// Contact of a planar problem that violates its law most; −1 without contacts. The violation is
+/// the impulse error times W_nn [m/s].
 Eigen::Index worst_contact(const complementarity::Problem& problem, const VectorXd& impulses);
 
 }  // namespace statejump::truss::detail

@@ -9,8 +9,8 @@ namespace {
 
 using Eigen::Index;
 
-/// Commits the friction of a contact with a spring and Coulomb's limit.
-/// @param along mean speeds of the contacts in the step [m/s]
+/// Commits the step for a contact whose friction is a spring with Coulomb's limit.
+/// @param along mean slip rates of the contacts in the step [m/s]
 void commit_friction(const TimeStep& step, const StepContacts& contacts, Index i,
                      const VectorXd& along, EnergyAccount& account) {
   Contact& contact = contacts.contact(i);
@@ -41,7 +41,7 @@ void commit_friction(const TimeStep& step, const StepContacts& contacts, Index i
   account.negative += std::min(heat, 0.0);
 }
 
-/// Commits the friction of a contact with partial slip, and of its transverse contact.
+/// Commits the step for a contact with partial slip and its transverse contact.
 /// @param speeds of the contacts at the end of the step [m/s]
 void commit_partial_slip(const TimeStep& step, const StepContacts& contacts, Index owner,
                          const VectorXd& speeds, const VectorXd& along, EnergyAccount& account) {

@@ -12,7 +12,7 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Fraction of Coulomb's limit from which a contact slips: the contact problem is solved to 1e-10.
+/// A contact slips from this fraction of Coulomb's limit. The contact problem is solved to 1e-10.
 constexpr double at_bound = 1.0 - 1e-8;
 
 /// Journal minus bearing centre across the joint's axis [m].
@@ -58,8 +58,8 @@ Contact::Across Contact::across(double depth, double speed, double h) const {
   const double at = std::max(depth, least_depth);
   const double stiffness = numerics::hertz_slope(hertz_stiffness, at);
   const double elastic = force_at(at) + stiffness * (depth - at);
-  // The dashpot coefficient contains the fourth root of the depth, whose derivative is unbounded.
-  // It is evaluated at the depth at the middle of the step.
+  // The dashpot coefficient contains the fourth root of the depth, whose derivative is unbounded at
+  // zero depth. So it is evaluated at the middle of the step.
   const double dashpot =
       damping * std::sqrt(numerics::hertz_slope(hertz_stiffness, std::max(-gap, 0.0)));
   const double slope = h * stiffness + dashpot;
@@ -98,7 +98,7 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
   for (int i = 0; i < static_cast<int>(model.joints.size()); ++i) {
     const JointFrame frame =
         std::visit([&](const auto& one) { return one.frame(model); }, model.joints[index(i)]);
-    // A ball has a bilateral constraint only while the start replaces it by a pin.
+    // A ball joint has bilateral constraints only while the start replaces it by a pin.
     const bool is_ball = std::holds_alternative<BallJoint>(model.joints[index(i)]);
     const auto held =
         is_ball ? 0 : static_cast<int>(std::count(frame.holds.begin(), frame.holds.end(), true));
@@ -108,7 +108,7 @@ Contacts::Contacts(const System& system, const VectorXd& damping) : system_(&sys
   }
   slip_in_part_ = std::any_of(all_.begin(), all_.end(),
                               [](const Contact& contact) { return contact.slips_in_part; });
-  // The transverse contact of a ball is as rigid as its first one.
+  // A ball's transverse contact sticks rigidly only if its first contact does.
   hold_rigidly_ = std::any_of(all_.begin(), all_.end(), [](const Contact& contact) {
     return contact.is_rigid() || (contact.sticks_rigidly() && !contact.beside);
   });
@@ -135,7 +135,8 @@ Contact& Contacts::add_friction(int joint, int column, double bound, double stif
 void Contacts::add(int joint, int first_column, const LatchHinge& hinge) {
   const Model& model = system_->model();
   const Bar& link = model.links[index(hinge.first_link)];
-  // A force on this radius represents the moment, as in the rows of the hinge.
+  // A force on a lever of this radius represents the moment of the hinge, as in the rows of
+  // LatchHinge.
   const double radius =
       (model.nodes[index(link.second)].position - model.nodes[index(link.first)].position).norm();
   springs_ = springs_ || hinge.stiffness > 0.0 || hinge.preload_moment != 0.0;
@@ -255,7 +256,7 @@ void Contacts::begin(const State& state, StartFriction start) {
     contact.compliance = contact.tangential_compliance(contact.given_force);
     if (contact.slips_in_part) {
       const SlipAnnuli::Pressed by = contact.pressed(contact.given_force, contact.given_force, 1.0);
-      // Normal force first, then friction, because partial slip depends on their order.
+      // The normal force acts first, then friction, because partial slip depends on the order.
       contact.annuli.take(by, Eigen::Vector2d::Zero());
       contact.friction_force =
           contact.annuli.take(by, {slide_at_rest(contact, state, start), 0.0})[0];
@@ -362,10 +363,11 @@ void Contacts::write(VectorXd& z, Statuses& statuses) const {
     if (contact.normal_column < 0) {
       z[contact.tangential_column] += contact.elastic_friction;
       if (contact.annuli.play > 0.0) {
-        // The unknown of the joint is friction without the play, see Slider.
+        // The unknown of a slider is its friction without the force of the play, see Slider.
         z[contact.tangential_column] += contact.tangential_stiffness * contact.annuli.played();
       }
-      // The contacts of a joint are consecutive; the joint slips if any of them does.
+      // The contacts of a joint are consecutive in the list. The joint slips if any of its contacts
+      // slips.
       const JointStatus now = rubs(contact, contact.given_force);
       if (contact.joint != last || now != JointStatus::stick) status = now;
       last = contact.joint;

@@ -16,8 +16,8 @@
 namespace statejump::truss::detail {
 
 /// One contact of a joint, with its memory: a block of the contact problem. Its directions are
-/// columns of the joint forces in the Jacobian of the truss. A contact without one of the two
-/// directions has an uncoupled row in its place.
+/// columns of the joint forces in the Jacobian of the truss. If a contact has no normal or no
+/// tangential direction, an uncoupled row takes its place.
 struct Contact {
   static constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -52,7 +52,7 @@ struct Contact {
   bool active = false;
   double opened = 0.0;  ///< Change of the gap from the middle to the end at zero end speed [m].
   double slid = 0.0;    ///< Slide of the step at zero end speed [m].
-  // Of a ball: components of its directions along its three force columns.
+  // Components of a ball contact's directions along the joint's three force columns.
   Vector3d normal_shares = Vector3d::Zero();
   Vector3d tangential_shares = Vector3d::Zero();
 
@@ -72,7 +72,7 @@ struct Contact {
   double depth(double force) const;
   double force_at(double depth) const;
 
-  /// The normal law at the end of a step: force and slope.
+  /// Result of the normal law at the end of a step: normal force and its slope.
   struct Across {
     double elastic;  ///< Without the dashpot [N].
     double force;    ///< [N]; negative: tension, which the status excludes.
@@ -85,22 +85,23 @@ struct Contact {
 
   /// 1/k_t under an elastic normal force [m/N]; 0: rigid.
   double tangential_compliance(double normal) const;
-  /// Sticking friction over a step with slip rate u: f = (bend + h u)/compliance.
+  /// Friction of a sticking contact after a step of length h with slip rate u: f = (bend + h
+  /// u)/compliance.
   struct Along {
     double compliance;  ///< [m/N], 1/(k_t + c_t/h); 0: rigid.
     double bend;        ///< Deflection by the retained friction of the last step [m].
   };
-  /// Friction law of a sticking contact. Added normal load keeps the friction force; removed normal
-  /// load keeps the deflection.
-  /// @param normal elastic [N]
+  /// Friction law of a sticking contact. An increase of the normal load keeps the friction force; a
+  /// decrease keeps the deflection.
+  /// @param normal elastic normal force [N]
   Along along(double normal, double h) const;
-  /// Friction of its spring after a slide within a limit [N].
-  /// @param normal elastic [N]
+  /// Friction force of the contact's spring after a slide [N], bounded by `limit`.
+  /// @param normal elastic normal force [N]
   double spring_friction(double normal, double slide, double limit) const;
   /// Loads of the partial-slip law.
-  /// @param elastic normal force without the dashpot [N]
-  /// @param normal force [N]
-  /// @param share elastic fraction of the slope of the normal force
+  /// @param elastic elastic part of the normal force, without the dashpot [N]
+  /// @param normal total normal force [N]
+  /// @param share fraction of the normal force's slope that is elastic
   SlipAnnuli::Pressed pressed(double elastic, double normal, double share) const;
   /// Whether it sticks under these forces.
   bool sticks(double normal, double tangential) const;
@@ -123,8 +124,8 @@ struct Contact {
 /// All contacts of a truss.
 class Contacts {
  public:
-  /// @pre The system outlives this object.
-  /// @param damping 2 ζ √m of the dashpots of every joint [√kg]; empty: none
+  /// @pre The system must outlive this object.
+  /// @param damping 2 ζ √m for the dashpots of every joint [√kg]; empty: no dashpots
   Contacts(const System& system, const VectorXd& damping);
 
   std::vector<Contact>& all() { return all_; }
@@ -132,22 +133,22 @@ class Contacts {
   /// Columns of constraints between two nodes.
   const std::vector<int>& holds() const { return holds_; }
 
-  /// Statuses with all joints closed, for the evaluation of closures and directions. A joint is
-  /// open only if its journal is exactly in the middle, where it has no normal.
+  /// Statuses in which all joints are closed, for the evaluation of closures and directions. Only a
+  /// joint whose journal is exactly in the middle stays open, because it has no normal.
   Statuses closed(const VectorXd& z, double time, const StepStart& start) const;
   /// Initial contact forces from a quasi-static state.
-  /// @param start how that state was found
+  /// @param start how the truss reached that state
   void begin(const State& state, StartFriction start);
-  /// Computes the gaps at q and selects the active contacts of a step. The closures are those of an
-  /// evaluation at the same q and time with all joints closed and without forces.
+  /// Computes the gaps at z and selects the active contacts of a step. The closures must be
+  /// evaluated at the same displacements and time, with all joints closed and without forces.
   void measure(const VectorXd& z, double time, const StepStart& start, const VectorXd& closures,
                double rounding);
   /// Gap of a round contact at z, with the clearance at the end of the step [m].
   double gap_at(const Contact& contact, const VectorXd& z, double time,
                 const StepStart& start) const;
-  /// Stores the measured clearances as those at the end of a step.
+  /// Stores the clearances from the last measure() as those at the end of a step.
   void remember_clearances();
-  /// Copies the memory of partial slip to the memory of the joints.
+  /// Copies the partial-slip memory of all contacts into the memory of the joints.
   void write_annuli(StepStart& to) const;
 
   std::vector<BallFriction>& balls() { return balls_; }
@@ -182,18 +183,20 @@ class Contacts {
   void add(int joint, int first_column, const LatchHinge& hinge);
   /// One contact for every Jenkins element, all along one direction.
   void add(int joint, int first_column, const IwanJoint& iwan);
-  /// Friction of a joint with given normal force in a quasi-static state [N].
+  /// Friction in a quasi-static state of a contact whose normal force is given [N].
   double friction_at_rest(const Contact& contact, const State& state, StartFriction start) const;
-  /// Slide of a slider from zero friction in a quasi-static state [m].
+  /// Deflection of a slider's contact in a quasi-static state [m], measured from the position of
+  /// zero friction.
   double slide_at_rest(const Contact& contact, const State& state, StartFriction start) const;
-  /// Adds dry friction of a given limit [N] in series with a spring [N/m].
+  /// Adds a contact with dry friction of limit `bound` [N] in series with a spring of the given
+  /// stiffness [N/m].
   Contact& add_friction(int joint, int column, double bound, double stiffness);
-  /// Friction of a ball from its two contacts, with or without dashpots [N].
+  /// Friction vector of a ball joint [N], from its two contacts. Dashpot forces are optional.
   Vector3d friction(const BallFriction& cone, bool with_dashpots) const;
   /// Writes the force of a ball joint at z.
   void write(const BallFriction& cone, bool with_dashpots, VectorXd& z) const;
-  /// Rejects a type of joint without contacts in motion.
-  /// @throws std::invalid_argument with its name
+  /// Rejects joints of a type that has no contacts in dynamics.
+  /// @throws std::invalid_argument with the name of the type
   template <class Type>
   void add(int, int, const Type& other) {
     throw std::invalid_argument(std::string(Type::kind) + " '" + other.name +

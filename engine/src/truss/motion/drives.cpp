@@ -21,8 +21,8 @@ double Drive::speed_at(double t) const {
 }
 
 double Drive::turned_at(double t) const {
-  // Speeds are linear between the rows, so the trapezoidal rule is exact. Before the first row and
-  // after the last one the speed is constant.
+  // Speeds are linear between the rows, so the trapezoidal rule is exact. The speed is constant
+  // before the first row and after the last.
   double sum = speed[0] * std::min(time[0], t);
   for (Eigen::Index i = 0; i + 1 < time.size() && time[i] < t; ++i) {
     const double to = std::min(time[i + 1], t);

@@ -3,13 +3,13 @@
 
 namespace statejump::truss::detail {
 
-/// Step sizes within a time span, each half of the next longer one, so that factors of a length can
-/// be reused. A step starts at a multiple of its length, so that the last step ends at the end of
+/// Step sizes within a time span. Each is half of the next larger size, so that factors can be
+/// reused. Every step starts at a multiple of its length, so that the last step ends at the end of
 /// the span.
 class DyadicStepSize {
  public:
-  /// @param level halvings of the span for the first step
-  /// @param most_halvings halvings of the span for the shortest step
+  /// @param level halvings of the span that give the first step
+  /// @param most_halvings halvings of the span that give the shortest step
   DyadicStepSize(int level, int most_halvings);
 
   /// End of the next step as a fraction of the span.
@@ -20,10 +20,10 @@ class DyadicStepSize {
   bool is_shortest() const { return level_ == most_; }
   bool done() const { return at_ == whole(); }
 
-  /// Accepts the step. The next one is twice as long if `longer` is set and the time is a multiple
-  /// of that length.
+  /// Accepts the step. The next step is twice as long if `longer` is set and the time is a multiple
+  /// of the doubled length.
   void accept(bool longer);
-  /// Halves the next step this many times, down to the shortest step.
+  /// Halves the next step this many times, but not below the shortest step.
   void shorten(int halvings);
 
  private:

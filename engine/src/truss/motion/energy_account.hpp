@@ -5,7 +5,7 @@
 
 namespace statejump::truss::detail {
 
-/// Energies since the start of a motion that its state does not contain [J].
+/// Energies, summed from the start of a motion, that its state does not contain [J].
 struct EnergyAccount {
   double thermal_work = 0.0;
   double damping = 0.0;      ///< Heat of all dashpots.

@@ -50,7 +50,8 @@ double FrictionElement::shortfall(double slide, double speed, double rise) const
 }
 
 void SlipTrajectory::add(double time, double slide, double speed) {
-  // Newton's divided differences with every point twice. Only the last diagonal is needed.
+  // Newton's divided differences. Points occur twice, with value and rate; only the last diagonal
+  // is stored.
   for (const bool again : {false, true}) {
     const std::size_t k = time_.size();
     time_.push_back(time);
@@ -86,7 +87,8 @@ std::optional<double> end_of_status(const FrictionElement& element, const SlipTr
   const auto margin = [&](double time) {
     return element.margin(way.slide_at(time), way.speed_at(time), h);
   };
-  // Between so many points, a reversal of a smooth trajectory is smaller than the error of a step.
+  // Number of points checked for reversals. Between them, the reversal of a smooth trajectory is
+  // smaller than the error of a step.
   constexpr int places = 32;
   double before = 0.0;
   for (int k = 1; k <= places; ++k) {

@@ -11,8 +11,9 @@
 namespace statejump::truss::detail {
 
 /// Dry friction with limit b in series with a spring, and a dashpot, along a constant direction d.
-/// At slip s and slip rate u = dᵀv its force is λ = e + c u, e' = k u, while |λ| < b. Otherwise λ =
-/// ±b, and the spring force e continues to ±b. Between changes of status the element is smooth.
+/// At slip rate u = dᵀv its force is λ = e + c u while |λ| < b; the spring force e follows e' = k
+/// u. Otherwise λ = ±b, and e continues to change until it reaches ±b. Between changes of status
+/// the element is smooth.
 struct FrictionElement {
   enum class Status : signed char { slip_minus = -1, stick = 0, slip_plus = 1 };
 
@@ -36,34 +37,34 @@ struct FrictionElement {
     for (std::size_t i = 0; i < count; ++i) sum += along[i] * of[rows[i]];
     return sum;
   }
-  /// e after a slide from the start of the step without reversal [N].
+  /// Spring force e after a slide since the start of the step that has not reversed [N].
   double spring(double slide) const;
   /// λ [N]
   double force(double slide, double speed) const;
-  /// Distance of the status from its end [N]; negative: it has ended. For a slip with the spring at
-  /// its limit, it is the force that sticking would release in a step of length h at this slip
-  /// rate.
+  /// Force margin of the present status [N]: if it is negative, the status has ended. For a slip
+  /// with the spring at its limit, it is the force by which the spring would unload if the contact
+  /// stuck for a step of length h at this slip rate.
   double margin(double slide, double speed, double h) const;
-  /// Rate of the margin at the end of a status [N/s]; for a reversing slip, rate of its slip rate
-  /// [m/s²].
+  /// Rate of margin() at the end of a status [N/s]. For a slip that reverses, it is the rate of the
+  /// slip rate [m/s²].
   /// @param rise rate of the slip rate [m/s²]
   double margin_rate(double slide, double speed, double rise) const;
-  /// @param level margin below which the status has ended: 0, or the negative margin at the start
-  /// of the step, because positions within a step are known only to its error
+  /// @param level margin below which the status has ended: 0, or the margin at the start of the
+  /// step if that is negative (positions have the error of the step)
   bool has_ended(double slide, double speed, double h, double level) const {
     return margin(slide, speed, h) < level - allowance * bound;
   }
-  /// Missing force until the end of the status [N]. For a slip about to reverse, it is the force
-  /// that sticking would release until the reversal.
+  /// Change of force until the status ends [N]. For a slip about to reverse, it is the force by
+  /// which the spring would unload until then if the contact stuck.
   /// @param rise rate of the slip rate [m/s²]
   double shortfall(double slide, double speed, double rise) const;
   /// Switches to the status that follows.
   void turn(double slide, double speed);
-  /// Tolerance of the margin over b: rounding does not end a status.
+  /// Tolerance of the margin, as a fraction of b, so that rounding does not end a status.
   static constexpr double allowance = 1e-9;
 };
 
-/// A slide through a step: the polynomial through its values and rates at the start and the stages.
+/// The slide in a step: a polynomial through its values and rates at the start and the stages.
 class SlipTrajectory {
  public:
   /// Adds a point [s; m; m/s].
@@ -78,13 +79,13 @@ class SlipTrajectory {
 };
 
 /// Time since the start of a step of length h at which the status of a contact ends [s]; empty if
-/// it does not end.
+/// the status does not end in the step.
 /// @param level see FrictionElement::has_ended()
 std::optional<double> end_of_status(const FrictionElement& element, const SlipTrajectory& way,
                                     double h, double level);
 
-/// Friction elements of all contacts of a truss; empty if a contact is of another type or sticks
-/// rigidly.
+/// Friction elements that represent all contacts of a truss. Empty if a contact is of another type
+/// or sticks rigidly.
 std::optional<std::vector<FrictionElement>> friction_elements(const System& system,
                                                               const Contacts& contacts);
 

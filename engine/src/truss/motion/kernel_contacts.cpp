@@ -17,7 +17,7 @@ namespace laws = kernel::laws;
 namespace {
 
 /// Laws of one contact for kernel::contact_step(). A friction law with memory receives the mean
-/// velocity since the last step, from the integrated slide; dashpots receive the present velocity.
+/// velocity since the last step, from the integrated slide. Dashpots receive the present velocity.
 struct StageLaws {
   const laws::JointLaw& law;
   const laws::FrictionParameters friction_parameters;
@@ -114,7 +114,7 @@ KernelContact KernelContacts::round(const KernelContact& parts, double hertz, do
   made.second_far = frame.nodes[3];
   made.program = frame.program;
   made.temperature_fraction = frame.temperature_fraction;
-  // Moduli that reproduce the stiffnesses K = 4/3 E* √R and 8 G* √R.
+  // Moduli that give the joint's stiffnesses K = 4/3 E* √R and 8 G* √R.
   const double root =
       std::sqrt(kernel::internal_effective_radius(made.first_radius, made.second_radius));
   made.parameters.elastic = {0.75 * hertz / root, 0.125 * mindlin / root};
@@ -311,7 +311,8 @@ VectorXd KernelContacts::start_way(const State& start, StartFriction friction) c
     const double rubs = output(model, start, contact.joint, "slider_force_N")[0] -
                         std::get<Slider>(model.joints[index(contact.joint)]).soft_stop_force(there);
     const double share = std::min(std::abs(rubs) / contact.pressed, 1.0);
-    // Slide of Cattaneo's contact under a constant normal force, or of a spring.
+    // Slide times stiffness, divided by the friction limit: of Cattaneo's contact under a constant
+    // normal force, or of a spring.
     const double gives = rim_slips ? 1.5 * (1.0 - std::cbrt((1.0 - share) * (1.0 - share))) : share;
     slide = std::copysign(gives * contact.pressed / contact.held, rubs);
   }
@@ -341,8 +342,8 @@ void KernelContacts::commit(const Stage& stage, VectorXd& force, VectorXd& rates
     heat.friction[contact.joint] += found.friction_dissipation;
     heat.damping += found.damping_dissipation;
     if (!contact.is_pad() && contact.radius > 0.0) {
-      // The clearance works against the force; the effective radius changes the energy at a given
-      // depth.
+      // If parts expand, the clearance works against the force, and the effective radius changes
+      // the energy at a given depth.
       const double pressed =
           0.5 * (found.elastic_normal_force + contact.response.elastic_normal_force);
       const double stored =
@@ -366,7 +367,7 @@ void KernelContacts::write(VectorXd& z, Statuses& statuses) const {
     const bool slips = contact.history.slipping || (!remembers_ && !rubs.isZero(0.0));
     if (contact.is_pad()) {
       const double against = -contact.axis.dot(found.tangential_force);
-      // The unknown of the joint is friction without the play, see Slider.
+      // The unknown of a slider is its friction without the force of the play, see Slider.
       z[contact.first_column] =
           contact.has_play() ? against + contact.held * contact.annuli.played() : against;
       status = !slips          ? JointStatus::stick

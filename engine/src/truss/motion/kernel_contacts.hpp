@@ -33,7 +33,8 @@ struct KernelContact {
   double held = 0.0;     ///< k_t of a pad [N/m]; 0: no pad.
 
   bool is_pad() const { return held > 0.0; }
-  /// Play of a pad: a spring with Coulomb's limit, for any friction law of the other contacts.
+  /// Law of a pad with play: a spring with Coulomb's limit, whatever the friction law of other
+  /// contacts.
   SlipAnnuli annuli;
   bool has_play() const { return annuli.play > 0.0; }
   SlipAnnuli::Pressed loads_annuli() const { return {held, 0.0, 1.0, pressed, 0.0}; }
@@ -55,13 +56,13 @@ struct KernelHeat {
 };
 
 /// All contacts of a truss with laws of the kernel, with their memory at the end of the last step.
-/// The slide within a step is an integral along the path: two components, and the rotation of both
-/// parts about the normal. The caller integrates these three numbers per contact together with the
-/// positions.
+/// Each contact has three integrals along the path of a step: two components of its slide, and the
+/// rotation of both parts about the normal. The caller integrates these three numbers together with
+/// the positions.
 class KernelContacts {
  public:
-  /// @pre The system outlives this object.
-  /// @param damping 2 ζ √m of every joint [√kg]; empty: none
+  /// @pre The system must outlive this object.
+  /// @param damping 2 ζ √m for the dashpots of every joint [√kg]; empty: no dashpots
   /// @throws std::invalid_argument for an unknown law; kernel::OutOfRange or std::invalid_argument
   /// with the name of a joint without such a contact
   KernelContacts(const System& system, const VectorXd& damping, const std::string& friction_law);
@@ -72,25 +73,27 @@ class KernelContacts {
     const VectorXd& v;
     double time;   ///< [s]
     double since;  ///< Since the end of the last step [s], > 0.
-    /// Slides [m], [m] and rotation [rad] of every contact since the last step.
+    /// Slide components [m], [m] and rotation about the normal [rad] of every contact since the
+    /// last step.
     const VectorXd& way;
   };
   Eigen::Index numbers() const { return 3 * static_cast<Eigen::Index>(all_.size()); }
-  /// `Stage::way` that gives pads their friction in a state at rest. Contacts of round parts start
-  /// without friction.
+  /// Value of `Stage::way` at which pads have the friction of the quasi-static state `start`.
+  /// Contacts of round parts start without friction.
   VectorXd start_way(const State& start, StartFriction friction) const;
   /// Adds forces of all contacts [N] without changing their memory.
-  /// @param rates of `Stage::way`
+  /// @param rates receives the rates of `Stage::way`
   void respond(const Stage& stage, VectorXd& force, VectorXd& rates) const;
-  /// The same at the end of a step; updates the memory of the contacts.
-  /// @param heat is added to
+  /// Adds the forces like respond(), at the end of a step, and updates the memory of the contacts.
+  /// @param heat the heat of the step is added to it
   void commit(const Stage& stage, VectorXd& force, VectorXd& rates, KernelHeat& heat);
 
-  /// Writes forces as unknowns of the truss, and the status of every joint.
+  /// Writes the contact forces into the unknowns z of the truss, and the status of every joint.
   void write(VectorXd& z, Statuses& statuses) const;
   /// Energy stored by all contacts [J].
   double stored() const;
-  /// Largest squared angular frequency of a single contact with its nodes [1/s²].
+  /// Largest squared angular frequency [1/s²] of any single contact that vibrates with the masses
+  /// of its nodes.
   double stiffest(const VectorXd& q, const VectorXd& inverse_mass) const;
 
  private:
@@ -107,7 +110,7 @@ class KernelContacts {
   static KernelContact round(const KernelContact& parts, double hertz, double mindlin,
                              double friction_coefficient, double damping, const JointFrame& frame);
   struct Place;
-  /// @param history at the start of the step; out: in the stage
+  /// @param history on input at the start of the step, on output in the stage
   kernel::ContactResponse answer(const KernelContact& contact, const Stage& stage,
                                  const double* way, kernel::ContactHistory& history,
                                  VectorXd& force, double* rates, Place& place) const;
@@ -120,7 +123,7 @@ class KernelContacts {
   Vector3d at(int node, const VectorXd& free) const;
   void push(int node, const Vector3d& by, VectorXd& force) const;
   double mobility(int node, const VectorXd& inverse_mass) const;
-  /// Adds a force on a part, and the moment on its link.
+  /// Adds a force on a part, and a torque on the link that rotates it.
   void push(int node, int far, const Vector3d& by, const Vector3d& torque, const VectorXd& q,
             VectorXd& force) const;
   kernel::BodyMotion motion(int node, int far, const Stage& stage) const;

@@ -11,12 +11,12 @@ using Eigen::Index;
 
 namespace {
 
-/// Initial size of a neighbourhood in layers of joints; doubled while a correction reaches its
-/// edge.
+/// Initial size of a neighbourhood, in layers of joints. It is doubled while a correction reaches
+/// the edge.
 constexpr int first_layers = 4;
-/// Tolerated correction at the edge, over the largest correction of a velocity. Solves of the whole
-/// truss correct the rest. A smaller tolerance would not save any, because the sign of a residual
-/// decides a status.
+/// Tolerated velocity correction at the edge of a neighbourhood, divided by the largest correction.
+/// Solves of the whole truss correct the remaining error. A smaller tolerance saves no solves: only
+/// signs of residuals decide statuses.
 constexpr double felt = 1e-2;
 
 }  // namespace

@@ -10,13 +10,13 @@
 
 namespace statejump::truss::detail {
 
-/// Pivots in the neighbourhood of contacts whose inequalities are violated.
+/// Changes statuses (pivots) in the neighbourhood of contacts whose inequalities are violated.
 ///
 /// If slip spreads from joint to joint, each solve of the whole truss reveals only the next joint.
-/// Impulses act only as far as sound travels in a step. Pivots therefore use a system of the bodies
-/// and contacts within some layers around a contact, which grows while a correction reaches its
-/// edge. The resulting statuses are a guess: the whole truss is then solved with them, and its
-/// inequalities are checked.
+/// Impulses act only as far as sound travels in a step. Each pivot therefore uses only the bodies
+/// and contacts within some layers around a contact. This neighbourhood grows while a correction
+/// reaches its edge. The resulting statuses are a guess: a solve of the whole truss then checks the
+/// inequalities of all contacts.
 class NeighbourhoodPivots {
  public:
   using Index = Eigen::Index;
@@ -27,12 +27,12 @@ class NeighbourhoodPivots {
 
   /// Number of unknowns in the initial neighbourhoods of all these contacts.
   Index reach_of(const std::vector<std::size_t>& contacts);
-  /// Pivots around a contact until no contact of its neighbourhood is violated. False if the search
-  /// fails, or if is_spent().
+  /// Pivots around a contact until no contact in its neighbourhood is violated. Returns false if
+  /// the search fails, or if is_spent().
   bool settle(std::size_t contact);
   /// Violated contacts in all neighbourhoods so far.
   std::vector<std::size_t> reached_violations() const;
-  /// Whether the cost has reached that of a solve of the whole truss.
+  /// Whether the pivots have cost as much as one solve of the whole truss.
   bool is_spent() const { return left_ <= 0; }
 
   // For find_active_set().
@@ -47,15 +47,16 @@ class NeighbourhoodPivots {
     return contacts_.requested(step_, static_cast<Index>(contact), statuses_[contact]);
   }
   void begin(std::size_t contact);
-  /// Adds this many layers around bodies, and all contacts of the bodies inside.
+  /// Adds layers around the bodies `from`, and all contacts of the bodies then inside.
   void grow(std::vector<int> from, int layers);
   void take_in(int unknown, std::vector<int>& fresh);
   template <class Visit>
   void each_body_beside(int unknown, Visit&& visit) const;
-  /// Visits a body and those that share a link, a constraint or a contact with it.
+  /// Visits a body, and all bodies that share a link, a constraint or a contact with it.
   template <class Visit>
   void each_neighbour(int body, Visit&& visit) const;
-  /// If the last move reached the edge, enlarges the neighbourhood and returns true.
+  /// If the last correction reached the edge of the neighbourhood, enlarges the neighbourhood and
+  /// returns true.
   bool grow_where_felt();
   /// Right-hand side of a row of a contact.
   double right_side(Index i, bool across) const;

@@ -10,9 +10,10 @@ namespace statejump::truss::detail {
 
 /// Records the first step in which Coulomb's law does not allow a slide to continue (Painlevé).
 ///
-/// While a rigid contact slides, its normal force prevents the gap from closing: p r_n = −b. p is
-/// the opening acceleration caused by a unit normal force with its friction. If p <= 0, the force
-/// has no solution or several. The slide then ends at once, by an impulse without a collision.
+/// While a rigid contact slides, its normal force prevents the gap from closing: p r_n = −b. A unit
+/// normal force with its friction causes the opening acceleration p; −b is needed to keep the gap
+/// closed. If p <= 0, the equation has no admissible solution r_n or several. The slide then ends
+/// at once, by an impulse without a collision.
 class PainleveCheck {
  public:
   PainleveCheck(const StepForces& forces, StepMatrix& matrix) : forces_(forces), matrix_(matrix) {}

@@ -12,8 +12,8 @@ using complementarity::Problem;
 
 namespace {
 
-/// Least slope of the law in the contact problem, over k_t. The slope is zero if all annuli slip;
-/// Coulomb's limit then bounds friction.
+/// Least slope of the partial-slip law in the contact problem, divided by k_t. If all annuli slip,
+/// the slope would be zero, and Coulomb's limit bounds friction.
 constexpr double least_slope = 1e-9;
 
 }  // namespace

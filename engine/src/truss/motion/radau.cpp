@@ -13,7 +13,8 @@ using Real = long double;
 using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 
-/// P_s − P_{s−1} of Legendre polynomials at 2x − 1; its zeros are the nodes.
+/// Difference P_s − P_{s−1} of Legendre polynomials at 2x − 1. Its zeros are the nodes of the
+/// method.
 Real nodal(int s, Real x) {
   const Real y = 2 * x - 1;
   Real before = 1;
@@ -79,7 +80,7 @@ Radau::Radau(int stages) {
                        back.row(k).cast<std::complex<double>>()});
     }
   }
-  // Weights of order s with the start as an additional node of weight 1/λ.
+  // Quadrature weights of order s, if the start is an additional node with weight 1/λ.
   Vector integrals(stages);
   for (int k = 0; k < stages; ++k) integrals[k] = 1 / static_cast<Real>(k + 1);
   integrals[0] -= 1 / static_cast<Real>(eigenvalue);

@@ -18,8 +18,8 @@ struct Radau {
   Eigen::VectorXd c;  ///< Times of the stages over the step.
   Eigen::MatrixXd a;
   Eigen::MatrixXd inverse;  ///< A⁻¹
-  /// Weights of the stages' increments in the difference to the embedded method of order s. That
-  /// method also uses h/λ times the rate at the start.
+  /// Weights of the stages' increments in the difference between this method and the embedded
+  /// method of order s. The embedded method also uses h/λ times the rate at the start.
   Eigen::VectorXd embedded;
 
   double eigenvalue = 0.0;     ///< λ, the real eigenvalue.

@@ -10,10 +10,10 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Fraction of the largest pivot of W below which a reaction depends on others. W results from
-/// solves whose matrix has a condition of at most 1e4, because h²K is about as large as M.
+/// If a pivot of W is below this fraction of the largest pivot, the reaction depends on other
+/// reactions. W results from matrices of condition 1e4 at most, because h²K is about as large as M.
 constexpr double dependent = 1e-10;
-/// Fraction of the largest reaction in a null vector above which a joint is named.
+/// A joint is named if its reaction in a null vector exceeds this fraction of the largest reaction.
 constexpr double takes_part = 1e-3;
 
 }  // namespace
@@ -54,8 +54,8 @@ void ReactionUniqueness::check(const TimeStep& step, const StepContacts& contact
     on.statuses = held;
     if (matrix_.factorize(on, step, contacts)) return;
   }
-  // Constrained rows of W. Friction and stop of a slider are one force here, because statics never
-  // determines how they share it.
+  // Constrained rows of W. Friction and stop force of a slider count as one force, because statics
+  // never determines how they share it.
   std::vector<Eigen::Index> rows;
   int sticking_slider = -1;
   for (std::size_t k = 0; k < held.size(); ++k) {

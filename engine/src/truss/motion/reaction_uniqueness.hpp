@@ -9,12 +9,12 @@
 
 namespace statejump::truss::detail {
 
-/// Records the first step whose reactions are not unique.
+/// Records the first step in which reactions are not unique.
 ///
-/// For statuses with a regular system, reactions are unique. A contact that neither pushes nor
-/// opens, or has its friction at the limit and does not slide, satisfies a second status. The check
-/// therefore uses the admissible statuses with the most constraints. If their system is singular, a
-/// null vector of the constrained rows of W names the joints that share a reaction.
+/// If the equations of the statuses are regular, reactions are unique. A contact that neither
+/// pushes nor opens, or has friction at the limit without slide, satisfies a second status. The
+/// check therefore uses the admissible statuses with the most constraints. If their system is
+/// singular, a null vector of the constrained rows of W names the joints that share a reaction.
 class ReactionUniqueness {
  public:
   ReactionUniqueness(const StepForces& forces, StepMatrix& matrix)
@@ -24,8 +24,8 @@ class ReactionUniqueness {
   const std::optional<Undetermined>& found() const { return found_; }
 
  private:
-  /// Statuses at the end of a step, with a constraint wherever an inequality is satisfied as an
-  /// equation.
+  /// Statuses at the end of a step. A contact is constrained wherever its inequality is satisfied
+  /// as an equation.
   ContactStatuses held_statuses(const TimeStep& step, const StepContacts& contacts) const;
 
   const StepForces& forces_;

@@ -9,7 +9,7 @@
 namespace statejump::truss::detail {
 
 /// A square sparse matrix that is filled repeatedly in the same order. The position of every entry
-/// is determined once. Values at one position are added.
+/// is determined only once. Values at the same position are added.
 class RefilledMatrix {
  public:
   void begin(Eigen::Index size) {
@@ -35,7 +35,7 @@ class RefilledMatrix {
   /// Updates the positions if the entries differ from the last filling.
   void end();
 
-  /// Replaces the value of an entry. No other entry may have its position.
+  /// Replaces the value of an entry. No other entry may be added at the same position.
   void set(std::size_t entry, double value) { matrix_.valuePtr()[slots_[entry]] = value; }
 
   const Eigen::SparseMatrix<double>& matrix() const { return matrix_; }

@@ -25,7 +25,8 @@ using Eigen::VectorXd;
 
 /// Stability limit of the classical Runge–Kutta method: largest (ω h)², with ω h = 2 √2.
 constexpr double largest_turn_squared = 8.0;
-/// Off-diagonal mass over the mass up to which the mass matrix counts as diagonal.
+/// The mass matrix counts as diagonal if the ratio of off-diagonal entries to diagonal entries is
+/// at most this.
 constexpr double orthogonal = 1e-12;
 
 void check(const Model& model, const MotionOptions& options) {
@@ -70,7 +71,7 @@ class Run {
   Motion make() &&;
 
  private:
-  /// Rates of positions, velocities and slides in a stage, without change of memory.
+  /// Rates of positions, velocities and slides in a stage.
   struct Rates {
     VectorXd velocity;
     VectorXd acceleration;
@@ -134,8 +135,8 @@ void Run::commit(const KernelContacts::Stage& stage) {
   now_.acceleration = now_.acceleration.cwiseProduct(inverse_mass_);
 }
 
-/// Classical Runge–Kutta step of fourth order. All stages evaluate contacts from their memory at
-/// the start of the step; only the whole step updates the memory.
+/// Takes a classical fourth-order Runge–Kutta step. All stages evaluate contacts with their memory
+/// at the start of the step. The memory is updated once, at the end of the step.
 void Run::advance(double to) {
   const double h = to - time_;
   const detail::Bodies::Step span = bodies_.step(time_, to);
@@ -226,7 +227,7 @@ bool Run::begin() {
     way = contacts_.start_way(*start, options_.start_friction);
   }
   const double h = duration_ / static_cast<double>(options_.steps);
-  // Normal force first, then friction, because partial slip depends on their order.
+  // The normal force acts first, then friction, because partial slip depends on the order.
   commit({q_, v_, 0.0, h, VectorXd::Zero(contacts_.numbers())});
   if (!way.isZero(0.0)) commit({q_, v_, 0.0, h, way});
   heat_.friction.setZero();

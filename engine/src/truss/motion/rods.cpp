@@ -91,7 +91,8 @@ Rods::Power Rods::power(const ConstColumn& q, const ConstColumn& v, const Heat& 
     const double dashpot = rod.axial_damping * now.strain_rate;
     sum.heat += dashpot * now.strain_rate +
                 rod.turning_damping / (now.length * now.length) * now.across.squaredNorm();
-    // ∂V/∂l_T = −N − N²/(2 E A); the dashpot also works against the growth.
+    // Thermal power from ∂V/∂l_T = −N − N²/(2 E A). The growth of l_T also works against the
+    // dashpot.
     sum.thermal -=
         (now.tension * (1.0 + 0.5 * now.tension / rod.axial_stiffness) + dashpot) * now.growth_rate;
   }

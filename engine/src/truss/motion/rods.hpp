@@ -10,19 +10,19 @@
 
 namespace statejump::truss::detail {
 
-/// Computes the forces of links and of their dashpots on the independent displacements in one pass.
-/// System and Bodies compute the same forces more slowly.
+/// Computes in one pass the forces of links and their dashpots on the independent displacements. It
+/// is faster than System and Bodies, which compute the same forces.
 class Rods {
  public:
   /// @pre The system and its model outlive this object.
   Rods(const System& system, const Inertia& inertia);
 
-  /// Values of the programs at a time: changes [K] and rates [K/s].
+  /// Temperature changes [K] of all programs at a time, and their rates [K/s].
   struct Heat {
     std::vector<double> change;
     std::vector<double> rate;
   };
-  /// Heat of the dashpots and work of the temperature per time [W].
+  /// Heat of the dashpots, and work of the temperature, per unit of time [W].
   struct Power {
     double heat = 0.0;
     double thermal = 0.0;
@@ -34,8 +34,8 @@ class Rods {
   Power power(const ConstColumn& q, const ConstColumn& v, const Heat& heat) const;
 
  private:
-  /// An independent displacement, and the motion of a rod's second end relative to the first that
-  /// it causes.
+  /// An independent displacement, and the relative motion of a rod's ends (second minus first) that
+  /// a unit of it causes.
   struct Move {
     int row;
     Vector3d by;

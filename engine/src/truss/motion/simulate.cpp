@@ -20,11 +20,12 @@ namespace {
 using detail::index;
 using Eigen::VectorXd;
 
-/// Smallest step over the duration: below it, rounding of times exceeds 1e-6 of the step length, by
-/// which factors are recognised as reusable.
+/// Smallest step divided by the duration. Below it, the rounding of times exceeds 1e-6 of the step,
+/// up to which steps count as equal and share factors.
 constexpr double shortest = 1e6 * std::numeric_limits<double>::epsilon();
-/// Most halvings between two samples because the statuses were not found, down to a thousandth of a
-/// step. With self-equilibrated reactions the statuses are not found at any step length.
+/// Largest number of halvings between two samples if the statuses are not found; ten give a
+/// thousandth of a step. If reactions are self-equilibrated, statuses are not found at any step
+/// length.
 constexpr int most_unsettled = 10;
 
 /// Most halvings of an equal step without solution.
@@ -32,12 +33,11 @@ constexpr int most_halvings = 16;
 /// Substeps of one length before a longer one is attempted.
 constexpr int before_longer = 8;
 
-/// Limit of steps and substeps over the requested steps, but not below the substeps of one step.
-/// More substeps cost more than shorter equal steps.
+/// Limit of steps and substeps over requested steps; at least the substeps of one step are allowed.
+/// Shorter equal steps are cheaper than more substeps.
 constexpr long most_parts = 10;
 
-/// Consecutive attempts without progress after which a step counts as unsolvable. Every attempt is
-/// shorter, or a contact changes its status.
+/// After this many consecutive attempts without progress, a step counts as unsolvable.
 constexpr int most_tries = 1000;
 
 void check(const Model& model, const MotionOptions& options) {
@@ -83,28 +83,30 @@ class Run {
  private:
   bool begin();
   void make_equal_steps();
-  /// Takes one equal step, in halves if it has no solution.
-  /// @param level halvings of its first substep; out: for the next equal step
+  /// Takes one of equal steps. If it has no solution, it is divided into halves.
+  /// @param level on input the number of halvings for the first substep, on output that for the
+  /// next equal step
   void make_equal_step(long number, int& level);
   void make_steps_within_tolerance();
-  /// Integrates from one sample to the next.
-  /// @param level halvings of the span for its first step; out: for the next span
+  /// Integrates over a span, from one sample to the next.
+  /// @param level on input the number of halvings for the first step, on output that for the next
+  /// span
   void make_span(long first, long count, int& level);
-  /// Takes a step of the present size, or shortens it.
-  /// @param to end of the step [s]
+  /// Takes a step of the present size if its error is small enough; otherwise shortens it.
+  /// @param to time at the end of the step [s]
   /// @param span length of the whole span [s]
-  /// @param unsettled attempts in the span without a solution
+  /// @param unsettled number of attempts in the span that had no solution
   /// @return whether the step was taken
   bool try_step(double to, double span, detail::DyadicStepSize& step_size, int& unsettled);
   /// Steps with event location, for a truss that SmoothStepper supports.
   void make_smooth_steps();
   [[noreturn]] void fail() const;
-  /// @throws Failure after too many substeps
-  /// @param length of the last one [s]
+  /// @throws Failure if there are too many substeps
+  /// @param length length of the last substep [s]
   void check_parts(double length) const;
 
-  /// Records status changes of joints, and heat, in a step that `take` commits.
-  /// @param length of the step [s]
+  /// Calls `take`, which commits a step, and records its heat and status changes.
+  /// @param length length of the step [s]
   template <class Stepper, class Take>
   void note(const Stepper& stepper, double length, const Take& take);
   template <class Stepper>
@@ -114,8 +116,8 @@ class Run {
   /// @param time [s]
   /// @return whether to continue
   bool go_on(double time);
-  /// Time after this many steps of the options [s]. Computed from the duration: a sum of steps
-  /// would not end exactly at the end.
+  /// Time after this many steps of the options [s]. It is a fraction of the duration: a sum of
+  /// lengths would not end exactly there.
   double time_of(double steps) const {
     return duration_ * (steps / static_cast<double>(options_.steps));
   }
@@ -206,8 +208,8 @@ void Run::make_equal_step(long number, int& level) {
   const int most =
       std::clamp(static_cast<int>(std::log2(whole / (shortest * duration_))), 0, most_halvings);
   detail::DyadicStepSize step_size(level, most);
-  // Without numerical damping, an oscillation faster than the step persists and may leave no
-  // solution. Implicit Euler damps it.
+  // Without numerical damping, oscillations faster than the step persist, and steps may have no
+  // solution. Implicit Euler damps them.
   bool damps = level > 0;
   int unsettled = 0;
   while (!step_size.done()) {
@@ -274,8 +276,8 @@ bool Run::try_step(double to, double span, detail::DyadicStepSize& step_size, in
   const bool too_far = off > options_.displacement_tolerance;
   if (too_far && !step_size.is_shortest()) {
     ++motion_.rejected_steps;
-    // A force that starts in the step causes an error of second order, a jump of the velocity one
-    // of first order, which needs another attempt.
+    // A force that starts within the step causes an error of second order. A velocity jump causes
+    // one of first order and needs a further attempt.
     const double halvings = 0.5 * std::log2(off / options_.displacement_tolerance);
     step_size.shorten(std::isfinite(off) ? std::max(static_cast<int>(std::ceil(halvings)), 1) : 1);
     return false;
@@ -285,7 +287,7 @@ bool Run::try_step(double to, double span, detail::DyadicStepSize& step_size, in
   note(stepper_, length, [&] { stepper_.accept(); });
   ++motion_.steps;
   motion_.time_step = std::min(motion_.time_step, length);
-  // The error is of third order: a doubled step has eight times the error.
+  // The error is of third order: eight times as large at double length.
   step_size.accept(8.0 * off <= options_.displacement_tolerance);
   return true;
 }
@@ -332,7 +334,7 @@ void Run::make_smooth_steps() {
       change.reset();
       continue;
     }
-    // A change within rounding of the end counts as one at the end.
+    // A change within rounding of the step's end counts as a change at the end.
     if (change && *change < to - 1e-6 * tried) {
       ++motion_.rejected_steps;
       continue;

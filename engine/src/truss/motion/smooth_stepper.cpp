@@ -10,23 +10,25 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Largest number of contacts. Every change of status ends a step of the whole truss, so the cost
-/// grows with the square of their number. Steps that include many changes are then cheaper.
+/// Largest number of contacts for SmoothStepper. Every status change ends a step of the whole
+/// truss, so the cost grows with the square of their number. For more contacts, steps with many
+/// changes are cheaper.
 constexpr std::size_t most_contacts = 200;
 constexpr int most_iterations = 8;
-/// If a correction exceeds this fraction of the previous one, new tangents are computed.
+/// New tangents are computed if a correction exceeds this fraction of the previous correction.
 constexpr double falls_to = 0.3;
-/// Tolerated error of the stages over the displacement tolerance: small relative to the error of
-/// the step, which is a difference of stages.
+/// Tolerated iteration error of the stages, divided by the displacement tolerance. It is small
+/// relative to the error of the step, a difference of stages.
 constexpr double share_of_iteration = 1e-3;
-/// Safety factor on the measured convergence rate, and steps until it is measured again.
+/// Safety factor for the measured convergence rate, and number of steps until the rate is measured
+/// again.
 constexpr double caution = 10.0;
 constexpr int most_trusted = 10;
-/// Fraction of a step within which status changes count as simultaneous; those of equal parts
+/// Status changes closer than this fraction of a step are simultaneous. Those of equal contacts
 /// differ by rounding.
 constexpr double at_once = 1e-6;
-/// Force deficit over Coulomb's limit at which a status may change early. The resulting error of
-/// the force is of the same size and lasts until the force has grown by it.
+/// A status may change early if the missing force divided by Coulomb's limit is at most this. The
+/// error of the force is equally large until the force has grown by it.
 constexpr double early = 1e-6;
 
 }  // namespace
@@ -211,7 +213,8 @@ double SmoothStepper::error() {
   const double g = (to_ - time_) / radau_.eigenvalue;
   const VectorXd place = g * v_ + (stage_q_.colwise() - q_) * radau_.embedded;
   const VectorXd speed = g * a_ + (stage_v_.colwise() - v_) * radau_.embedded;
-  // Filtered with the iteration matrix, so that stiff components are damped [Hairer and Wanner].
+  // The estimate is filtered with the iteration matrix, so that stiff components are damped [Hairer
+  // and Wanner].
   const VectorXd filtered = factor_.solve(bodies_->mass() * speed - g * (stiffness_ * place));
   return (place + g * filtered).cwiseAbs().maxCoeff();
 }
@@ -318,7 +321,8 @@ void SmoothStepper::book() {
         account_.damping += weight(i) * one.damping * std::pow(one.seen(stage_v_.col(i)), 2);
       }
     } else {
-      // The spring deflects until its limit; the dashpot dissipates the difference to the limit.
+      // The spring deflects until its force is at the limit; the dashpot dissipates the difference
+      // to the limit.
       const double slid = slide(k, stage_q_.col(stages - 1));
       const double elastic = one.spring(slid);
       const double bent = (elastic - one.elastic) / one.stiffness;

@@ -17,37 +17,38 @@
 
 namespace statejump::truss::detail {
 
-/// A truss in motion whose friction acts in series with springs. Between changes of status its
-/// equations M v' = f(q, v, t), q' = v are smooth, and steps use Radau IIA. A step is attempted
-/// with the statuses at its start. If a status ends within it, the caller repeats the step up to
-/// that time, so that the order of accuracy is preserved across changes.
+/// Integrates the motion of a truss in which friction acts in series with springs. Between changes
+/// of status its equations M v' = f(q, v, t), q' = v are smooth, and steps use Radau IIA. A step is
+/// attempted with the statuses at its start. If a status ends within the step, the caller repeats
+/// the step up to that time. The order of accuracy is thus preserved across changes.
 class SmoothStepper {
  public:
-  /// A stepper for a truss of links whose contacts are all of this type and whose dofs all have
-  /// mass; null for another truss.
-  /// @pre The arguments outlive this object.
-  /// @param stages of Radau IIA, odd
+  /// Creates a stepper. Returns null unless the truss consists of links, all contacts can be
+  /// represented by FrictionElement, and all dofs have mass.
+  /// @pre The arguments must outlive the stepper.
+  /// @param stages odd number of stages of Radau IIA
   static std::unique_ptr<SmoothStepper> of(const System& system, const Bodies& bodies,
                                            const Inertia& inertia, const MotionOptions& options,
                                            int stages = 5);
 
-  /// Sets positions and velocities, and contact forces from a quasi-static state if one is given.
+  /// Sets positions and velocities. If a quasi-static state is given, it also sets the contact
+  /// forces.
   void begin(const VectorXd& q, const VectorXd& v, const State* equilibrium);
 
   /// The next corner of a program [s].
   double smooth_until() const { return smooth_until_; }
   /// Attempts a step with the present statuses, at most up to smooth_until(). Returns the error of
-  /// the displacements [m]; empty without convergence.
+  /// the displacements [m]; empty if the iteration does not converge.
   std::optional<double> attempt(double to);
-  /// Order of the error that attempt() returns, as a power of the step length.
+  /// The error that attempt() returns is proportional to this power of the step length.
   double error_power() const { return static_cast<double>(radau_.c.size()) + 1.0; }
-  /// Time at which the first status ends in the attempted step [s]; empty if none does.
+  /// Time at which a status first ends in the attempted step [s]; empty if no status ends.
   std::optional<double> first_change() const { return first_change_; }
   /// Commits the last attempted step.
   void accept();
-  /// Changes the statuses that were found to end at the present time. Returns their number.
+  /// Changes all statuses that end at the present time. Returns the number of changes.
   int turn();
-  /// Joint of the contact whose status ended first in a step; for messages.
+  /// Joint of the contact whose status ended first in the attempted step; used in messages.
   int turning_joint() const { return friction_elements_[first_to_turn_].joint; }
 
   double time() const { return time_; }
@@ -70,12 +71,13 @@ class SmoothStepper {
   void renew_tangents();
   /// Adds springs and dashpots of sticking contacts to K and C.
   void add_contacts();
-  /// Factors of M + g C + g² K for all g = h/λ. False if one of them is singular.
+  /// Factors the matrices M + g C + g² K for all g = h/λ. Returns false if one of them is singular.
   bool factorize(double h);
 
-  /// Solves the stages by Newton's method. False if that does not converge.
+  /// Solves the stages by Newton's method. Returns false if it does not converge.
   bool solve_stages();
-  /// Adds the correction to the velocities of the stages. Returns its largest component [m/s].
+  /// Solves for a correction and adds it to the velocities of the stages. Returns its largest
+  /// component [m/s].
   double correct(const Eigen::MatrixXd& residual);
   /// Error of the displacements from the embedded method [m].
   double error();
@@ -85,12 +87,12 @@ class SmoothStepper {
   double time_of(Eigen::Index stage) const {
     return stage + 1 == radau_.c.size() ? to_ : time_ + radau_.c[stage] * (to_ - time_);
   }
-  /// Slide of a contact at q since the start of the step [m].
+  /// Slide of a contact from the start of the step to the positions q [m].
   double slide(std::size_t contact, const Rods::ConstColumn& q) const {
     return friction_elements_[contact].seen(q) - slide_from_[static_cast<Eigen::Index>(contact)];
   }
   /// Prepares the next step.
-  /// @param anew whether forces or rates have jumped
+  /// @param anew true if forces or rates have jumped at the start of the step
   void start_from_here(bool anew);
   const Rods::Heat& heat_at(double time);
   void book();

@@ -27,7 +27,7 @@ std::optional<State> equilibrium(const Model& model, const MotionOptions& option
   Options statics;
   statics.start_friction = options.start_friction;
   bool ended = false;
-  // Only the first state is needed, so the path ends after its first short step.
+  // Only the first state is needed, so the callback ends the path after its first short step.
   statics.progress = [&](double share) {
     ended = options.progress && !options.progress(0.0);
     return !ended && share <= 0.0;

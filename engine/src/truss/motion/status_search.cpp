@@ -71,14 +71,15 @@ class StepPivots {
   }
 
  private:
-  /// Statuses of the next solve, and whether the iterate is near to its solution.
+  /// Statuses for the next solve, and whether the present iterate is near to the solution with
+  /// these statuses.
   struct Guess {
     ContactStatuses statuses;
     bool is_near = false;
   };
 
-  /// Pivots around each violated contact. The iterate is then near the solution on the resulting
-  /// statuses.
+  /// Changes statuses (pivots) in the neighbourhood of each violated contact. The iterate is then
+  /// near the solution with the resulting statuses.
   std::optional<ContactStatuses> pivot_locally(const Changes& violated);
 
   StepForces& forces_;

@@ -5,20 +5,21 @@
 
 namespace statejump::truss::detail {
 
-/// Finds the statuses of the active contacts of a step, from those of the step before.
+/// Finds the statuses of the active contacts in a step. The search starts with the statuses of the
+/// previous step.
 ///
-/// A solve on statuses costs Newton's method, so find_active_set() changes all violated contacts
-/// until a block leads to statuses that were tried. Most steps change the status of one contact,
-/// and the second solve succeeds. Where slip spreads, each solve of the whole truss would show the
-/// next contact only. Therefore pivots in the neighbourhood of the violated contacts guess the
-/// statuses first (NeighbourhoodPivots).
+/// Each solve with given statuses is expensive. find_active_set() therefore changes all violated
+/// contacts at once, until statuses repeat. In most steps one contact changes its status, and the
+/// second solve succeeds. If slip spreads, each solve of the whole truss would reveal only the next
+/// contact. Pivots in the neighbourhood of the violated contacts therefore guess the statuses first
+/// (NeighbourhoodPivots).
 class StatusSearch {
  public:
   StatusSearch(StepForces& forces, StepMatrix& matrix)
       : forces_(forces), matrix_(matrix), solver_(forces, matrix) {}
 
-  /// False if single pivots repeat earlier statuses, or a solve does not converge. The step is then
-  /// invalid.
+  /// Finds the statuses and solves the step. Returns false, with an invalid step, if single pivots
+  /// repeat earlier statuses or a solve does not converge.
   bool find(TimeStep& step, StepContacts& contacts);
 
  private:

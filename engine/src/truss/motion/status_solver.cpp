@@ -8,18 +8,18 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Newton's method converges in three or four iterations, unless a contact has another status.
+/// Largest number of Newton iterations. Three or four suffice, unless a contact has a wrong status.
 constexpr int most_iterations = 8;
-/// Limit with partial slip, whose tangents are updated in every iteration, and for a matrix without
-/// the softening by compression.
+/// Limit for slower cases: partial slip, whose tangents change, and a matrix without softening by
+/// compression.
 constexpr int most_tangents = 50;
-/// Line search: the step is halved until the residual has decreased by this fraction, or the step
+/// The line search halves the step until the residual has decreased by this fraction, or the step
 /// is short.
 constexpr double least_fall = 1e-4;
 constexpr double shortest_share = 1e-3;
-/// Kept factors that need more iterations than this are replaced for the next step.
+/// If kept factors need more iterations than this, the next step computes new factors.
 constexpr int few_iterations = 3;
-/// Kept factors are given up if corrections do not fall to this fraction of the one before.
+/// Kept factors are abandoned if a correction exceeds this fraction of the previous correction.
 constexpr double falls_to = 0.3;
 
 using At = StepContacts::TangentAt;

@@ -125,7 +125,7 @@ ContactStatus StepContacts::requested(const TimeStep& step, Index i, ContactStat
     return closes ? ContactStatus::stick : status;
   }
   if (!(normal > 0.0)) return ContactStatus::open;
-  // One law covers all states, from no slip to slip of all annuli.
+  // One law covers all states from no slip to slip of all annuli, so the status is always `stick`.
   if (one.slips_in_part) return ContactStatus::stick;
   if (one.tangential_column < 0 || bound == 0.0) {
     // It slides freely in both directions.

@@ -9,7 +9,7 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Momentum and forces balance to this fraction of the largest of either.
+/// Momentum and forces must balance to this fraction of their largest values.
 constexpr double balance = 1e-10;
 
 }  // namespace

@@ -13,10 +13,10 @@ namespace statejump::truss::detail {
 
 /// Forces f(q, v) of a truss in a step, and the residual of its momentum balance.
 ///
-/// f contains elements, loads, springs of joints and dashpots. It does not contain contacts, whose
-/// impulses r are unknowns. At an iterate v the residual is M (v − v_from) − h (θ f + (1 − θ) f0) −
-/// H r + B λ, with the impulses λ of the velocity constraints. The step is solved if the residual
-/// vanishes to rounding and every contact is on its law.
+/// f contains the forces of elements, loads, springs of joints and dashpots. The impulses r of
+/// contacts are unknowns instead. At an iterate v the residual is M (v − v_from) − h (θ f + (1 − θ)
+/// f0) − H r + B λ, with the impulses λ of the velocity constraints. The step is solved if the
+/// residual vanishes to rounding and every contact satisfies its law.
 class StepForces {
  public:
   /// @pre The arguments outlive this object.
@@ -38,7 +38,7 @@ class StepForces {
   /// Forces at the beginning of the step, with dashpots [N].
   VectorXd force_before(const TimeStep& step) const;
 
-  /// Gaps and directions of the contacts, evaluated as if all were closed without force.
+  /// Evaluates gaps and directions of the contacts, as if all contacts were closed without force.
   void evaluate_contacts(const VectorXd& q, double time);
   /// Result of the last evaluate_contacts().
   const Assembly& joints() const { return joints_; }
@@ -46,20 +46,22 @@ class StepForces {
   const Assembly& evaluate_springs(const VectorXd& q, double time);
   const Assembly& evaluate_elements(const VectorXd& q, double time);
 
-  /// Gap of a contact, linear along the directions of the step [m].
+  /// Gap of a contact after a displacement, extrapolated linearly along the directions of the step
+  /// [m].
   /// @param way displacement from the middle of the step [m]
   double gap_after(const Contact& contact, const VectorXd& way) const;
   /// Rounding of lengths at the middle of a step [m].
   double rounding_at_middle(const TimeStep& step) const;
 
   /// Moves q according to the velocities of the step.
-  /// @return momentum residual without impulses [N s]
+  /// @return residual of the momentum balance without contact impulses [N s]
   VectorXd move(TimeStep& step);
-  /// Whether momentum balances, and elastic contacts satisfy their laws, not only their tangents.
-  /// @param residual of move()
-  /// @param constraints B, see VelocityConstraints
-  /// @param on_statuses accepts contacts in tension and open contacts with penetration, because
-  /// their statuses are checked next
+  /// Whether momentum balances, and whether elastic contacts satisfy their laws and not only the
+  /// tangents.
+  /// @param residual result of move()
+  /// @param constraints matrix B, see VelocityConstraints
+  /// @param on_statuses true: contacts in tension, and open contacts with penetration, are
+  /// accepted, because their statuses are checked next
   bool balanced(const TimeStep& step, const VectorXd& residual,
                 const Eigen::SparseMatrix<double>& constraints, const StepContacts& contacts,
                 bool on_statuses) const;

@@ -14,7 +14,7 @@ namespace {
 /// Number of stored factors of other statuses or step lengths.
 constexpr std::size_t most_kept = 8;
 
-/// Whether an impulse would accelerate a contact against its direction. The step is then longer
+/// Whether an impulse could accelerate a contact opposite to the impulse. If so, the step is longer
 /// than the time scale of an instability, and the contact problem may have no solution.
 bool is_indefinite(const Eigen::MatrixXd& delassus) {
   constexpr double rounding = 1e-8;  // of systems with the condition number of stiff links
@@ -80,7 +80,7 @@ StatusFactors& StepMatrix::factors_for(double h, const StepContacts& contacts,
     return *kept_.front();
   }
   // The pattern depends on the active contacts only. The oldest factors with the same pattern are
-  // reused without a new ordering.
+  // overwritten, so that no new ordering is needed.
   const auto same = std::find_if(kept_.rbegin(), kept_.rend(),
                                  [&](const auto& one) { return one->active == contacts.numbers; });
   if (kept_.size() < most_kept || same == kept_.rend()) {
@@ -146,7 +146,7 @@ void StepMatrix::each_contact_entry(ContactStatus now, const TimeStep& step,
   const Eigen::Index n = forces_.state().q.size() + constraints_.columns().cols() + 2 * i;
   const Eigen::Index t = n + 1;
   // An inactive row is an identity row: its impulse keeps its value.
-  // @param beside row of the other tangent
+  // @param beside index of the contact for the other tangent; −1: none
   const auto row = [&](Eigen::Index at, bool is_active, const ContactRow& law,
                        Eigen::Index beside) {
     using Column = Eigen::SparseMatrix<double>::InnerIterator;

@@ -11,8 +11,8 @@
 
 namespace statejump::truss::detail {
 
-/// Factors of the equations of a step for given statuses of the active contacts, from this step or
-/// an earlier one of the same length.
+/// Factors of the equations of a step for given statuses of the active contacts. They stem from
+/// this or an earlier step of the same length.
 struct StatusFactors {
   double h = 0.0;
   std::vector<int> active;  ///< Numbers of the active contacts.
@@ -24,39 +24,39 @@ struct StatusFactors {
 
 /// The linear system of a step, and its factors.
 ///
-/// A correction of v changes f by its derivatives, and q by h θ times the correction. Bodies
-/// therefore have the matrix M + h θ C + (h θ)² K at the middle of the step. The velocity
-/// constraints B border it. Every active contact adds two rows: its ContactRow or, for another
-/// status, r = 0 or r_t = ∓ μ r_n. The impulses of a contact are unknowns for every status, so the
-/// pattern does not depend on statuses. Entries that do not depend on contacts are filled once for
-/// a step.
+/// A correction of v changes f by its derivatives, and q by h θ times the correction. The bodies'
+/// matrix is therefore M + h θ C + (h θ)² K at the middle of the step, bordered by the velocity
+/// constraints B. Every active contact adds two rows. Depending on its status, a row is its
+/// ContactRow, r = 0 or r_t = ∓ μ r_n. The impulses of a contact are unknowns for every status, so
+/// the pattern does not depend on statuses. Entries that do not depend on contacts are filled once
+/// per step.
 ///
-/// If the statuses are not found, the bodies are factored alone, for the Delassus matrix of the
-/// contact problem.
+/// If the statuses are not found, the matrix of the bodies alone is factored, to compute the
+/// Delassus matrix of the contact problem.
 class StepMatrix {
  public:
   /// @pre The arguments outlive this object.
   StepMatrix(StepForces& forces, const std::vector<Drive>& drives);
 
-  /// Factors for a step length and statuses; stored ones if there are any.
+  /// Returns factors for a step length and statuses. Stored factors are returned if they exist.
   StatusFactors& factors_for(double h, const StepContacts& contacts,
                              const ContactStatuses& statuses);
   /// Factors the matrix at an iterate. False: singular.
   bool factorize(StatusFactors& of, const TimeStep& step, const StepContacts& contacts);
-  /// Fills the matrix of a step at an iterate, for given statuses of its contacts.
+  /// Fills the matrix of a step at an iterate, for given statuses of the contacts.
   void assemble(const ContactStatuses& statuses, const TimeStep& step,
                 const StepContacts& contacts);
-  /// Replaces the entries of a contact by those for another status at an iterate.
+  /// Replaces the entries of one contact by those for another status, evaluated at an iterate.
   void update_entries(ContactStatus status, const TimeStep& step, const StepContacts& contacts,
                       Eigen::Index i);
-  /// The matrix of the last assemble(). Rows: momentum, constraints, then two for each active
-  /// contact.
+  /// The matrix of the last assemble(). Its rows are momentum, velocity constraints, and then two
+  /// rows for each active contact.
   const Eigen::SparseMatrix<double>& matrix() const { return matrix_.matrix(); }
   double scale() const { return scale_; }  ///< Scale of the rows of constraints and contacts.
 
-  /// Factors the bodies alone, for solve_bodies().
-  /// @throws Failure if their matrix is singular, or if an impulse would accelerate a contact
-  /// against its direction
+  /// Factors the matrix of the bodies alone, for solve_bodies(), and returns the Delassus matrix.
+  /// @throws Failure if that matrix is singular, or if an impulse could accelerate a contact
+  /// opposite to the impulse
   Delassus delassus(const TimeStep& step, const StepContacts& contacts);
   VectorXd solve_bodies(const VectorXd& right) { return bodies_factor_.solve(right); }
 
@@ -66,10 +66,10 @@ class StepMatrix {
   long factorizations() const { return factorizations_; }
 
  private:
-  /// Fills M + h θ C + (h θ)² K and the constraints; also updates the constraints.
+  /// Updates the velocity constraints, and fills them and M + h θ C + (h θ)² K into a matrix.
   void fill_bodies(const TimeStep& step, RefilledMatrix& to);
-  /// Calls `visit(row, column, value)` for the entries of a contact. Positions and order are the
-  /// same for all statuses.
+  /// Calls `visit(row, column, value)` for each matrix entry of a contact. The positions and their
+  /// order are the same for all statuses.
   template <class Visit>
   void each_contact_entry(ContactStatus status, const TimeStep& step, const StepContacts& contacts,
                           Eigen::Index i, Visit&& visit) const;

@@ -11,8 +11,8 @@ namespace statejump::truss::detail {
 
 namespace {
 
-/// Tolerated error of a contact's gap at the end of the step, over its clearance. The gap is
-/// predicted with the directions at the middle of the step.
+/// Tolerated error of a contact's predicted gap at the end of the step, divided by its clearance.
+/// The prediction uses the directions at the middle of the step.
 constexpr double off_course = 0.1;
 
 }  // namespace
@@ -157,7 +157,8 @@ std::optional<double> Stepper::attempt(double to, bool give_up) {
     before_.length = 0.0;
     return attempt(to, give_up);
   }
-  // Leading term of the error of one step: h²/2 v' of Euler, (1+r)²/(6r(1+2r)) h³ v'' of BDF2.
+  // Leading term of the error of one step: h²/2 v' for implicit Euler, (1+r)²/(6r(1+2r)) h³ v'' for
+  // BDF2.
   const double share = ratio > 0.0 ? (1.0 + ratio) / (3.0 * weight) : 0.5;
   double off = deepest(step);
   if (state_.v.size() > 0) {

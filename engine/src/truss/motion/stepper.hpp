@@ -21,9 +21,9 @@ namespace statejump::truss::detail {
 ///   M (v − v0) = h (θ f(q, v) + (1 − θ) f0) + H r,   q = q0 + h (θ v + (1 − θ) v0),
 ///
 /// with Signorini's condition and Coulomb's law between u = Hᵀ v and r. The directions H are those
-/// of the middle of the step. Backward differentiation has the same equations with another
-/// beginning (TimeStep). StatusSearch finds the statuses of the contacts, for which the equations
-/// are smooth. If it fails, ContactProblem solves the step. The step is then committed.
+/// of the middle of the step. Backward differentiation has the same equations with other starting
+/// values (TimeStep). StatusSearch finds the statuses, for which the equations are smooth. If it
+/// fails, ContactProblem solves the step. A solved step is committed.
 class Stepper {
  public:
   /// @pre The arguments outlive this object.
@@ -32,19 +32,19 @@ class Stepper {
   Stepper& operator=(const Stepper&) = delete;
 
   /// Sets positions and velocities. If a quasi-static state is given, contacts start at rest with
-  /// its forces.
+  /// the forces of that state.
   void begin(const VectorXd& q, const VectorXd& v, const State* equilibrium);
-  /// Takes one step to a time. The state changes only if the step succeeds. Returns false if the
-  /// gap of a contact differs from the prediction with the directions of the step.
+  /// Takes one step to the time `to`. The state changes only if the step succeeds. Returns false if
+  /// a contact's gap differs from the prediction with the directions at mid-step.
   /// @throws Failure if no solution is found
   bool advance(double to);
-  /// The same by implicit Euler with a positive definite matrix, for a step that has no solution
-  /// otherwise. Also returns false if its statuses are not found and `give_up`.
+  /// Like advance(), by implicit Euler with a positive definite matrix, for steps without another
+  /// solution. With `give_up`, it also returns false if the statuses are not found.
   bool advance_damped(double to, bool give_up);
   /// Attempts a step of backward differentiation without committing it. Returns the error of the
-  /// displacements [m]. The step is second-order accurate if the last step was of this type. The
-  /// result is empty if the statuses were not found and `give_up`, which avoids the contact
-  /// problem.
+  /// displacements [m]. The step is second-order accurate if the last step was of this type too.
+  /// With `give_up`, the result is empty if the statuses are not found; the contact problem is not
+  /// tried.
   /// @throws Failure as advance()
   std::optional<double> attempt(double to, bool give_up);
   /// Commits the attempted step.
@@ -74,12 +74,14 @@ class Stepper {
   /// Initial values of a Moreau–Jean step to this time.
   TimeStep begin_step(double to);
   StepContacts contacts_of(const TimeStep& step);
-  /// Finds the end of a step; empty if its statuses are not found and `give_up`.
+  /// Solves a step and returns its contacts; empty if `give_up` is set and the statuses are not
+  /// found.
   std::optional<StepContacts> find(TimeStep& step, bool give_up);
-  /// Whether the gaps of round contacts end as predicted with the directions of the step. In a step
-  /// that is too long they do not, and contact forces create energy.
+  /// Whether the final gaps of round contacts agree with the prediction from the middle of the
+  /// step. In a step that is too long they do not, and contact forces create energy.
   bool keeps_directions(const TimeStep& step) const;
-  /// Largest penetration at the end of a step of rigid contacts that were open at its middle [m].
+  /// Largest penetration at the end of a step [m], over all rigid contacts that were open at the
+  /// middle of the step.
   double deepest(const TimeStep& step) const;
   /// Commits a step: state, memory, energies.
   void commit(const TimeStep& step, const StepContacts& contacts);

@@ -9,8 +9,9 @@
 
 namespace statejump::truss::detail {
 
-/// Linear constraints Bᵀ v = w on the velocities at the end of a step: joints that constrain two
-/// nodes, then drives. Columns are scaled to the size of the matrix, so that pivots are comparable.
+/// Linear constraints Bᵀ v = w on the velocities at the end of a step: first those of joints that
+/// constrain two nodes, then those of drives. Columns are scaled to the step matrix, so that pivots
+/// are comparable.
 class VelocityConstraints {
  public:
   /// @pre The arguments outlive this object.

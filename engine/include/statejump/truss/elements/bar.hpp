@@ -9,7 +9,8 @@
 
 namespace statejump::truss {
 
-/// Uniform straight bar between two nodes, hinged at both: N = (E A/l_T) (L − l_T).
+/// Uniform straight bar between two nodes, hinged at both ends, with the axial force N = (E A/l_T)
+/// (L − l_T).
 struct Bar {
   std::string name;
   int first = 0;                    ///< Node.

@@ -26,11 +26,11 @@ struct TemperatureRange {
   double highest = 0.0;
 };
 
-/// State of the nodes and temperatures at which elements are evaluated. The arguments must outlive
-/// it.
+/// Displacements and temperatures at which elements are evaluated. The arguments of the constructor
+/// must outlive this object.
 class ElementState {
  public:
-  /// @param drawn positions of the nodes in the reference configuration, ΔT = 0 [m]
+  /// @param drawn positions of the nodes [m] in the reference configuration at ΔT = 0
   /// @param moved displacements of the nodes [m]
   /// @param changes ΔT of the temperature programs [K]
   ElementState(const std::vector<Eigen::Vector3d>& drawn, const Eigen::Matrix3Xd& moved,
@@ -74,7 +74,8 @@ struct Dashpot {
   int program = -1;        ///< −1: none.
 };
 
-/// A type of element is a struct of parameters with a name, a conservative law between its nodes.
+/// A type of element is a struct of parameters with a name. It defines a conservative law between
+/// its nodes.
 ///
 /// | member | meaning |
 /// |---|---|
@@ -83,7 +84,7 @@ struct Dashpot {
 /// | `dofs_per_node` | 3: translations; 6: translations and rotations |
 /// | `parameters()` | key, unit, range and source of each parameter |
 ///  `outputs()`, `describe()` | numbers that are output at every state |
-/// | `Frame`, `frame()` | its nodes (−1: ground) and fixed directions, found once |
+/// | `Frame`, `frame()` | its nodes (−1: ground) and fixed directions, computed once |
 /// | `validate()` | rules beyond the ranges of single parameters |
 /// | `scale()` | see ElementScale |
 /// | `scale_misfit()` | multiplies its stress in the reference configuration by a fraction |
@@ -97,7 +98,7 @@ struct Dashpot {
 /// Optional: `beyond_edges()` returns how far the element is beyond the edge at which its stiffness
 /// jumps [m]; `has_edge()` returns whether there is one.
 ///
-/// @pre of all but validate(): the element is valid. Only scale_misfit() changes an element. The
+/// @pre of all but validate(): the element is valid. Only scale_misfit() modifies the element. The
 /// index of mass() and dashpot() is that of the element among those of its type.
 template <class Type>
 concept Element = requires(const Type& one, Type& other, const Model& model,

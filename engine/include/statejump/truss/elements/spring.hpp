@@ -9,7 +9,8 @@
 
 namespace statejump::truss {
 
-/// Spring between two nodes, tension k (L − free_length); a cable does not push.
+/// Spring between two nodes with tension k (L − free_length). A spring marked as cable carries
+/// tension only.
 struct Spring {
   std::string name;
   int first = 0;             ///< Node.

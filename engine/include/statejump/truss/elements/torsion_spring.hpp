@@ -9,9 +9,9 @@
 
 namespace statejump::truss {
 
-/// Torsion spring with the moment K (α − α0). α is the angle from one bar to another about a fixed
-/// axis, measured from the reference configuration. Without a second bar, α is measured from the
-/// ground.
+/// Torsion spring with the moment K (α − α0). α is the angle from a first bar to a second one about
+/// a fixed axis, measured from the reference configuration. Without a second bar, α is measured
+/// from the ground.
 struct TorsionSpring {
   std::string name;
   int first_link = 0;

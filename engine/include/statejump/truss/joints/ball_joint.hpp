@@ -12,39 +12,40 @@ namespace statejump::truss {
 /// friction has two components, and its limit is a cone.
 ///
 /// **Law.** Let e be the offset of the ball's centre from the socket's, n = e/|e| the normal, and
-/// ω1, ω2 the angular velocities of the parts. r1 and r2 are the radii less and plus half the
-/// depth, so that both surfaces meet in one point. The surfaces slide by
+/// ω1, ω2 the angular velocities of the parts. r1 is the ball's radius minus half the depth, r2 the
+/// socket's radius plus half the depth, so that both surfaces meet in one point. The surfaces slide
+/// by
 ///
 ///   dσ = (1 − n nᵀ) de + r1 ω1 dt × n − r2 ω2 dt × n
 ///
-/// in a tangent plane that rotates with the contact: with the smallest rotation that takes the old
-/// normal to the new one, and about n with the mean spin of both parts. The friction of a DEM does
-/// the same. Let t be the force along the slide that deflects the contact, with the compliance C =
-/// 1/k_t, k_t = 8 G* √(R δ) (Mindlin):
+/// in a tangent plane that rotates with the contact. This is the smallest rotation from the old to
+/// the new normal, then one about n with the mean spin of both parts, as in a DEM. Let t be the
+/// friction force, which deflects the contact with the compliance C = 1/k_t, k_t = 8 G* √(R δ)
+/// (Mindlin):
 ///
 ///   open    λ_n = 0, t = 0, |e| <= c    contact   |e| = c + (λ_n/K)^(2/3), λ_n >= 0
 ///   stick   dσ = d(C t), |t| <= μ λ_n   slip      |t| = μ λ_n, dσ = d(C t) + t/|t| dγ, dγ >= 0
 ///
-/// Added normal load keeps t; removed normal load keeps C t. A slip in any direction has the status
-/// `slip_plus`.
+/// An increase of the normal load keeps t; a decrease keeps C t. Slip in any direction has the
+/// status `slip_plus`.
 ///
 /// A straight link rotates the part on its end without spin about its own axis, as in a DEM. The
-/// moment of friction about that axis therefore rotates nothing. If several links end at a node,
-/// the named one rotates the part.
+/// moment of friction about that axis therefore has no effect. If several links end at a node, the
+/// link named in the joint rotates the part.
 ///
-/// **Step.** Slide and rotations of a step are evaluated at its middle. Friction that slips rotates
-/// towards the slide along a tractrix, which is exact for a straight slide and a constant limit.
-/// Where a slip begins, friction is projected onto the cone (radial return [1]). The joint is
-/// second-order accurate in the increment.
+/// **Step.** Slide and rotations of a step are evaluated at its middle. In slip, the direction of
+/// friction rotates towards the slide along a tractrix, which is exact for a straight slide and a
+/// constant limit. In the step in which slip begins, friction is projected onto the cone (radial
+/// return [1]). The joint is second-order accurate in the increment.
 ///
 /// With partial slip t is the force of kernel::partial_slip_plane() for the slide of the step, the
-/// stiffness k_t of the depth and the limit μ λ_n. The directions rotate as those of friction do.
-/// One row covers stick and slip. The memory is updated by kernel::partial_slip_step(), whose
-/// chords differ from t by up to 1e-4 of the limit where the direction rotates. The status slip
-/// means that the whole contact slides.
+/// stiffness k_t at the depth and the limit μ λ_n. The directions of the law rotate as described
+/// for friction. One equation covers stick and slip. The memory is updated by
+/// kernel::partial_slip_step(), whose chords differ from t by up to 1e-4 of the limit where the
+/// direction rotates. The status slip means that the whole contact slides.
 ///
-/// **Unknowns.** The force on the ball, λ_n n + t, along fixed directions. No direction in the
-/// tangent plane has to be chosen, and pins, contact and open joint have the same unknowns.
+/// **Unknowns.** The unknowns are the components of the force on the ball, λ_n n + t, along fixed
+/// directions. Pinned, closed and open joints have the same unknowns.
 ///
 /// [1] J. C. Simo, T. J. R. Hughes, Computational Inelasticity, Springer 1998, ch. 3.3.
 struct BallJoint {
@@ -58,12 +59,13 @@ struct BallJoint {
   double ball_thermal_expansion = 0;    ///< [1/K].
   double socket_thermal_expansion = 0;  ///< [1/K].
   double friction_coefficient = 0.0;    ///< μ, >= 0.
-  /// K of Hertz's F_N = K δ^1.5 [N/m^1.5], > 0; infinity: rigid, in motion only.
+  /// K of Hertz's F_N = K δ^1.5 [N/m^1.5], > 0. Infinity means a rigid contact, which only dynamics
+  /// supports.
   double hertz_stiffness = 0.0;
-  /// 8 G* √R of Mindlin's k_t = 8 G* √(R δ) [N/m^1.5], > 0; infinity: sticks rigidly, in motion
-  /// only.
+  /// 8 G* √R of Mindlin's k_t = 8 G* √(R δ) [N/m^1.5], > 0. Infinity means rigid stick, which only
+  /// dynamics supports.
   double mindlin_stiffness = 0.0;
-  /// 1: partial slip, which starts at the rim of the contact. Needs friction.
+  /// 1: the contact slips partially, starting at its rim. Needs friction.
   int partial_slip = 0;
   int program = 0;
   double temperature_fraction = 1;
@@ -78,7 +80,7 @@ struct BallJoint {
   void evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const;
   void warm(const Trial& trial, JointStatus status, double temperature_rate,
             JointWriter& writer) const;
-  /// Motion of an open joint since the start of the step [m].
+  /// Displacement of ball against socket since the start of the step; joint open [m].
   Eigen::Vector3d slack_motion(const Trial& trial) const;
   JointStatus decide(const Trial& trial, JointStatus status) const;
   void begin(const Trial& trial, JointStatus status, double* now) const;
@@ -97,8 +99,8 @@ struct BallJoint {
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;
   JointStatus settled(const Trial& trial, JointStatus status) const;
-  /// Contact problems have one direction of friction per contact, so the joint keeps its status in
-  /// them.
+  /// Contact problems have only one friction direction per contact, so a ball joint keeps its
+  /// status in them.
   std::optional<LocalContact> contact(const Trial&, JointStatus) const { return {}; }
   /// Index in history() at which the memory of a contact with partial slip begins.
   int slip_memory_begin() const;

@@ -16,9 +16,9 @@ namespace statejump::truss {
 struct Model;
 class JointWriter;
 
-/// The active branch of a joint's equations. The solver finds it. The sign is that of the slide:
-/// for a slider along its axis, for a revolute that of the journal's surface over the bearing's,
-/// anticlockwise about the axis.
+/// The branch of a joint's equations that is active, as found by the solver. The sign is the
+/// direction of the slide. A slider slides along its axis; in a revolute the journal's surface
+/// slides over the bearing's, positive anticlockwise.
 enum class JointStatus : unsigned char {
   stick,
   slip_plus,
@@ -35,12 +35,13 @@ constexpr bool is_slip(JointStatus status) {
   return status == JointStatus::slip_plus || status == JointStatus::slip_minus;
 }
 
-/// Replacement of joints with clearance while the solver seeks the first state. It starts with
-/// bilateral pins and continues with frictionless contacts. The path has friction.
+/// Model that replaces joints with clearance while the solver seeks the first state. The search
+/// starts with bilateral pins and continues with frictionless contacts. The path itself uses
+/// friction.
 enum class JointModel : unsigned char { pins, frictionless, friction };
 
-/// A joint as a contact of a frictional contact problem: its rows with the status `stick` that are
-/// gap and slide.
+/// A joint as a contact of a frictional contact problem: the rows for gap and slide that it has
+/// with the status `stick`.
 struct LocalContact {
   int tangential = 0;                 ///< Row of the slide.
   int normal = -1;                    ///< Row of the gap; −1: the normal force is given.
@@ -53,7 +54,8 @@ constexpr int most_joint_forces = 3;
 
 /// Position of a joint in the truss, determined once.
 struct JointFrame {
-  /// Nodes that the joint moves, or that rotate its parts; −1: the ground, or none.
+  /// Nodes of the joint: those that it moves, and those whose links rotate its parts. −1 means the
+  /// ground, or no node.
   std::array<int, most_joint_nodes> nodes{-1, -1, -1, -1};
   int node_count = 0;
   int forces = 0;    ///< Unknown forces, each with a row of its own.
@@ -61,11 +63,11 @@ struct JointFrame {
   double temperature_fraction = 1.0;
   /// Right-handed frame of fixed directions.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
-  /// Whether a force constrains the first two nodes along each of them.
+  /// Whether a force constrains the first two nodes, for each direction of the joint.
   std::array<bool, 3> holds{false, false, false};
 };
 
-/// State at which a joint is evaluated, and the state at the start of the step.
+/// The state at which a joint is evaluated, together with the state at the start of the step.
 struct Trial {
   /// Leaves positions and displacements uninitialised, because the caller fills them. Each
   /// evaluation constructs one Trial per joint.
@@ -79,19 +81,20 @@ struct Trial {
   JointStatus before = JointStatus::stick;  ///< Status at the start of the step.
   double temperature_change = 0.0;          ///< [K]
   JointModel model = JointModel::friction;
-  /// Open fraction of the clearances; below 1 only while the start is sought.
+  /// Opened fraction of the clearances. It is below 1 only while the solver seeks the start.
   double opening = 1.0;
-  /// True if the rate of the slide is evaluated: the slide row is then that of a sticking contact.
+  /// True if the evaluation serves to find the slip rate. The slide row is then that of a sticking
+  /// contact.
   bool unslipped = false;
-  /// True in motion, where the contacts evaluate soft stops and play: the joint then omits its
-  /// springs.
+  /// True in dynamics, where separate contacts represent soft stops and play, so that the joint
+  /// omits its springs.
   bool in_motion = false;
-  /// Slip error accumulated in earlier steps and expected in this one [m], and its rate [m/s], of a
-  /// joint that rolls. Scalar along the slide, or a vector in the tangent plane.
+  /// Slip error of a joint that rolls [m]: that of earlier steps plus that expected in this step;
+  /// then its rate [m/s]. It is a scalar along the slide, or a vector in the tangent plane.
   Eigen::Vector3d owed = Eigen::Vector3d::Zero();
   Eigen::Vector3d owed_rate = Eigen::Vector3d::Zero();
-  /// Stiffness of a joint without force against its motion since the start of the step [N/m], see
-  /// System::slack_stiffness(); 0: none.
+  /// Spring stiffness against motion of a joint without force since the start of the step [N/m],
+  /// see System::slack_stiffness(). 0: no spring.
   double slack_stiffness = 0.0;
   /// Whether this stiffness also acts on joints in contact.
   bool damps_contact = false;
@@ -99,14 +102,14 @@ struct Trial {
   double length_rounding = 0.0;
   double force_rounding = 0.0;
 
-  /// Stiffness that damps the motion of a contact in the step [N/m]. It decreases with the normal
-  /// force to zero, so that the total force is continuous.
+  /// Stiffness of the dashpot spring on the motion of a contact in the step [N/m]. It decreases to
+  /// zero as the normal force grows, so that the total force is continuous.
   double slack_held(double normal_force, double clearance) const {
     if (damps_contact || normal_force <= 0.0) return slack_stiffness;
     return std::max(0.0, slack_stiffness - normal_force / clearance);
   }
 
-  /// Vector between two of its nodes [m], computed without the difference of two positions.
+  /// Vector between two nodes of the joint [m], computed without the difference of two positions.
   Eigen::Vector3d between(std::size_t from, std::size_t to) const {
     return (drawn[to] - drawn[from]) + (moved[to] - moved[from]);
   }
@@ -132,20 +135,20 @@ struct Seat {
 /// | `frame()` | nodes, directions, number of unknown forces |
 /// | `evaluate()` | forces on nodes and rows of a status, with all derivatives |
 ///  `warm()` | rates of these forces and rows due to its temperature alone |
-/// | `slide_row` | row that closes the slide while the joint sticks |
+/// | `slide_row` | row that keeps the slide zero while the joint sticks |
 /// | `decide()` | status that the inequalities require, given the status whose rows hold |
 /// | `begin()` | writes its memory at the start of the path |
 /// | `commit()` | writes its memory at the start of the next step |
 /// | `slip()` | slide of the step that friction converted into heat [m] |
 /// | `dissipation()` | heat of the step [J] |
 /// | `elastic_energy()` | energy stored in it [J] |
-/// | `slide_rounding()` | rounding of the slide less the elastic deflection [m] |
+/// | `slide_rounding()` | rounding error of the slide minus the elastic deflection [m] |
 /// | `remembers_when()` | whether the state depends on the time in a step at which the status
 /// changed |
 /// | `slips_smoothly()` | whether its law has one row for stick and slip |
-/// | `settled()` | status at the end of a step; differs from that of decide() only for such a law |
-/// | `contact()` | its rows as a frictional contact; none if its status is no contact |
-/// | `rest()` | status at the begin of the path |
+/// | `settled()` | status at the end of a step; differs from decide() only if slips_smoothly() |
+/// | `contact()` | its rows as a frictional contact; empty if its status has no contact |
+/// | `rest()` | status at the start of the path |
 /// | `has_play()` | whether the start has to find its contact |
 /// | `least_slide()` | smallest scale of its slides [m] |
 /// | `seat()`, `jumps()` | how the start finds contact; whether a step was a jump |
@@ -154,7 +157,7 @@ struct Seat {
 ///
 /// | member | meaning |
 /// |---|---|
-/// | `rolls()`, `lag()` | whether the slide is an integral; slide less elastic deflection [m] |
+/// | `rolls()`, `lag()` | whether the slide is an integral; slide minus elastic deflection [m] |
 /// | `clearance_growth()` | growth of a clearance by its temperature [m/K] |
 /// | `contact_force()` | force against which that growth works [N] |
 /// | `beyond_edges()` | distance beyond each edge at which the stiffness jumps [m] |
@@ -197,9 +200,9 @@ concept JointType = requires(const Type& one, const Model& model, const Trial& t
 };
 
 // A natural map of Alart and Curnier [1] is piecewise smooth: λ − proj(λ − r g; bounds) equals r g
-// on one branch, and λ less a bound on the others. After a Newton step one of the two vanishes on
-// every branch. The choice between branches therefore does not depend on r > 0. A row is g in
-// metres, or λ less its bound in newtons: the residual of the branch in its own unit.
+// on one branch, and λ minus a bound on the others. After a Newton step the active one of these
+// expressions is zero. The choice between branches therefore does not depend on r > 0. Rows omit r:
+// the residual is g in metres, or λ minus its bound in newtons.
 //
 // [1] P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353-375.
 

@@ -10,20 +10,22 @@ namespace statejump::truss {
 
 /// Bolted joint that slips gradually: the four-parameter Iwan model of Segalman [1], discretised by
 /// Jenkins elements. The first node moves along a fixed axis relative to the second, or to the
-/// ground. It is constrained across the axis as that of a slider.
+/// ground. Across the axis it is constrained like the first node of a slider.
 ///
-/// **Law.** Springs in parallel, each in series with a slider, with the density of slip distances
+/// **Law.** The joint consists of springs in parallel, each in series with a slider. Their slip
+/// distances φ have the density
 ///
 ///   ρ(φ) = R φ^χ + S δ(φ − φm),   0 <= φ <= φm
 ///
 /// K_T = ∫ρ is the stiffness of the stuck joint, and F_S = ∫φ ρ the force at which all of it slips.
-/// β = S (χ + 1)/(R φm^(χ + 1)) is the stiffness of the last sliders over that of all others.
+/// β = S (χ + 1)/(R φm^(χ + 1)) is the stiffness of the sliders at φm divided by that of all
+/// others.
 ///
-/// **Discretisation.** The distances from 0 to φm are divided into intervals. Each is `spacing`
-/// times as long as the one before [2]. One slider represents all sliders of an interval, with
-/// their stiffness k_i = ∫ρ and their force k_i φ_i = ∫φ ρ. K_T, F_S and the force of a first
-/// loading to the end of every interval are therefore exact. Between these ends the force is too
-/// large, by at most slack(). With the position p_i of a slider
+/// **Discretisation.** The distances from 0 to φm are divided into intervals. Each interval is
+/// `spacing` times as long as the previous one [2]. One slider represents all sliders of an
+/// interval, with their stiffness k_i = ∫ρ and their force k_i φ_i = ∫φ ρ. K_T, F_S and the force
+/// of a first loading to the end of every interval are therefore exact. Between these ends the
+/// force is too large, by at most slack(). Slider i has the position p_i:
 ///
 ///   λ = Σ k_i (s − p_i),   |s − p_i| <= φ_i,   p_i moves only at the bound
 ///
@@ -31,8 +33,8 @@ namespace statejump::truss {
 /// `slip±` means that some elements slip in that direction.
 ///
 /// [1] D. J. Segalman, J. Appl. Mech. 72 (2005) 752-760.
-/// [2] D. J. Segalman, Sandia report SAND2002-3828 (2002): distances in a geometric series, there
-/// with a slider in the middle of an interval.
+/// [2] D. J. Segalman, Sandia report SAND2002-3828 (2002): distances in a geometric series;
+/// Segalman puts a slider in the middle of each interval.
 struct IwanJoint {
   std::string name;
   int first = 0;
@@ -76,7 +78,7 @@ struct IwanJoint {
   double slide_rounding(const Trial& trial, double length, double force) const;
   bool remembers_when(JointStatus before, JointStatus after) const;
   JointStatus settled(const Trial&, JointStatus status) const { return status; }
-  /// Its friction has no cone, so the joint keeps its status in contact problems.
+  /// Its friction has no Coulomb cone, so the joint keeps its status in contact problems.
   std::optional<LocalContact> contact(const Trial&, JointStatus) const { return {}; }
   bool slips_smoothly() const { return false; }
   double least_slide() const { return 0.0; }

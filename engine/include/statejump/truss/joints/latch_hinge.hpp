@@ -13,7 +13,7 @@ namespace statejump::truss {
 ///
 /// **Law.** φ is the rotation of the second link against the first about a fixed axis, from the
 /// reference configuration. Without a second link, it is the rotation of the first link against the
-/// ground. The moment that resists φ is
+/// ground. The moment that resists the rotation φ is
 ///
 ///   M = M0 + K (φ − clamp(φ; −a, a)) + M_f
 ///
@@ -21,10 +21,10 @@ namespace statejump::truss {
 ///
 ///   stick   φ = φ_k, |M_f| <= M_c      slip±   M_f = ±M_c, ±(φ − φ_k) >= 0
 ///
-/// With a finite k_f friction sticks as a spring, M_f = k_f (φ − p). The joint stores p, which
-/// slips. Play and stiffness have a potential and no memory, so only friction has statuses. The
-/// unknown is the force M_f over the length of the first link in the reference configuration. Its
-/// row is a slide on that radius.
+/// With a finite stiffness k_f, sticking friction acts as a spring, M_f = k_f (φ − p), and slip
+/// changes the stored rotation p. Play and stiffness have a potential and no memory, so only
+/// friction has statuses. The unknown is M_f divided by the length of the first link in the
+/// reference configuration. Its row is a slide on that radius.
 struct LatchHinge {
   std::string name;
   int first_link = 0;

@@ -12,23 +12,23 @@ namespace statejump::truss {
 /// link in a bearing on the end of another.
 ///
 /// **Law.** d is the eccentricity and n = d/|d| the normal. φ, θ_J, θ_B are the angles of d and of
-/// the links that rotate journal and bearing. r1, r2 are the radii less and plus half the depth, so
-/// that both surfaces meet in one point and the moments balance. The surfaces slide in a step by Δσ
-/// = ∫ |d| dφ + r1 dθ_J − r2 dθ_B:
+/// the links that rotate journal and bearing. r1 is the journal's radius minus half the depth, r2
+/// the bearing's radius plus half the depth, so that both surfaces meet in one point and the
+/// moments balance. The surfaces slide in a step by Δσ = ∫ |d| dφ + r1 dθ_J − r2 dθ_B:
 ///
 ///   open    λ_n = λ_t = 0, |d| <= c    contact |d| = c + (λ_n/K)^(2/3), λ_n >= 0
 ///   stick   Δσ = 0, |λ_t| <= μ λ_n     slip±   λ_t = ±μ λ_n, ±Δσ >= 0
 ///
 /// A joint that sticks therefore rolls. The integral uses the trapezoidal rule with the radii at
 /// start and end of the step. Its third-order error in a step is corrected in the next step. With a
-/// finite tangential stiffness k_t a joint that sticks yields elastically, as bodies of a DEM do:
-/// Δσ is then the slide less the elastic deflection ∫ dλ_t/k_t. k_t follows the depth (Mindlin, k_t
-/// = 8 G* √(R δ)). Added normal load keeps λ_t, removed normal load keeps λ_t/k_t. The energy lost
-/// in either case is heat at the rim of the contact.
+/// finite tangential stiffness k_t, a sticking contact deflects elastically, as in a DEM: Δσ is
+/// then the slide minus the elastic deflection ∫ dλ_t/k_t. k_t depends on the depth (Mindlin, k_t =
+/// 8 G* √(R δ)). An increase of the normal load keeps λ_t; a decrease keeps λ_t/k_t. The energy
+/// lost in both cases is heat at the rim of the contact.
 ///
 /// With partial slip λ_t is the force of kernel::partial_slip_step() for the slide Δσ, the
-/// stiffness k_t of the depth and the limit μ λ_n, in one step from state to state. One row covers
-/// stick and slip. `slip±` then means that the whole contact slides.
+/// stiffness k_t at the depth and the limit μ λ_n. Each path step is one step of that law. One row
+/// covers stick and slip. `slip±` then means that the whole contact slides.
 struct ClearanceRevolute {
   std::string name;
   int journal_node = 0;
@@ -43,10 +43,9 @@ struct ClearanceRevolute {
   /// K of Hertz's F_N = K δ^1.5 [N/m^1.5]; infinity: rigid.
   double hertz_stiffness = std::numeric_limits<double>::infinity();
   /// 8 G* √R of Mindlin's k_t = 8 G* √(R δ), the stiffness of the sticking contact [N/m^1.5];
-  /// infinity: rigid. Finite only if `hertz_stiffness` is finite.
+  /// infinity: rigid stick. It may be finite only if `hertz_stiffness` is finite.
   double mindlin_stiffness = std::numeric_limits<double>::infinity();
-  /// 1: partial slip, which starts at the rim of the contact. Needs friction and finite
-  /// stiffnesses.
+  /// 1: the contact slips partially, starting at its rim. Needs friction and finite stiffnesses.
   int partial_slip = 0;
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
   int program = 0;
@@ -62,7 +61,7 @@ struct ClearanceRevolute {
   void evaluate(const Trial& trial, JointStatus status, JointWriter& writer) const;
   void warm(const Trial& trial, JointStatus status, double temperature_rate,
             JointWriter& writer) const;
-  /// Motion of an open joint since the start of the step [m].
+  /// Displacement of journal against bearing since the start of the step; joint open [m].
   Eigen::Vector3d slack_motion(const Trial& trial) const;
   JointStatus decide(const Trial& trial, JointStatus status) const;
   void begin(const Trial& trial, JointStatus status, double* now) const;

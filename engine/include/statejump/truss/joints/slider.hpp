@@ -13,20 +13,22 @@ namespace statejump::truss {
 /// to the second and is constrained across it. Without a second node it slides relative to the
 /// ground, and its supports constrain it across the axis.
 ///
-/// **Law.** With slide s and friction f the force λ along the axis is a subgradient of f |s − s_k|
-/// + (0 between the stops, ∞ beyond them). The resolvent of that sum is s = clamp(s_k + soft(s +
-/// λ/r − s_k; f/r); −c−, c+), and its branches are the statuses
+/// **Law.** Let s be the slide, s_k its value at the start of the step, and f the friction limit.
+/// The force λ along the axis is a subgradient of f |s − s_k| + (0 between the stops, ∞ beyond
+/// them). The resolvent of that sum is s = clamp(s_k + soft(s + λ/r − s_k; f/r); −c−, c+). Its
+/// branches are the statuses
 ///
 ///   stick   s = s_k, |λ| <= f          slip±   λ = ±f, ±(s − s_k) >= 0
 ///   stop±   s = ±c±, ±λ >= f; if it rested there already ±λ >= −f
 ///
 /// One unknown represents friction and stop together, because statics does not determine how a
-/// rigid wall and rigid friction share a force. With a finite k_t, p = s − λ_f/k_t slides, friction
-/// is λ_f = clamp(k_t (s − p_k); ±f), and the stop supports the remainder.
+/// rigid wall and rigid friction share a force. With a finite stiffness k_t, friction is λ_f =
+/// clamp(k_t (s − p_k); ±f) and the stop supports the remainder of λ. In the friction law, p = s −
+/// λ_f/k_t replaces s.
 ///
-/// With partial slip λ_f is the force of kernel::partial_slip_step() under the constant limit f, in
-/// one step from state to state. One row covers stick and slip. `slip±` then means that the whole
-/// contact slides.
+/// With partial slip λ_f is the force of kernel::partial_slip_step() under the constant limit f,
+/// with one step of that law per path step. One row covers stick and slip. `slip±` then means that
+/// the whole contact slides.
 ///
 /// **Soft stops.** Stops of stiffness k_s push by W(s) = k_s (s − clamp(s; −c−, c+)), in parallel
 /// with friction. W has a potential and no memory, so only friction has statuses: λ is friction,
@@ -39,8 +41,8 @@ namespace statejump::truss {
 ///   k_t dz(e) = k_t e − k_t clamp(e; ±w/2),
 ///
 /// it equals a friction λ = k_t e with the limit f + k_t w/2 and a spring −k_t clamp(e; ±w/2).
-/// Statuses, rows and memory are those without play. Slip converts f into heat, not the limit of λ.
-/// At the start the joint is in the middle of its play. A play needs friction, a finite k_t, and no
+/// Statuses, rows and memory are those without play. The heat of a slip is f times its length. At
+/// the start the joint is in the middle of its play. A play needs friction, a finite k_t, and no
 /// partial slip.
 struct Slider {
   std::string name;
@@ -52,7 +54,7 @@ struct Slider {
   double clearance_plus = std::numeric_limits<double>::infinity();   ///< [m], >= 0.
   /// Stiffness k_t of the sticking contact [N/m], > 0; infinity: rigid.
   double tangential_stiffness = std::numeric_limits<double>::infinity();
-  /// 1: partial slip, which starts at the rim of the contact. Needs friction and a finite k_t.
+  /// 1: the contact slips partially, starting at its rim. Needs friction and a finite k_t.
   int partial_slip = 0;
   /// Stiffness k_s of the stops [N/m], > 0; infinity: rigid.
   double stop_stiffness = std::numeric_limits<double>::infinity();
@@ -81,11 +83,13 @@ struct Slider {
            (clearance_minus < std::numeric_limits<double>::infinity() ||
             clearance_plus < std::numeric_limits<double>::infinity());
   }
-  /// Limit of the unknown λ [N]: f, plus the force that closes half of the play.
+  /// Largest magnitude of the unknown λ [N]: the friction limit f plus the force that closes half
+  /// of the play.
   double friction_limit() const {
     return play > 0.0 ? friction_force + 0.5 * play * tangential_stiffness : friction_force;
   }
-  /// Force W of soft stops against the axis at the slide s [N]; 0 for rigid ones.
+  /// Force W [N] that soft stops exert against the axis at the slide s [m]; 0 if the stops are
+  /// rigid.
   double soft_stop_force(double s) const;
   std::array<double, 4> beyond_edges(const Trial& trial) const;
   double slide_rounding(const Trial& trial, double length, double force) const;
