@@ -26,14 +26,16 @@ py::tuple all_checks(const py::object& wrapper) {
   return as_tuple(statejump::yade_abi::difference_from_running_yade(wrapper));
 }
 
-// Without the build identifiers: they do not change with the declarations that are compiled in.
+// All checks except that of the build identifiers, which do not depend on the compiled
+// declarations.
 py::tuple interface_checks(const py::object& wrapper) {
   GuardOptions options;
   options.check_build_ids = false;
   return as_tuple(statejump::yade_abi::difference_from_running_yade(wrapper, options));
 }
 
-// Name of what an entry of a table points to; entries of the child itself lose the child's name.
+// Name of the function or object that a table entry points to. In members of the child, the name of
+// the child is replaced by `child`.
 std::string entry_name(const void* entry, const std::string& child) {
   Dl_info info;
   if (!dladdr(entry, &info) || !info.dli_sname || info.dli_saddr != entry) {
@@ -44,8 +46,7 @@ std::string entry_name(const void* entry, const std::string& child) {
   return place == std::string::npos ? name : name.replace(place, child.size(), "child");
 }
 
-// Everything that the compiled declarations amount to: two that give the same are the same
-// interface.
+// All data that the compiled declarations determine. Equal descriptions mean equal interfaces.
 py::list description() {
   const auto declared = statejump::yade_abi::declared_interface();
   py::list result;

@@ -140,7 +140,7 @@ TEST(OuterBalls, SeenFromTheOtherBallItIsTheSameContact) {
     const BallContact b = outer_ball_contact(two, other_radius, one, ball_radius);
     EXPECT_EQ(a.penetration_depth, b.penetration_depth);
     EXPECT_NEAR(a.effective_radius, b.effective_radius, 1e-18);
-    // rounding of positions of 0.1 m, 1e-17 m, relative to 8 mm
+    // positions of 0.1 m are rounded to 1e-17 m, relative to 8 mm
     expect_vector_near(a.normal, -b.normal, 1e-15, "normal");
     expect_vector_near(a.arm_1, b.arm_2, 1e-16, "arm");
     expect_vector_near(a.relative_velocity, -b.relative_velocity, 1e-14, "velocity");

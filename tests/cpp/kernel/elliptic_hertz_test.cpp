@@ -17,7 +17,7 @@ using statejump::testing::refused_argument;
 using testing::pi;
 
 /// Complete elliptic integrals of modulus k, b/a = k', by the arithmetic-geometric mean (Abramowitz
-/// and Stegun 17.6) in long double: independent of Boost's algorithm.
+/// and Stegun 17.6) in long double. This algorithm is independent of Boost's.
 struct Agm {
   long double k, e;
   explicit Agm(long double complement) {
@@ -62,7 +62,8 @@ TEST(EllipticHertz, AgreesWithJohnsonByArithmeticGeometricMean) {
     const double larger = 3.9;
     const EllipticShape shape = elliptic_shape({larger, larger / ratio, 0});
     const Reference expected = reference(larger, static_cast<long double>(larger / ratio));
-    // Near the circle the reference loses digits: K - E is 1e-2 of K at ratio 1.01: 1e-16.
+    // Near the circle the reference loses digits by cancellation: at ratio 1.01, K - E is 1e-2 of
+    // K, so its error is 1e-16.
     EXPECT_NEAR(shape.short_axis / shape.long_axis, expected.axes, 1e-12 * expected.axes);
     EXPECT_NEAR(shape.long_axis, expected.long_axis, 1e-12 * expected.long_axis);
     EXPECT_NEAR(shape.stiffness, expected.stiffness, 1e-12 * expected.stiffness);
@@ -96,7 +97,8 @@ TEST(EllipticHertz, CircleIsHertz) {
       for (const double depth : {1e-9, 1e-6, 1e-4}) {
         const EllipticHertzState state = elliptic_hertz(3.8e10, shape, depth);
         const HertzState circle = hertz(3.8e10, radius, depth);
-        // Circle of the mean curvature: to first order the difference is a quarter of the ratio.
+        // Reference: circle of the mean curvature. To first order the ellipse differs by a quarter
+        // of the axis ratio's deviation from 1.
         const double tolerance = 1e-12 + off;
         EXPECT_NEAR(state.force, circle.force, tolerance * circle.force);
         EXPECT_NEAR(state.stiffness, circle.stiffness, tolerance * circle.stiffness);
@@ -148,7 +150,8 @@ TEST(EllipticHertz, MonotonicInTheRatio) {
 }
 
 TEST(EllipticHertz, RelativeCurvatures) {
-  // Journal in a bore, parallel axes: line contact. At a right angle: 1/R1 and -1/R2.
+  // A journal in a bore with parallel axes is a line contact. At a right angle the curvatures are
+  // 1/R1 and -1/R2.
   const RelativeCurvature line = relative_curvature(200, 0, -196, 0, 0);
   EXPECT_DOUBLE_EQ(line.larger, 4);
   EXPECT_DOUBLE_EQ(line.smaller, 0);

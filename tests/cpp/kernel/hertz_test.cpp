@@ -18,7 +18,7 @@ using testing::pi;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-// Two ways to evaluate one product formula differ by about ten roundings of 1.1e-16.
+// Two ways to evaluate the same product differ by about ten roundings of 1.1e-16.
 constexpr double rounding = 2e-15;
 
 // Paper, Table 2 with R1 = 5 mm and c = 0.1 mm. Expected values in 40-digit arithmetic.
@@ -26,8 +26,8 @@ TEST(Hertz, PaperTable2Stiffness) {
   const ElasticPair pair = elastic_pair(70e9, 0.3, 70e9, 0.3);
   EXPECT_NEAR(pair.effective_young_modulus, 38461538461.538461538, rounding * 3.9e10);
   EXPECT_NEAR(pair.effective_shear_modulus, 7918552036.1990950226, rounding * 8e9);
-  // R2 - R1 is the difference of two rounded radii: 4e-19 m in 5.1e-3, 4e-15 relative to c = 1e-4
-  // m. K has half of this error.
+  // The difference R2 - R1 of two rounded radii has an error of 4e-19 m (radii of 5.1e-3 m), i.e.
+  // 4e-15 of c = 1e-4 m. The relative error of K is half of this.
   EXPECT_NEAR(internal_effective_radius(5e-3, 5.1e-3), 0.255, 1e-14 * 0.255);
   EXPECT_NEAR(
       hertz_stiffness(pair.effective_young_modulus, internal_effective_radius(5e-3, 5.1e-3)),
@@ -52,9 +52,9 @@ TEST(Hertz, UnlikeMaterialsAgainstHighPrecision) {
 }
 
 // Independent derivation from Hertz's pressure p0 sqrt(1 - r^2/a^2). Its integral is the force.
-// Boussinesq's point load, 1/(pi E*) 1/r, integrated over it gives the surface displacements at the
-// centre and at the edge. Their difference is the flattened parabola a^2/(2R); the displacement at
-// the centre is delta.
+// Boussinesq's point load, 1/(pi E*) 1/r, integrated over this pressure, gives the surface
+// displacements at the centre and at the edge. The difference of both displacements is the
+// flattened parabola a^2/(2R); the displacement at the centre is delta.
 TEST(Hertz, FollowsFromPressureAndBoussinesq) {
   const double young = 5.7e10;
   const double p0 = 8.3e8;
@@ -83,8 +83,8 @@ TEST(Hertz, FollowsFromPressureAndBoussinesq) {
   }
   const double radius = a * a / (2.0 * (centre - edge));
   const HertzState state = hertz(young, radius, centre);
-  // The midpoint rule is exact for the periodic integrands (centre, edge). The error of the force
-  // is (pi/2/n)^2/24 * [f'] / integral = 6.4e-7 * 3.
+  // The midpoint rule is exact for the periodic integrands (centre, edge). The relative error of
+  // the force is (pi/2/n)^2/24 * [f'] / integral = 6.4e-7 * 3.
   EXPECT_NEAR(state.force, force, 3e-6 * force);
   EXPECT_NEAR(state.contact_radius, a, 1e-12 * a);
 }
@@ -104,7 +104,7 @@ TEST(Hertz, MindlinStiffnessFollowsFromCerruti) {
       const double phi = (i + 0.5) * 2.0 * pi / n;
       const double kernel =
           ((1.0 - nu[body]) + nu[body] * std::cos(phi) * std::cos(phi)) / (2.0 * pi * shear);
-      // r = a sin(psi): q dr = q0 a d(psi), the integral over psi is q0 a pi/2
+      // Substitution r = a sin(psi): q dr = q0 a d(psi), whose integral over psi is q0 a pi/2.
       displacement += kernel * q0 * a * 0.5 * pi * 2.0 * pi / n;
     }
   }
@@ -172,7 +172,7 @@ TEST(Hertz, ElasticPairRefusesBadMaterials) {
   EXPECT_THROW(elastic_pair(70e9, nan, 70e9, 0.3), std::invalid_argument);
   const auto refused = [] { elastic_pair(70e9, 0.3, -1.5, 0.3); };
   EXPECT_EQ(refused_argument(refused), Argument("young_modulus_2", -1.5));
-  // Against a rigid body only the elastic one yields: E* = E/(1 - nu^2), twice that of a pair.
+  // A rigid body does not yield, so E* = E/(1 - nu^2), twice that of two equal bodies.
   EXPECT_NEAR(elastic_pair(70e9, 0.3, infinity, 0.3).effective_young_modulus, 70e9 / 0.91,
               rounding * 77e9);
 }

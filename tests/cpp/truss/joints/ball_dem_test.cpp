@@ -100,7 +100,7 @@ TEST(BallJoint, IsTheHistorySpringOfTheDemInSpace) {
   const Driven fine = driven(tripod(), 2000, false);
   EXPECT_GT(fine.slips, 100);
   EXPECT_LT(fine.slips, fine.states - 100);
-  // A step of the DEM's contact is of first order if the slide direction changes.
+  // If the slide direction changes, a contact step of the DEM is of first order.
   EXPECT_LT(coarse.error, 2e-3);
   EXPECT_NEAR(fine.error, 0.5 * coarse.error, 0.05 * coarse.error);
 }
