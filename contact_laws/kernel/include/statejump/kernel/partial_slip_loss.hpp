@@ -19,7 +19,7 @@ struct SlipAnnulus {
   double stick() const { return std::max(0.0, before - start); }  ///< slide until slip
   double speed() const { return slide - change(); }  ///< rate at which U approaches the bound
   double slip() const { return std::max(0.0, start + slide - after); }
-  /// Loss per unit of x: slip times the mean of the bound during the slip.
+  /// Loss per unit of x: the slip times the mean of the bound during slip.
   double loss() const {
     const double sticks = stick();
     const double met = sticks > 0.0 ? before + change() * std::min(1.0, sticks / speed()) : before;

@@ -314,14 +314,12 @@ ContactEnergy account(const kernel::ContactResponse& response, double dissipatio
 /// Functions that the laws require of the caller (Host):
 ///  time_step() [s], tracks_energy(), add(ContactEnergy)
 ///  apply(wrench)              adds forces to the two bodies
-///  checks_response            true: the response is checked before its forces act; false: the
-///  caller
-///                             checks the stored state afterwards
-///  accepts(k, force, physics) only if checks_response: decides on a response that fails the fast
-///  check,
-///                             with normal stiffness k [N/m] and force on body 1 [N]
+///  checks_response            true: the response is checked before its forces act;
+///                             false: the caller checks the stored state afterwards
+///  accepts(k, force, physics) only if checks_response: decides on a response that fails the
+///                             fast check, by normal stiffness k [N/m], force on body 1 [N]
 ///
-/// Whether the forces of this response may be applied.
+/// Returns whether the forces of this response may be applied.
 template <class Physics, class Host>
 [[gnu::always_inline]] inline bool is_usable(const kernel::ContactResponse& response,
                                              const Physics& physics, Host&& host) {

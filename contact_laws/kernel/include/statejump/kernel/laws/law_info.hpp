@@ -11,16 +11,17 @@
 
 namespace statejump::kernel::laws {
 
-/// Properties of a law besides its numbers. Code that depends on a capability of a law reads its
-/// traits, never its name or type.
+/// Properties of a law besides its numbers. Code that depends on such a property reads the traits,
+/// never the name or type of the law.
 enum class Trait : unsigned {
   /// a body at rest can remain at rest under a load on this law
   holds_static_load = 1U << 0,
   /// no force at all
   frictionless = 1U << 1,
-  /// receives the slide of the step and keeps a history; otherwise a function of the velocity
+  /// receives the slide of the step and keeps a history; without this trait, a function of the
+  /// velocity
   has_memory = 1U << 2,
-  /// needs the axis of a bearing: not available in a socket or on a flat face
+  /// needs the axis of a bearing, so it is not available in a socket or on a flat face
   needs_axis = 1U << 3,
   /// accepts a negative bearing radius (a bulging wall): uses signed curvature
   accepts_bulging_wall = 1U << 4,
@@ -46,7 +47,7 @@ constexpr Traits operator|(Trait a, Trait b) {
   return Traits(a) | Traits(b);
 }
 
-/// A parameter of a law. All checks and listings use this one range and default.
+/// A parameter of a law. All checks and listings use its range and default.
 struct LawParameter {
   const char* name;  ///< name of the field in the parameter struct
   const char* unit;  ///< "-" for a ratio

@@ -3,7 +3,7 @@
 
 #include "statejump/kernel/laws/law_info.hpp"
 
-/// Parameters shared by the laws of a joint; each law lists the ones that it reads.
+/// Parameters shared by the laws of a joint. Each law lists those that it reads.
 namespace statejump::kernel::laws::parameter {
 
 inline constexpr LawParameter friction_coefficient{
