@@ -16,7 +16,7 @@
 
 namespace statejump::yade_abi {
 
-// Class of the plugin with a getter that is read first, to check that getters can be read.
+// A getter of a class of the plugin. It is read first, to check that getters can be read.
 struct KnownMember {
   long first;
   double second;
