@@ -16,7 +16,7 @@ py::tuple as_tuple(const statejump::yade_abi::Difference& difference) {
   return py::make_tuple(difference.check, difference.sentence);
 }
 
-// What the plugin's Python package asks for.
+// Sentence of the first difference, as the plugin's Python package requests it.
 std::string setup(const py::object& wrapper) {
   return statejump::yade_abi::difference_from_running_yade(wrapper).sentence;
 }

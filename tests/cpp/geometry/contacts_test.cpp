@@ -117,7 +117,7 @@ TEST(BoreContacts, AllMinimaOfLobedBoresAreFound) {
 TEST(BoreContacts, TwoContactsAndTheirContinuation) {
   const BoreShape shape = lobed(3, 1e-5, 0.3);
   const BoreMesh mesh(bore_triangles(shape, 240, 10));
-  // Pressed towards a lobe's widest point, the journal touches both flanks.
+  // A journal that is pressed towards the widest point of a lobe touches both flanks.
   const Vector3d way(std::cos(0.3), std::sin(0.3), 0);
   std::vector<BoreContact> last;
   for (int step = 0; step < 50; ++step) {

@@ -60,8 +60,7 @@ linkage::Linkage with_partial_slip(linkage::Linkage model) {
   return model;
 }
 
-// Angles of order 1 have rounding errors of 1e-16. So has the closure in metres, for links of 0.05
-// m.
+// Rounding errors are 1e-16 for angles of order 1, and 1e-16 m for the closure of links of 0.05 m.
 constexpr double angle_rounding = 1e-14;
 
 /// Checks equilibrium at a point by virtual work. For each coordinate of the link tips, the
@@ -472,8 +471,8 @@ TEST(ElasticLoop, SeparatesWhereTheForceVanishes) {
                   2e-8);
     }
   }
-  // With more friction the joint rolls until it separates. The depth changes the angle by δ/c =
-  // 2.5e-4 of it.
+  // With more friction the joint rolls until it separates. The depth changes the angle by the
+  // fraction δ/c = 2.5e-4.
   for (const TangentialCompliance compliance : {rigid, mindlin}) {
     const RigidLoop rolls = rigid_loop(biased(0.6, bias), heating(1.0, -100.0));
     const ElasticLoop rolling =
@@ -545,7 +544,7 @@ TEST(ElasticLoop, SlowDampedDynamicsCreepsAsMuchWithPartialSlip) {
   EXPECT_LT(std::abs(4.0 * error[1] - error[0]) / 3.0, 0.25 * std::abs(error[1]));
 }
 
-/// The argument that a loop refuses.
+/// The argument that elastic_loop() rejects.
 Argument refused(const linkage::Linkage& model, double contact_angle,
                  const ElasticLoopOptions& options = {}) {
   return refused_argument([&] { elastic_loop(model, heating(), options, contact_angle); });

@@ -20,7 +20,7 @@ TEST(Ball, DepthNormalAndOnePoint) {
   const BodyMotion ball{Vector3(1.04, 2.06, 3.12) * 1e-3, Vector3::Zero(), Vector3::Zero()};
   const BodyMotion socket{Vector3(1.0, 2.0, 3.0) * 1e-3, Vector3::Zero(), Vector3::Zero()};
   const BallContact contact = ball_contact(ball, ball_radius, socket, socket_radius);
-  // rounding of positions of some mm: 4e-19 m
+  // positions of a few mm are rounded to 4e-19 m
   EXPECT_NEAR(contact.eccentricity, 0.14e-3, 2e-18);
   EXPECT_NEAR(contact.penetration_depth, 0.04e-3, 4e-18);
   expect_vector_near(contact.normal, Vector3(2, 3, 6) / 7, 2e-14, "normal");

@@ -30,7 +30,7 @@ TEST(Revolute, DepthNormalAndOnePoint) {
   const BodyMotion bearing = at(Vector3(1.0, 2.0, 3.0) * 1e-3);
   const RevoluteContact contact =
       revolute_contact(journal, journal_radius, bearing, bearing_radius, Vector3::UnitZ());
-  // rounding of positions of some mm: 4e-19 m
+  // positions of a few mm are rounded to 4e-19 m
   EXPECT_NEAR(contact.eccentricity, 0.11e-3, 2e-18);
   EXPECT_NEAR(contact.penetration_depth, 0.01e-3, 4e-18);
   expect_vector_near(contact.normal, Vector3(0.6, 0.8, 0.0), 2e-14, "normal");  // 2e-18/0.11e-3

@@ -273,7 +273,7 @@ TEST(PartialSlip, PointsThatAreHeldChangeNothingButRounding) {
   // full.
   EXPECT_LE(worst, 3000 * 1e-16 + (lazy.memory.merged() + eager.memory.merged()) / limit);
   EXPECT_GT(lazy.memory.prefix().count, 8);
-  // A slide of various sizes and directions.
+  // The next slide has various sizes and directions.
   for (const double share : {-1.5, -0.6, -0.2, -0.05, 0.05, 0.2, 0.6, 1.5}) {
     Contact with_prefix = lazy;
     Contact flushed = lazy;
@@ -314,8 +314,8 @@ TEST(PartialSlip, InitialStiffnessIsMindlins) {
 }
 
 /// Mindlin and Deresiewicz 1953, oblique loading with constant dT/dN, from zero or from a given
-/// load. If dT/dN is less than mu, nothing slips and T grows by dT/dN times N. Otherwise the whole
-/// contact slides.
+/// load. If dT/dN is less than mu, nothing slips and T grows by dT/dN times the increase of N.
+/// Otherwise the whole contact slides.
 TEST(PartialSlip, SimpleLoading) {
   for (const double begin : {0.0, 0.4e-6}) {
     for (const double slope : {0.1, 0.29, 0.31, 0.9}) {
@@ -445,7 +445,7 @@ TEST(PartialSlip, WorkIsEnergyAndLoss) {
 }
 
 /// Reference: many flat punches in parallel, each a spring with its own Coulomb limit. Small steps
-/// divide every straight path. It is independent of the law under test: it has no memory of
+/// divide every straight path. It is independent of the law under test and has no memory of
 /// reversals.
 class Punches {
  public:
@@ -631,7 +631,7 @@ TEST(PartialSlip, MemoryIsBounded) {
   EXPECT_LE(merged[2], 1e-3 * limit);
 }
 
-/// Curved paths: second order in the step.
+/// On a curved path the error is of second order in the step.
 TEST(PartialSlip, OrderOnACurvedPath) {
   const auto led = [](int steps) {
     Contact contact = pressed();
@@ -693,7 +693,7 @@ TEST(PartialSlip, LossOfContact) {
   contact.to(-1e-9, contact.slide);
   EXPECT_EQ(contact.response.force.a, 0.0);
   EXPECT_EQ(contact.memory.size(), 0);
-  // three Gauss points over annuli that begin to slip late
+  // tolerance of three Gauss points, because annuli begin to slip late in the step
   EXPECT_NEAR(contact.heat, stored, 2e-3 * stored);
   contact.to(usual_depth, contact.slide);
   EXPECT_EQ(contact.response.force.a, 0.0);

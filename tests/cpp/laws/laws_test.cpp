@@ -43,7 +43,7 @@ TEST(NormalLaws, HertzAtTable2) {
   expect_relative(at("hertz_internal", 1e-6).contact_width, std::sqrt(0.255 * 1e-6), rounding, "a");
 }
 
-// Expected force: 25-digit root of the printed relation delta(f) by bisection in ln f. Expected
+// Expected force: root (25 digits) of the printed relation delta(f) by bisection in ln f. Expected
 // stiffness: derivative of that relation. Expected energy: F delta minus the integral of delta dF
 // by quadrature.
 TEST(NormalLaws, LineContactsAgainstHighPrecision) {
@@ -158,7 +158,8 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, EveryNormalLaw,
                          [](const auto& law) { return std::string(law.param); });
 
 // At u = 1, force over depth has a turning point, at f = 4 pi E* dR/e^2 (Johnson) and 4 pi E* dR
-// (ESDU). Near it 1 - f/f_max = sqrt(2 (1 - delta/delta_max)), i.e. 1.4e-6 for 1e-12.
+// (ESDU). Near it 1 - f/f_max = sqrt(2 (1 - delta/delta_max)), i.e. 1.4e-6 in force for 1e-12 in
+// depth.
 TEST(NormalLaws, TurningPoints) {
   const double load =
       4.0 * std::acos(-1.0) * aluminium.effective_young_modulus * joint.clearance() * joint.length;
@@ -255,7 +256,7 @@ TEST(Dissipation, PointValuesClipAndBadInput) {
 }
 
 /// A prepared law returns the same damping as an unprepared one, for the prepared and for other
-/// coefficients of restitution, and if the law has nothing to prepare.
+/// coefficients of restitution. Some laws have nothing to prepare.
 TEST(Dissipation, WhatIsPreparedAnswersTheSame) {
   for (const std::string& name : law_names<DissipationLaw>()) {
     DissipationLaw prepared = dissipation_law(name);

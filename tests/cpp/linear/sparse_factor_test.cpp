@@ -21,7 +21,7 @@ TEST(SparseFactor, SolvesWhatItFactors) {
   SparseFactor factor;
   ASSERT_TRUE(factor.factorize(sparse(dense)));
   const Eigen::Vector3d right(1.0, -2.0, 0.25);
-  // Condition number 4: rounding of a few ulps.
+  // The condition number is 4, so the errors are a few ulps.
   EXPECT_LT((dense * factor.solve(right) - right).norm(), 1e-14);
 }
 
@@ -106,7 +106,7 @@ TEST(SparseFactor, KeepsPivotsThatLeaveHalfOfTheDigitsForWhoRefines) {
   ASSERT_TRUE(factor.factorize(next, SparseFactor::refined_growth));
   Eigen::Vector3d found = factor.solve(right);
   if (std::string(SparseFactor::library()) == "KLU") {
-    // Rounding times 30,000 is 7e-12; new pivots would leave 1e-16.
+    // Rounding errors grow by 30,000 to 7e-12; with new pivots they would be 1e-16.
     EXPECT_GT((next * found - right).norm(), 1e-14);
   }
   EXPECT_LT((next * found - right).norm(), 1e-11);

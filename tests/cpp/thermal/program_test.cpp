@@ -114,7 +114,7 @@ TEST(Program, BranchesJoinAndInvert) {
         const double at = time_at(branch, wanted);
         EXPECT_GE(at, branch.start_time);
         EXPECT_LE(at, branch.end_time);
-        // dT/dt <= 900 K/s times the rounding of t.
+        // Allowed: dT/dt <= 900 K/s times the rounding of t.
         EXPECT_NEAR(program.temperature_change(at), wanted, 1e-12);
       }
       if (branch.end != branch.start) {

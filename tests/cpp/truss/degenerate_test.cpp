@@ -118,8 +118,8 @@ TEST_P(Wheel, BlocksThatSlipAtTheSameInstantDoSoTogether) {
   const int blocks = GetParam();
   const Model model = wheel(blocks);
   const Path path = solve(model);
-  // By symmetry the hub does not move and all blocks slip, stick and slip at the same times: slip
-  // on heating, stick and slip on cooling.
+  // By symmetry the hub does not move and all blocks behave equally. They slip on heating, then
+  // stick and slip on cooling.
   ASSERT_EQ(path.events.size(), 3u * std::size_t(blocks));
   for (int i = 0; i < blocks; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -247,8 +247,7 @@ TEST(Degenerate, ClearanceNearlyZeroHoldsAsNone) {
       for (const State& state : path.states) {
         EXPECT_LE(std::abs(slide(model, state)), clearance + 1e-18) << clearance;
       }
-      // The block stays at its stop until friction alone can carry the force of the bar, which
-      // never happens here.
+      // On cooling the block sticks at its stop, because friction can carry the force of the bar.
       EXPECT_NEAR(slide(model, path.states.back()), clearance, 1e-18) << clearance;
       EXPECT_LE(path.events.size(), 6u) << clearance;
     }

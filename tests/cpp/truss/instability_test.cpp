@@ -95,7 +95,7 @@ void expect_end(const Model& model, double change, double tolerance, int coarses
 }
 
 TEST(Instability, SlipThatNothingSlowsEndsThePathWhereItBegins) {
-  // 2 E A (l_T − L)/l_T · y/L = f.
+  // Slip starts where 2 E A (l_T − L)/l_T · y/L = f.
   const double drawn = std::hypot(1.0, 0.01);
   const double share = 10.0 / (2.0 * rigidity * 0.01 / drawn);
   const double free = 1.0 / (1.0 - share);
@@ -236,8 +236,8 @@ Model loaded_arch() {
 }
 
 TEST(Instability, ALimitPointWithoutSlipEndsThePathThere) {
-  // Equilibrium: 2 E A (1 − l/l_T) y/l = P with l² = 1 + y². It requires a stress-free length above
-  // the minimum of l_T(y), which the descending apex reaches first.
+  // Equilibrium: 2 E A (1 − l/l_T) y/l = P with l² = 1 + y². As the apex descends, l_T(y) passes a
+  // minimum. For shorter bars there is no equilibrium.
   double shortest = std::numeric_limits<double>::infinity();
   for (double height = 0.1; height > 0.02; height -= 1e-6) {
     const double length = std::hypot(1.0, height);

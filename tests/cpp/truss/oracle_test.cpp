@@ -188,7 +188,7 @@ TEST_P(Oracle, OrderOfPartsDoesNotMatter) {
   // 10 (ratio of link stiffnesses). Located changes also differ by rounding.
   EXPECT_LT(apart, 1e-14) << "seed " << seed;
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
-    // some kN times 1e-12 m, the uncertainty of a located change
+    // a few kN times 1e-12 m, the uncertainty of a located change
     EXPECT_NEAR(path.cycle_ends.back().joint_dissipation[Eigen::Index(j)],
                 again.cycle_ends.back().joint_dissipation[other.joint_of[j]], 1e-9);
   }

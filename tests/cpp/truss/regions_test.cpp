@@ -67,7 +67,7 @@ const std::vector<int>& bars_of(const Region& region) {
   return region.elements[element_type_index<Bar>()];
 }
 
-/// Sets OMP_NUM_THREADS during its lifetime.
+/// Sets OMP_NUM_THREADS while the object exists.
 class Threads {
  public:
   explicit Threads(int number) {

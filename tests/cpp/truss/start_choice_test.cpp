@@ -66,7 +66,7 @@ TEST(StartChoice, WithoutLoadBothAreTheDrawnShape) {
 }
 
 TEST(StartChoice, ContactsThatGiveBeginWithoutForce) {
-  // Their springs are undeformed when friction begins, also at a stop.
+  // The contact springs are undeformed when friction begins, also at a stop.
   for (const int partial_slip : {0, 1}) {
     for (const double clearance : {1e-5, 1.0}) {
       Model model = pulled_bar();
@@ -82,7 +82,7 @@ TEST(StartChoice, ContactsThatGiveBeginWithoutForce) {
       // At the clearance, the stop carries the part of P that bar and spring do not carry.
       const double pushed = clearance < -free ? -P + (k + k_p) * clearance : 0.0;
       EXPECT_NEAR(output(model, begin, 0, "slider_force_N")[0], pushed, 1e-10);
-      // No elastic recovery: 1e-6 K are 1.2e-11 m of expansion.
+      // There is no elastic recovery. Heating by 1e-6 K expands the bar by 1.2e-11 m.
       EXPECT_NEAR(along(path.states[1]), along(begin), 1.2e-11);
     }
   }

@@ -333,7 +333,7 @@ TEST(Truss, ContactThatComesAndGoesWithinAStepIsLocated) {
 }
 
 TEST(Truss, SlipEndsAtTheCornerHoweverLongTheIncrement) {
-  // An increment spans a whole branch, and the slide reverses between two of them. The short step
+  // The slide reverses between two increments, each of which spans a whole branch. The short step
   // after the corner sticks first, so the path reports both slips and the stick between them.
   Options options;
   options.locate_events = false;

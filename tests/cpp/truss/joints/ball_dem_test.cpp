@@ -58,7 +58,7 @@ Driven driven(const Model& model, int increments, bool partial) {
       continue;
     }
     const State& last = path.states[i - 1];
-    // Velocities over the step, times its length.
+    // Displacement of a node in the step, i.e. its mean velocity times the step length.
     const auto moved = [&](int at_node) {
       return Vector3d(state.displacement.col(at_node) - last.displacement.col(at_node));
     };
@@ -113,7 +113,7 @@ TEST(BallJoint, IsTheContactWithPartialSlipOfTheDemInSpace) {
   EXPECT_GT(fine.slips, 100);
   EXPECT_LT(fine.slips, fine.states - 100);
   EXPECT_LT(fine.smallest, 0.5);
-  // First order, plus the chords of both.
+  // The error is of first order, plus the chord errors of solver and DEM.
   EXPECT_LT(coarse.error, 2e-3);
   EXPECT_LT(fine.error, 0.5 * coarse.error + 3e-4);
 }

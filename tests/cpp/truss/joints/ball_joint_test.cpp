@@ -151,7 +151,7 @@ TEST(BallJoint, IncrementsDoNotMatterAndEnergyIsKept) {
     jump[i] = (moved - fine).norm() / fine.norm();
     residue[i] = std::abs(relative_residue(path));
   }
-  // Four times the increments: both are of second order at least.
+  // With four times the increments, jump and residue decrease at least with second order.
   EXPECT_LT(jump[0], 1e-6);
   EXPECT_LT(jump[1], 0.08 * jump[0]);
   EXPECT_LT(residue[0], 1e-6);

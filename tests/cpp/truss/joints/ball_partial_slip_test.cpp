@@ -171,7 +171,7 @@ TEST(BallPartialSlip, FrictionTurnsWithPartsThatTurnAboutTheNormal) {
 }
 
 TEST(BallPartialSlip, DirectionsOfFrictionTurnByTheMeanSpinOfBothParts) {
-  // Ball and socket rotate about the normal by different angles.
+  // Ball and socket rotate about the contact normal by different angles.
   const Vector3d n = Vector3d(1.0, -2.0, 0.5).normalized();
   const Vector3d across = n.unitOrthogonal();
   detail::BallMemory start{};

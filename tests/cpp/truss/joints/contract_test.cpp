@@ -115,7 +115,7 @@ TYPED_TEST(JointContract, RestMakesNoHeat) {
   EXPECT_NEAR(slip, 0.0, 1e-16);
   const Trial at = this->trial();
   const double heat = this->joint().dissipation(at, after.history.data(), 0.0);
-  // That rounding times forces of 100 N.
+  // Rounding of lengths of 0.1 m, times forces of 100 N.
   EXPECT_NEAR(heat, 0.0, 1e-14);
   EXPECT_TRUE(std::isfinite(this->joint().elastic_energy(at, after.history.data())));
 }

@@ -112,7 +112,7 @@ TEST(TrussPartialSlip, HeatOfACycleIsThatOfMindlinAndDeresiewicz) {
         path.cycle_ends[3].joint_dissipation[0] - path.cycle_ends[2].joint_dissipation[0];
     // Rounding: the closed form is a difference of terms of order 1 that equals t³/36.
     EXPECT_NEAR(heat, heat_of_cycle(t), (1e-10 + 1e-14 / (t * t * t)) * heat) << largest;
-    // Heat of a cycle for small t: 2 T³/(9 k_t f). The next power of t is the error.
+    // Heat of a cycle for small t: 2 T³/(9 k_t f). The error is of the next power of t.
     EXPECT_NEAR(heat, 2.0 / 9.0 * std::pow(t, 3) * friction * friction / stiffness, t * heat);
     if (before > 0.0 && t < 0.1) {
       EXPECT_NEAR(before / heat, 8.0, 8.0 * t);
@@ -155,8 +155,8 @@ TEST(TrussPartialSlip, ManyTimesTheFrictionIsTheSpring) {
     const double bent = top(bends);
     const double more = top(slips) / bent - 1.0;
     const double t = stiffness * bent / slider.friction_force;
-    // The bar also deforms, so the contact has only the fraction 2e7/2.126e7 of the compliance that
-    // partial slip changes (N/m).
+    // The bar (1.26e6 N/m) takes part of the additional compliance, so only the fraction
+    // 2e7/2.126e7 of the excess remains.
     EXPECT_NEAR(more, t / 6.0 * 2e7 / 2.126e7, t * t) << times;
     if (before > 0.0) {
       EXPECT_NEAR(before / more, 2.0, 2.0 * t);

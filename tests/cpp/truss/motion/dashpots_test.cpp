@@ -48,7 +48,7 @@ TEST(MotionDashpots, JournalReboundsAsItsEquationsSay) {
   };
   const Motion coarse = run(20000);
   const Motion fine = run(40000);
-  // First order: implicit Euler in the contact.
+  // The error is of first order, because the contact uses implicit Euler.
   EXPECT_NEAR(error(coarse) / error(fine), 2.0, 0.2);
   EXPECT_LT(error(fine), 2e-2 * 0.5e-3);
   // The dashpot dissipates the energy that the fall loses, except for numerical dissipation in the

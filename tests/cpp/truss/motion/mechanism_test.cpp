@@ -42,7 +42,7 @@ TEST(MotionMechanism, BodyOnAPinSwingsByItsOwnEquation) {
   model.nodes = {node("A", 0, 0, 0), node("B", length, 0, 2)};
   // The link is so stiff that its relative elongation, 1e-9, is below the time integration errors.
   model.links = {{"AB", 0, 1, 1e10, length, 0.0, 0, 1.0}};
-  // The weight acts on the node through the motion of the centre of mass: load Gᵀ m g.
+  // The weight at the centre of mass, which moves by G times the node, gives the nodal load Gᵀ m g.
   model.nodes[1].load = mass * 9.81 / length * Eigen::Vector3d(-centre.y(), -centre.x(), 0.0);
   Inertia inertia;
   inertia.link_mass = Eigen::VectorXd::Constant(1, mass);

@@ -118,7 +118,7 @@ TEST(MotionRegularised, BallMovesAsTheJournalDoesInAPlane) {
   MotionOptions options;
   options.steps = 40000;
   options.sample_every = 4000;
-  // The same law in two and in three dimensions: rounding only.
+  // Ball and journal have the same law, so they differ only by rounding.
   expect_ball_moves_as_journal(
       [&](const Model& model) {
         return simulate_regularised(model, rib_inertia(), spring, options);

@@ -57,7 +57,7 @@ TEST(MotionRings, BlockSlidesAndSwingsAsInExplicitSteps) {
   };
   const Motion coarse = thrown(model, 20000);
   const Motion fine = thrown(model, 80000);
-  // First order: contacts use implicit Euler.
+  // The error is of first order, because contacts use implicit Euler.
   EXPECT_LT(apart(fine), 2e-3 * slid);
   EXPECT_NEAR(apart(coarse) / apart(fine), 4.0, 0.8);
   EXPECT_NEAR(fine.states.back().joint_dissipation[0], heat, 2e-3 * heat);
@@ -86,7 +86,7 @@ TEST(MotionRings, SlowlyHeatedBarIsItsPath) {
                 1e-3 * still.joint_dissipation[0]);
     return std::abs(end.displacement(0, 1) - still.displacement(0, 1));
   };
-  // The dashpot delays it in proportion to the heating rate.
+  // The dashpot delays the motion in proportion to the heating rate.
   const double quick = apart(1.0);
   EXPECT_LT(quick, 1e-5 * still.displacement(0, 1));
   EXPECT_NEAR(apart(10.0), 0.1 * quick, 1e-3 * quick);

@@ -97,8 +97,7 @@ TEST(StepControl, JournalBouncesAtItsAnalyticTimes) {
   int impact = 0;
   for (const Event& event : motion.events) {
     if (event.before != JointStatus::open || impact == 6) continue;
-    // The time of an impact within a step is known to one step only, as far as the tolerance
-    // allows.
+    // The time of an impact has an error of up to one step, as far as the tolerance allows.
     EXPECT_NEAR(event.time, time, 1e-4 * time) << "impact " << impact;
     speed *= e;
     time += 2.0 * speed / 9.81;
