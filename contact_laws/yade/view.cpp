@@ -245,7 +245,8 @@ void draw(const Ball& ball, const yade::State&, bool wire) {
 }
 
 void draw(const Socket& socket, const yade::State&, bool wire) {
-  // Draws only the lower half, so that the inside is visible; the contact uses the whole sphere.
+  // The drawing shows only the lower half, so that the inside is visible. The contact uses the
+  // whole sphere.
   const Real radius = socket.expanded(socket.radius);
   {
     const Painter painter(socket.color, 1);

@@ -117,7 +117,7 @@ struct Principal {
 };
 Principal principal(const Hit& hit);
 
-/// Curvatures of the wall in the section perpendicular to a journal's axis.
+/// Curvatures of the wall in the section perpendicular to the axis of a journal.
 struct SectionCurvature {
   Vector3 normal;  ///< unit normal of the section curve, in the section, towards the free side
   double section;  ///< normal curvature along the section curve [1/m], concave positive

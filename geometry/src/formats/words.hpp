@@ -33,7 +33,7 @@ inline bool to_number(std::string_view word, Number& value) {
 /// Words of a text, line by line; comments are skipped.
 class Words {
  public:
-  /// @param goes_on whether a backslash at the end of a line continues it on the next one
+  /// @param goes_on whether a backslash at the end of a line continues this line on the next one
   Words(std::string_view text, char comment, bool goes_on = false)
       : text_(text), comment_(comment), goes_on_(goes_on) {}
 

@@ -22,7 +22,7 @@ std::optional<Eigen::VectorXd> with_statuses(const Problem& problem,
                                              const std::vector<Guess>& guesses) {
   const Eigen::MatrixXd& w = std::get<Eigen::MatrixXd>(problem.delassus);
   const Eigen::Index size = problem.q.size();
-  // Unknowns (r, u): u - W r = q and two equations for each contact.
+  // The unknowns are (r, u). The equations are u - W r = q and two equations for each contact.
   Eigen::MatrixXd system = Eigen::MatrixXd::Zero(2 * size, 2 * size);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(2 * size);
   system.topLeftCorner(size, size) = -w;
@@ -66,7 +66,7 @@ std::optional<Eigen::VectorXd> with_statuses(const Problem& problem,
   return found.head(size);
 }
 
-/// Velocities of all solutions of a problem with two contacts in two dimensions.
+/// Velocities u of all solutions of a problem with two contacts in two dimensions.
 std::vector<Eigen::VectorXd> enumerated(const Problem& problem) {
   std::vector<Eigen::VectorXd> all;
   constexpr std::array guesses = {Guess::open, Guess::stick, Guess::slide_plus, Guess::slide_minus};

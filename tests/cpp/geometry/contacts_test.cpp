@@ -104,7 +104,8 @@ TEST(BoreContacts, AllMinimaOfLobedBoresAreFound) {
       const auto expected = brute_minima(shape, centre);
       const double gap = 1e-3;
       auto found = mesh.contacts(centre, z_axis, journal_radius, gap);
-      // Two minima about to merge may count as one, because their rise is below the prominence.
+      // Two minima that are about to merge may count as one, because the rise between them is below
+      // the prominence.
       ASSERT_EQ(found.size(), expected.size()) << harmonic << " " << i;
       several += found.size() > 1;
       for (std::size_t k = 0; k < found.size(); ++k)

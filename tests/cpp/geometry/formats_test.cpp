@@ -171,7 +171,7 @@ std::string binary_stl(std::uint32_t declared, int facets, const std::string& he
 }
 
 TEST(MeshFormats, Stl) {
-  // A binary file is not read as text, even if it begins with the word "solid".
+  // A binary file that begins with the word "solid" must not be read as text.
   const Triangles mesh =
       parse_triangles(MeshFormat::stl, binary_stl(2, 2, "solid of a maker that does not care"), "");
   const std::vector<std::array<int, 3>> faces{{0, 1, 2}, {0, 1, 3}};

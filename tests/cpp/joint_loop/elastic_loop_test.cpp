@@ -212,7 +212,7 @@ double theta2_of(const linkage::State& state) {
 }
 
 TEST(ElasticLoop, JumpThatEndsInSlipIsThatBetweenTwoEquilibria) {
-  // During slip the state depends on ΔT alone, not on the history or the number of steps.
+  // During slip the state depends only on ΔT, not on the history or the number of steps.
   const linkage::Linkage model = biased(0.15);
   const double expected =
       theta2_of(loaded_state(model, -std::atan(0.15))) - theta2_of(loaded_state(model));

@@ -116,7 +116,7 @@ TEST(RigidLoop, SeparatesAtItsClosedForm) {
   const double free_frame = std::sqrt(0.05 * 0.05 + 0.1 * 0.1 - 2 * 0.05 * 0.1 * cosine);
   const double expected = ((frame + 1e-4) / free_frame - 1.0) / alpha;
   ASSERT_LT(expected, 0.0);
-  // Rounding of 1e-16 in 1 + α ΔT corresponds to 1e-11 K.
+  // A rounding error of 1e-16 in 1 + α ΔT corresponds to 1e-11 K.
   EXPECT_NEAR(loop.points.back().temperature_change, expected, 1e-10);
   EXPECT_EQ(loop.events.back().motion, JointMotion::separated);
 }

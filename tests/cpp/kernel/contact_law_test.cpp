@@ -75,7 +75,7 @@ TEST(ContactLaw, NoFrictionIsExactlyZero) {
   }
 }
 
-// Friction opposes the tangential velocity, never exceeds mu F_N, ignores the normal velocity.
+// Friction opposes the tangential velocity, never exceeds mu F_N, and ignores the normal velocity.
 TEST(ContactLaw, FrictionOpposesTangentialVelocity) {
   ContactHistory history;
   const Vector3 velocity(0.5, 0.03, -0.04);
@@ -243,7 +243,8 @@ TEST(ContactLaw, DampingRatioOfASmallOscillation) {
     if (previous > before && previous >= depth) {
       const double peak = previous - 1e-6;
       const double expected = std::exp(-2 * testing::pi * 0.05 / std::sqrt(1 - 0.0025));
-      // the lagged velocity changes zeta by the fraction omega dt/2 = 0.005; 1 % is allowed
+      // the lagged velocity changes the damping ratio by the fraction omega dt/2 = 0.005; 1 % is
+      // allowed
       EXPECT_NEAR(peak / last_peak, expected, 0.01 * expected);
       last_peak = peak;
       ++peaks;

@@ -70,9 +70,9 @@ TEST(EllipticHertz, AgreesWithJohnsonByArithmeticGeometricMean) {
   }
 }
 
-// Timoshenko and Goodier, Theory of Elasticity, section 140: a = m (3F/(4 E* (A + B)))^(1/3), b
-// with n, cos(theta) = (B - A)/(A + B), A + B = (larger + smaller)/2. The printed third decimal is
-// off by up to 2: at 70 degrees n is printed as 0.802, but is 0.7999, which the
+// Timoshenko and Goodier, Theory of Elasticity, section 140: a = m (3F/(4 E* (A + B)))^(1/3), b the
+// same with n instead of m, cos(theta) = (B - A)/(A + B), A + B = (larger + smaller)/2. The printed
+// third decimal is off by up to 2: at 70 degrees n is printed as 0.802, but is 0.7999, which the
 // arithmetic-geometric mean confirms.
 TEST(EllipticHertz, TableOfTimoshenkoAndGoodier) {
   const double table[][3] = {{30, 2.731, 0.493}, {40, 2.136, 0.567}, {50, 1.754, 0.641},

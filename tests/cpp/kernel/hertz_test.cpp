@@ -21,7 +21,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // Two ways to evaluate the same product differ by about ten roundings of 1.1e-16.
 constexpr double rounding = 2e-15;
 
-// Paper, Table 2 with R1 = 5 mm and c = 0.1 mm. Expected values in 40-digit arithmetic.
+// Table 2 of the paper with R1 = 5 mm and c = 0.1 mm. Expected values are computed in 40-digit
+// arithmetic.
 TEST(Hertz, PaperTable2Stiffness) {
   const ElasticPair pair = elastic_pair(70e9, 0.3, 70e9, 0.3);
   EXPECT_NEAR(pair.effective_young_modulus, 38461538461.538461538, rounding * 3.9e10);
@@ -34,8 +35,8 @@ TEST(Hertz, PaperTable2Stiffness) {
       25896166508.620712701, 1e-14 * 2.6e10);
 }
 
-// Different materials, R = 12.3 mm, delta = 3.7 um. Expected values: 40-digit arithmetic; stiffness
-// as the derivative, energy as the integral of K delta^1.5.
+// Different materials, R = 12.3 mm, delta = 3.7 um. Expected values are computed in 40-digit
+// arithmetic, the stiffness as derivative and the energy as integral of K delta^1.5.
 TEST(Hertz, UnlikeMaterialsAgainstHighPrecision) {
   const ElasticPair pair = elastic_pair(70e9, 0.3, 210e9, 0.28);
   const HertzState state = hertz(pair.effective_young_modulus, 0.0123, 3.7e-6);
@@ -110,7 +111,8 @@ TEST(Hertz, MindlinStiffnessFollowsFromCerruti) {
   }
   const double force = 2.0 * pi * a * a * q0;
   const double shear_modulus = elastic_pair(e[0], nu[0], e[1], nu[1]).effective_shear_modulus;
-  // The periodic midpoint rule integrates cos^2 exactly; tolerance for rounding of 64 additions.
+  // The periodic midpoint rule integrates cos^2 exactly. The tolerance covers rounding of 64
+  // additions.
   EXPECT_NEAR(mindlin_stiffness(shear_modulus, a), force / displacement,
               1e-13 * force / displacement);
 }
@@ -151,7 +153,8 @@ TEST(Hertz, GrowsWithDepthAndIsZeroInAGap) {
 TEST(Hertz, LimitsOfTheEffectiveRadius) {
   EXPECT_EQ(internal_effective_radius(5e-3, infinity), 5e-3);
   EXPECT_NEAR(internal_effective_radius(5e-3, 5e6), 5e-3, 2e-9 * 5e-3);  // 1 + R1/R2
-  // A wall that bulges towards the journal is the external contact of two balls, R1 R2/(R1 + R2).
+  // A wall that bulges towards the journal acts as a second ball in external contact: R = R1 R2/(R1
+  // + R2).
   EXPECT_NEAR(internal_effective_radius(1e-3, -3e-3), 0.75e-3, 1e-14 * 0.75e-3);
   EXPECT_THROW(internal_effective_radius(5e-3, 5e-3), std::invalid_argument);
   EXPECT_THROW(internal_effective_radius(5e-3, 4e-3), std::invalid_argument);

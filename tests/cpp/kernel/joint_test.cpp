@@ -25,7 +25,7 @@ BodyMotion at(const Vector3& position, const Vector3& velocity = Vector3::Zero()
 }
 
 TEST(Revolute, DepthNormalAndOnePoint) {
-  // (3, 4) has length 5: |d| = 0.11 mm, so delta = 0.01 mm; axial offset 2 mm
+  // The vector (3, 4) has length 5, so |d| = 0.11 mm and delta = 0.01 mm. The axial offset is 2 mm.
   const BodyMotion journal = at(Vector3(1.066, 2.088, 5.0) * 1e-3);
   const BodyMotion bearing = at(Vector3(1.0, 2.0, 3.0) * 1e-3);
   const RevoluteContact contact =
@@ -171,7 +171,8 @@ TEST(Revolute, RefusesABearingThatDoesNotHoldTheJournal) {
 }
 
 TEST(Plane, DepthPointAndVelocity) {
-  // slot centre at x = 1; wall 10 mm beyond it; pad radius 2 mm; slider centre 8.003 mm beyond
+  // The slot centre is at x = 1, the wall 10 mm beyond it, the slider centre 8.003 mm beyond it.
+  // The pad radius is 2 mm.
   const BodyMotion slot = at(Vector3(1.0, 0, 0));
   const BodyMotion slider =
       at(Vector3(1.008003, 0.001, 0), Vector3(0.2, 0.3, 0), Vector3(0, 0, 5.0));
@@ -266,7 +267,7 @@ TEST(Transport, IsTheSmallestRotation) {
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
     const Vector3 new_normal = (turn * old_normal).normalized();
     const Vector3 moved = transport(tangential, old_normal, new_normal);
-    // close to 180 degrees the rounding of n_new is amplified by 1/|h| = 1/0.04
+    // close to 180 degrees, 1/|h| = 1/0.04 amplifies the rounding of n_new
     expect_vector_near(moved, turn * tangential, 1e-13 * tangential.norm(), "transport");
     EXPECT_NEAR(moved.norm(), tangential.norm(), 1e-15 * tangential.norm());
     EXPECT_NEAR(moved.dot(new_normal), 0.0, 1e-14 * tangential.norm());

@@ -21,7 +21,7 @@ using testing::Random;
 constexpr double young = 38.5e9, shear = 7.9e9, radius = 0.01, mu = 0.3;
 constexpr double usual_depth = 1e-6;
 
-/// Contact driven along a path of depth and slide, with the work of its force.
+/// Contact that is driven along a path of depth and slide, and the work done by its force.
 struct Contact {
   PartialSlipMemory memory;
   double depth = 0.0;

@@ -62,7 +62,7 @@ struct Klu {
   int size() const { return static_cast<int>(of.rows()); }
   int* columns() { return of.outerIndexPtr(); }
   int* rows() { return of.innerIndexPtr(); }
-  /// All entries of the factors, column by column, and KLU's row scaling.
+  /// All entries of the factors, column by column, followed by KLU's row scaling.
   std::vector<double> all() {
     const auto entries = static_cast<std::size_t>(numeric->lnz + numeric->unz);
     std::vector<int> begins(2 * index(size() + 1)), rows_of(entries);

@@ -153,7 +153,7 @@ TEST(Degenerate, BlocksThatSlipAtTheSameInstantAndLeaveAMechanismAreAnError) {
   } catch (const Failure& failed) {
     EXPECT_EQ(failed.fields().kind, FailureKind::friction_exhausted);
     EXPECT_EQ(failed.fields().joints.size(), 2u);
-    // The blocks slip when E A α ΔT = f (1 + α ΔT).
+    // The blocks slip when the bar force reaches the friction limit: E A α ΔT = f (1 + α ΔT).
     EXPECT_NEAR(*failed.fields().temperature_change, friction / (rigidity - friction) / expansion,
                 1e-6);
   }

@@ -18,7 +18,7 @@ inline thermal::Program triangle(double largest, double seconds = 1.0) {
   return program;
 }
 
-/// @param freedoms number of free directions, in the order x, y, z
+/// @param freedoms number of free directions, taken in the order x, y, z
 inline Node node(const std::string& name, const Eigen::Vector3d& position, int freedoms) {
   Node made;
   made.name = name;

@@ -16,7 +16,7 @@ struct Probe {
   double radius;           ///< [m], > 0
 };
 
-/// Point where the wall touches or nearly touches a journal or ball.
+/// Point at which the wall touches a journal or ball, or nearly touches it.
 struct FollowedContact {
   Eigen::Vector3d normal;  ///< unit, into the wall, perpendicular to a journal's axis
   double distance;   ///< distance of the wall from the centre [m]; less than the radius: contact

@@ -9,7 +9,7 @@ namespace {
 
 using testing::node;
 
-/// Two bars with a clearance joint with elastic contact and expanding radii.
+/// Two bars, connected by a clearance joint with elastic contact and expanding radii.
 Model rib() {
   Model model;
   thermal::Program program;

@@ -41,7 +41,8 @@ inline double residue(const Motion& motion) {
          sum(motion.states.front(), motion.moving.front());
 }
 
-/// A block on the ground with a tangential spring of 1e6 N/m. @param bound friction limit [N]
+/// A block on the ground, with a tangential contact spring of 1e6 N/m.
+/// @param bound friction limit [N]
 inline Model block(double bound, double seconds) {
   Model model;
   model.programs = {lasting(seconds)};

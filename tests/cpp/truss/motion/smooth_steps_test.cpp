@@ -37,7 +37,7 @@ TEST(SmoothSteps, RadauIntegratesPolynomialsAndIsPutTogetherFromItsModes) {
     for (const detail::Radau::Pair& pair : radau.pairs) {
       sum += 2.0 * (pair.eigenvalue * pair.from_mode * pair.to_mode).real();
     }
-    // For seven stages the eigenvectors amplify rounding errors by up to 1e3.
+    // For seven stages the eigenvectors amplify rounding errors up to a thousandfold.
     EXPECT_LT((sum - radau.inverse).cwiseAbs().maxCoeff(), 1e-12);
     EXPECT_LT((radau.a * radau.inverse - Eigen::MatrixXd::Identity(stages, stages)).norm(), 1e-12);
   }

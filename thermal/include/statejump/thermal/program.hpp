@@ -62,7 +62,7 @@ struct Program {
   Shape shape = Shape::half_sine;
   /// Largest temperature change ΔTmax [K], any finite value. A table ignores it.
   double temperature_change_max = 0.0;
-  /// Length P of one cycle [s], > 0. For a table it must equal the last time.
+  /// Length P of one cycle [s], > 0. For a table, it must equal the last of its times.
   double period = 1.0;
   /// Number of cycles, >= 1.
   int cycles = 1;
@@ -72,7 +72,7 @@ struct Program {
   /// temperature of the stress-free start. If the cycle repeats, the last one must also be 0.
   std::vector<double> table_temperature_changes;
 
-  /// Throws std::invalid_argument that names the first field out of range, its value and the range.
+  /// Throws std::invalid_argument that names the first field out of range, its value and its range.
   void validate() const;
 
   /// Length of the whole program [s].

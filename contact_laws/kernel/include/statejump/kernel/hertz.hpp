@@ -26,8 +26,8 @@ inline double internal_effective_radius(double journal_radius, double bearing_ra
   return journal_radius * (bearing_radius / (bearing_radius - journal_radius));
 }
 
-/// Hertz stiffness K = 4/3 E* sqrt(R) [N/m^1.5] of F = K delta^1.5 (paper eq. 6; Johnson 1985,
-/// eq. 4.23).
+/// Hertz stiffness K = 4/3 E* sqrt(R) [N/m^1.5], with which F = K delta^1.5 (paper eq. 6; Johnson
+/// 1985, eq. 4.23).
 /// @param effective_young_modulus E* [Pa], @param effective_radius R [m]
 inline double hertz_stiffness(double effective_young_modulus, double effective_radius) {
   return 4.0 / 3.0 * effective_young_modulus * std::sqrt(effective_radius);

@@ -32,7 +32,8 @@ using RevoluteContact = JointContact;  ///< of revolute_contact()
 using BallContact = JointContact;      ///< of ball_contact()
 using PlaneContact = JointContact;     ///< of plane_contact()
 
-/// Input of the contact law from the geometry of a joint. @param time_step dt [s]
+/// Converts the geometry of a joint to the input of the contact law.
+/// @param time_step dt [s]
 inline ContactKinematics contact_kinematics(const JointContact& contact, double time_step) {
   return {contact.normal, contact.penetration_depth, contact.effective_radius,
           contact.relative_velocity, time_step};

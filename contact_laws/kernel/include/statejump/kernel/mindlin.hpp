@@ -9,8 +9,8 @@
 
 namespace statejump::kernel {
 
-/// Memory of a contact between steps. The caller stores it, rotates force and axis with the contact
-/// (transport() in frame.hpp) and default-constructs it for a new contact.
+/// Memory of a contact between steps. The caller stores it, rotates its force and axis with the
+/// contact (transport() in frame.hpp), and default-constructs it for a new contact.
 struct ContactHistory {
   Vector3 tangential_force = Vector3::Zero();  ///< spring force on body 1 [N]; no viscous part
   double tangential_stiffness = 0.0;  ///< k_t [N/m] when that force was stored; 0: new contact

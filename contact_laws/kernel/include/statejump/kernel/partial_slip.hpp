@@ -135,8 +135,8 @@ class PartialSlipStep {
     return a.u + ((x - a.x) * (x + a.x) / ((b.x - a.x) * (b.x + a.x))) * (b.u - a.u);
   }
 
-  /// Loss of annuli that leave the contact during the step, while the square of its edge decreases
-  /// linearly in time.
+  /// Adds the loss of annuli that leave the contact during the step. The square of the edge radius
+  /// decreases linearly in time.
   void add_leaving_loss(const PartialSlipMemory::Point& a, const PartialSlipMemory::Point& b) {
     if (!tracks_energy_) return;
     const double fall = (old_edge_ - edge_) * (old_edge_ + edge_);
@@ -268,8 +268,8 @@ class PartialSlipStep {
     add(b.x, projected(b), true);
   }
 
-  /// Largest change of force caused by one chord in this step [N]. During the slide that erases the
-  /// memory, the changes sum to `chord` times the limit, for any number of steps.
+  /// Allowed change of force by one chord in this step [N]. During the slide that erases the
+  /// memory, these changes sum to `chord` times the limit, for any number of steps.
   double chord_tolerance() const {
     return chord * edge_ * std::min(slope_ * square_, slide_.norm());
   }

@@ -9,7 +9,7 @@
 
 namespace statejump::kernel::detail {
 
-/// Quantities of one annulus during a step, as components along its slip direction.
+/// Quantities of one annulus in a step. Displacements are components along its slip direction.
 struct SlipAnnulus {
   double start;          ///< U before the step [m]
   double slide;          ///< of the two bodies while the annulus is in contact [m]
@@ -31,8 +31,8 @@ struct SlipAnnulus {
 inline constexpr std::array<double, 3> gauss_point{0.1127016653792583, 0.5, 0.8872983346207417};
 inline constexpr std::array<double, 3> gauss_weight{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
 
-/// Loss of a piece that slips in one direction [J]. The members of SlipAnnulus are linear in x^2
-/// between the ends. The loss is then a polynomial and the Gauss rule exact, except if annuli stick
+/// Loss [J] of a piece that slips in one direction. Between its ends, the members of SlipAnnulus
+/// are linear in x^2. So the loss is a polynomial and the Gauss rule is exact, unless annuli stick
 /// until they reach a moving bound.
 inline double loss(double xa, const SlipAnnulus& a, double xb, const SlipAnnulus& b) {
   const bool moves = a.change() != 0.0 || b.change() != 0.0;

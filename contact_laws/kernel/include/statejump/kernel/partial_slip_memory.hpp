@@ -44,7 +44,7 @@ class PartialSlipMemory {
     double at_last = 0.0;    ///< value of that upper bound at the last point of the prefix [m]
   };
   /// Largest number of points. A path of straight parts with nested reversals needs two points per
-  /// reversal. A smooth curve under growing load is approximated by chords, see merged().
+  /// reversal. Chords approximate a smooth curve under growing load, see merged().
   static constexpr int capacity = 48;
 
   PartialSlipMemory() = default;
@@ -159,7 +159,7 @@ struct ProductWeights {
   }
 };
 
-/// Effect of removing a point b between its neighbours a and c.
+/// Effect of removing a memory point b between its neighbours a and c.
 struct PointRemoval {
   double squared_offset;  ///< squared distance of the point from the chord a c [m^2]
   double x_a, x_b, x_c;   ///< of the point b and its neighbours [N/m]

@@ -21,7 +21,7 @@ struct Strain {
   double rate = 0;    ///< rate over the last step [1/s]
 };
 
-/// Sets thermal strains to expansion coefficient times temperature change, like a
+/// Sets each thermal strain to the expansion coefficient times the temperature change, like a
 /// ThermalExpansionEngine.
 struct Heater {
   struct Target {
@@ -53,7 +53,7 @@ struct Contact {
   double stable_stiffness = 0;  ///< stable_stiffness() of the physics [N/m]
 };
 
-/// A link with its program and the constants computed before the first step.
+/// A link with the index of its program and with constants that are computed before the first step.
 struct LinkEntry {
   Link link;
   std::size_t program;            ///< index in Scene::programs

@@ -133,7 +133,8 @@ inline bool can_defer_rotation(const Body& body, double time_step) {
          spin.y() == 0 && std::abs(spin.z()) * time_step < 0.1;
 }
 
-/// One leapfrog step with the current force sums. @param time_step [s]
+/// Makes one leapfrog step with the current force sums.
+/// @param time_step [s]
 /// @param last whether other code may read the body before its next step
 inline void move(Body& body, const Newton& newton, double time_step, bool last = true) {
   if (body.blocked != all_dofs) {

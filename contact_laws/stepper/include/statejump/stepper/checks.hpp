@@ -65,7 +65,7 @@ constexpr Quantities<Link, 6> link_quantities = {
      {"dampingRatio", &Link::dampingRatio, ValueRange::not_negative, "-"},
      {"pinDamping", &Link::pinDamping, ValueRange::not_negative, "N m s/rad"}}};
 
-/// Parameters of an active torsion spring. If frictionLimit > 0, frictionStiffness must be > 0.
+/// Parameters of an active torsion spring. A frictionLimit > 0 requires a frictionStiffness > 0.
 constexpr Quantities<Torsion, 8> torsion_quantities = {
     {{"stiffness", &Torsion::stiffness, ValueRange::not_negative, "N m/rad"},
      {"freeAngle", &Torsion::freeAngle, ValueRange::finite, "rad"},

@@ -98,7 +98,7 @@ enum class ContactSearch {
   tilted    ///< error: the axes are not parallel
 };
 
-/// Stores the contact geometry of this step.
+/// Stores the contact geometry of this step in `geometry`.
 /// @param motion_1, motion_2 motion of the two bodies; @param time_step [s]
 template <class Geometry>
 void update(const kernel::JointContact& contact, const kernel::BodyMotion& motion_1,

@@ -36,7 +36,7 @@ struct ContactLanes {
   Mask slipping;
   Pack elastic_force, elastic_energy, clearance, radius;  // of the last step
 
-  /// Loads the state of a contact. The other members do not change between steps.
+  /// Loads the state of a contact into a lane. The other members do not change between steps.
   void load(std::size_t lane, const Contact& contact) {
     const ContactPhysics& physics = contact.physics;
     real[lane] = contact.real ? -1 : 0;
@@ -59,7 +59,7 @@ struct ContactLanes {
     radius[lane] = physics.previousRadius;
   }
 
-  /// Writes back the state that the next scalar step of the contact needs.
+  /// Writes the state of a lane that the next scalar step needs back to its contact.
   void unload(std::size_t lane, Contact& contact) const {
     if (!contact.real) return;
     ContactPhysics& physics = contact.physics;

@@ -26,7 +26,7 @@ using Mask
     [[gnu::vector_size(lanes * sizeof(std::int64_t)), gnu::aligned(lanes * sizeof(std::int64_t))]] =
         std::int64_t;
 
-/// Whether the processor has AVX2; always false for processors other than x86-64.
+/// Returns whether the processor has AVX2. False for all processors other than x86-64.
 inline bool has_avx2() {
 #ifdef __x86_64__
   return __builtin_cpu_supports("avx2") != 0;

@@ -42,7 +42,7 @@ class DisjointSets {
 
 }  // namespace detail
 
-/// A scene split into subscenes. A body at rest may be in several of them.
+/// A scene divided into subscenes. A body at rest may belong to several of them.
 class Partition {
  public:
   /// @param whole after Scene::prepare()

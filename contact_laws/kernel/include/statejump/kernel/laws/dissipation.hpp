@@ -15,8 +15,8 @@ struct ImpactParameters {
   double impact_speed = 1.0;  ///< delta_dot_0 [m/s], > 0: approach speed when the contact began
 };
 
-/// Checks restitution and impact speed; call it whenever they are set. Some laws reject e = 0, see
-/// restitution_of().
+/// Checks restitution e and impact speed. Call this function whenever they are set. Some laws
+/// reject e = 0, see restitution_of().
 inline void validate(const ImpactParameters& impact) {
   check(parameter::restitution_from_zero, impact.restitution);
   require(std::isfinite(impact.impact_speed) && impact.impact_speed > 0.0, "impact_speed",
@@ -27,8 +27,8 @@ inline void validate(const ImpactParameters& impact) {
 /// the bodies never pull on each other. For F_elastic = K delta^n, F = K delta^n + chi delta^n
 /// delta_dot. The clip is never active in a free impact, but it is in a joint that is pulled apart.
 ///
-/// Restitution e' that results. The equation v dv/(1 + lambda v) = -(F_elastic/m) d(delta), lambda =
-/// chi/K, has the same right side during approach and rebound. So for every elastic law the true
+/// Restitution e' that results. The equation v dv/(1 + lambda v) = -(F_elastic/m) d(delta), lambda
+/// = chi/K, has the same right side during approach and rebound. So for every elastic law the true
 /// restitution e' solves, with a = lambda v0,
 ///
 ///    a - ln(1 + a) = -a e' - ln(1 - a e'),   e' = 1 - 2a/3 + ... for small a.

@@ -15,15 +15,15 @@
 
 namespace statejump::kernel::laws {
 
-/// One contact without bodies, driven along a path of depth and slide.
+/// A single contact without bodies. Its depth and slide are prescribed along a path.
 struct DrivenContact {
   JointLaw law;             ///< tangential_velocity is ignored: the path prescribes the slide
   ElasticPair elastic;      ///< E*, G* [Pa], > 0
   NormalGeometry geometry;  ///< see driven_geometry()
 };
 
-/// End point of one step. The step is a straight line from the current point, and the laws
-/// receive it as a single increment.
+/// End point of one step. The path to it is a straight line, which the laws receive as a single
+/// increment.
 struct DrivenTarget {
   double depth = 0.0;                      ///< delta [m]; <= 0: the contact is open
   std::optional<double> normal_force;      ///< F_N [N], >= 0; if given, the depth follows from it
@@ -66,7 +66,7 @@ inline NormalGeometry driven_geometry(double effective_radius, double radial_cle
   return {journal_radius, journal_radius + radial_clearance, contact_length};
 }
 
-/// Checks a driven contact; call it whenever it is set.
+/// Checks a driven contact. Call this function whenever the contact is set.
 /// @throws std::invalid_argument that names the field, its value and its range, or the law that
 ///        needs a missing field
 inline void validate(const DrivenContact& contact) {

@@ -14,7 +14,7 @@ namespace statejump::kernel::laws {
 /// Properties of a law besides its numbers. Code that depends on such a property reads the traits,
 /// never the name or type of the law.
 enum class Trait : unsigned {
-  /// a body at rest can remain at rest under a load on this law
+  /// a body under a load can remain at rest on a contact with this law
   holds_static_load = 1U << 0,
   /// no force at all
   frictionless = 1U << 1,
@@ -25,8 +25,8 @@ enum class Trait : unsigned {
   needs_axis = 1U << 3,
   /// accepts a negative bearing radius (a bulging wall): uses signed curvature
   accepts_bulging_wall = 1U << 4,
-  /// Hertz's point contact F = 4/3 E* sqrt(R) delta^1.5, with 1/R = 1/R1 - 1/R2 if
-  /// accepts_bulging_wall is set and 1/R = 1/R1 + 1/R2 otherwise
+  /// Hertz's point contact F = 4/3 E* sqrt(R) delta^1.5. Its curvature is 1/R = 1/R1 - 1/R2 if
+  /// accepts_bulging_wall is set, otherwise 1/R = 1/R1 + 1/R2.
   point_contact = 1U << 5,
   /// valid only under a normal law that is a point_contact
   needs_point_contact = 1U << 6,
@@ -74,7 +74,7 @@ struct LawParameter {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 };
 
-/// Checks a parameter; call it whenever it is set.
+/// Checks a parameter. Call this function whenever it is set.
 /// @throws std::invalid_argument that names the parameter, its value and its range
 inline void check(const LawParameter& parameter, double value) {
   if (parameter.allows(value)) return;

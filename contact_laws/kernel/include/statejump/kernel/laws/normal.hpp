@@ -40,7 +40,8 @@ struct NormalState {
   double elastic_energy;  ///< integral of F over delta [J], >= 0
 };
 
-/// Checks geometry and material; call it whenever they are set, because the laws do not check them.
+/// Checks geometry and material. Call this function whenever they are set, because the laws do not
+/// check them.
 /// @throws std::invalid_argument that names the field, its value and its range
 inline void validate(const NormalGeometry& geometry, const NormalMaterial& material) {
   const auto positive = [](double value, const char* name, const char* range) {
@@ -53,7 +54,7 @@ inline void validate(const NormalGeometry& geometry, const NormalMaterial& mater
   positive(material.effective_young_modulus, "effective_young_modulus", "(0, inf) Pa");
 }
 
-/// A penetration depth outside the range of a normal law, as fields.
+/// Error for a penetration depth outside the range of a normal law, with its data as fields.
 class DepthOutOfRange : public std::domain_error {
  public:
   /// @param law name of the law, @param depth [m], @param limit smallest depth that is not allowed

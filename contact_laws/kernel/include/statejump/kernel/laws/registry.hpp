@@ -166,7 +166,7 @@ std::vector<std::string> law_names() {
   return detail::Catalogue<Law>::names();
 }
 
-/// Reason why the loaded law with that name is unusable; empty if it is usable or not loaded.
+/// Reason why the loaded law with this name is unusable. Empty if the law is usable or not loaded.
 template <class Law>
 std::string law_problem(const std::string& name) {
   return detail::Catalogue<Law>::problem(name);

@@ -168,7 +168,7 @@ struct LoadedLaw {
   const UserLawTable* table = nullptr;  ///< null if `problem` is not empty
 };
 
-/// All loaded laws. The loader fills them before laws are looked up; entries keep their address.
+/// All loaded laws. The loader adds them before the first look-up. Entries keep their addresses.
 inline std::deque<LoadedLaw>& loaded_laws() {
   static std::deque<LoadedLaw> laws;
   return laws;
