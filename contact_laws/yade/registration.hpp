@@ -64,8 +64,7 @@ void archive_value(Archive& archive, const char* name, Vector3r& value) {
   }
 }
 
-// Archives a list of triples as one list of numbers, because YADE's serialization of vectors is not
-// part of its interface.
+// Archives a list of triples as one list of numbers, without YADE's serialization of vectors.
 template <class Archive, class Triple, class Number>
 void archive_triples(Archive& archive, const char* name, std::vector<Triple>& list,
                      std::vector<Number> flat) {

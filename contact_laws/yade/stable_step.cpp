@@ -36,9 +36,9 @@ Real mobility(const yade::State& state, Real arm_squared) {
 // Sums stiffness and damping over the springs and dashpots of each body.
 //
 // Let s be the elongation of a spring of stiffness k between two bodies. Then s^2 <= 2 (s1^2 +
-// s2^2) and s_i^2 <= mobility_i * 2 * (kinetic energy per unit rate squared), with the displacement
-// s_i of its end on body i. So the largest eigenvalue is at most the largest sum of 2 k mobility
-// over the springs of one body.
+// s2^2) and, for its end on body i, s_i^2 <= mobility_i * 2 * (kinetic energy per unit rate
+// squared). So the largest eigenvalue is at most the largest sum of 2 k mobility over the springs
+// of one body.
 class BodySums {
  public:
   explicit BodySums(const yade::Scene& scene)

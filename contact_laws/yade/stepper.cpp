@@ -76,10 +76,9 @@ class StepsAhead {
     return steps;
   }
 
-  // Estimated number of steps until a body may leave its collider bound. If a body leaves its bound
-  // within a piece of steps, the piece is repeated up to that step. With meshed bores this costs as
-  // much as YADE's own loop. So a piece covers only most of the distance to the bound at current
-  // velocities, and the last piece is short.
+  // Estimated number of steps until a body may leave its collider bound. If a body leaves it within
+  // a piece of steps, the piece is repeated up to that step. With meshed bores this costs as much
+  // as YADE's own loop, so a piece covers only most of the distance at current velocities.
   long steps_to_a_bound() const {
     constexpr Real most_of_the_way = 0.75;
     constexpr long shortest = 8;  // copying the arrays once costs about as much as one step

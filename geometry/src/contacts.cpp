@@ -97,8 +97,8 @@ struct Minimum {
   double value;
 };
 
-/// Removes each minimum from which the distance rises by less than the prominence before it falls
-/// to a lower minimum. The lowest minimum always remains.
+/// Removes each minimum that rises by less than the prominence before a lower minimum. The lowest
+/// one always remains.
 void drop_flat(std::vector<Minimum>& minima, const std::vector<double>& values, double prominence) {
   const int count = static_cast<int>(values.size());
   while (minima.size() > 1) {
@@ -151,7 +151,7 @@ struct Section {
   }
 
   /// Finds the local minimum of the distance between two angles relative to `start`. Returns false
-  /// if the direction `start` meets no wall.
+  /// if `start` meets no wall.
   bool minimum(const Vector3& start, double low, double high, int near, Sample& best) const {
     const Vector3 across = cross(axis, start);
     double angle = 0;

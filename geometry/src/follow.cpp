@@ -23,10 +23,9 @@ enum Header {
   at_flat = 8,  // whether contacts may be followed on the smooth wall beyond their patch
   header_size = 9
 };
-// Layout of a patch of the wall; there is one per contact. For a journal, u is the normal of the
-// wall, which may be inclined to the section; k_a is the curvature in the section, k_b
-// perpendicular to it. For a ball, u and v are the principal directions that belong to k_a and k_b.
-// Concave curvatures are positive.
+// Layout of a patch of the wall, one per contact. For a journal, u is the wall's normal, which may
+// be inclined to the section; k_a is the curvature in the section, k_b perpendicular to it. For a
+// ball, u and v are the principal directions of k_a and k_b. Concave curvatures are positive.
 enum Patch {
   at_point = 0,
   at_normal = 3,
@@ -47,8 +46,8 @@ constexpr double one_place = 1 - 0.0001;  // cosine; contacts with normals close
 constexpr int most_refinements = 3;
 
 // Distance of a point from a circle through the origin. At the origin the tangent of the circle is
-// horizontal; the centre of the circle is at height 1/k. The point has the coordinates (along,
-// height). The result is exact for any k, also 0.
+// horizontal; the centre of the circle is at height 1/k. The point is (along, height). The result
+// is exact for any k, also 0.
 struct OnCircle {
   double distance;
   double cosine;  // of the rotation of the normal

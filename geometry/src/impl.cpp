@@ -264,8 +264,8 @@ void BoreMesh::Impl::make_grid() {
   make_reach();
 }
 
-/// Computes how far the part of the wall extends that a sample represents: half-way to its
-/// neighbours, or the whole way if one of them is missing.
+/// Computes how far a sample represents the wall: half-way to its neighbours, or the whole way if
+/// one is missing.
 void BoreMesh::Impl::make_reach() {
   grid.reach.assign(grid.radius.size(), 0);
   for (int cell = 0; cell < static_cast<int>(grid.radius.size()); ++cell) {

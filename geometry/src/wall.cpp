@@ -139,8 +139,7 @@ Vector3 axis_of_normals(const std::vector<Face>& faces, const std::vector<int>& 
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum).eigenvectors().col(0);
 }
 
-/// Area-weighted mean cosine of the angle between normals and the direction to the axis (for a
-/// socket: to the centre).
+/// Area-weighted mean cosine between normals and the direction to the axis (for a socket: centre).
 double inward(const std::vector<Face>& faces, const std::vector<int>& chosen, const Round& round,
               SurfaceKind kind) {
   double sum = 0, total = 0;

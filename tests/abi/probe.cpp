@@ -34,8 +34,8 @@ py::tuple interface_checks(const py::object& wrapper) {
   return as_tuple(statejump::yade_abi::difference_from_running_yade(wrapper, options));
 }
 
-// Name of the function or object that a table entry points to. In members of the child, the name of
-// the child is replaced by `child`.
+// Name of the function or object that a table entry points to, with `child` instead of the child's
+// name.
 std::string entry_name(const void* entry, const std::string& child) {
   Dl_info info;
   if (!dladdr(entry, &info) || !info.dli_sname || info.dli_saddr != entry) {

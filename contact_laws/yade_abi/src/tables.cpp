@@ -14,9 +14,8 @@
 namespace statejump::yade_abi {
 namespace {
 
-// Size of a class as allocated by YADE. yade::Create<Class>() starts with operator
-// new(sizeof(Class)), whose argument is an immediate operand: mov edi, imm32 (opcode bf), then call
-// (e8).
+// Size that YADE allocates. yade::Create<Class>() starts with operator new(sizeof(Class)), whose
+// argument is an immediate operand: mov edi, imm32 (opcode bf), then call (e8).
 std::size_t allocated_size(const std::string& class_name) {
   const auto* code = static_cast<const unsigned char*>(
       symbol("_ZN4yade" + mangled_name("Create" + class_name) + "Ev"));

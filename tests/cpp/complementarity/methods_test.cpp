@@ -103,8 +103,8 @@ TEST(TwoContacts, give_one_of_the_enumerated_solutions) {
       EXPECT_LT(nearest, 1e-5 * problem.q.norm()) << to_string(method) << ", problem " << k;
     }
   }
-  // With friction coefficients up to 1.5, some problems must have several solutions, and the
-  // enumeration must find them.
+  // With friction up to 1.5, some problems must have several solutions, which the enumeration must
+  // find.
   EXPECT_GT(several, 0);
 }
 
@@ -139,9 +139,8 @@ TEST(InteriorPoint, solves_from_a_cold_start) {
 }
 
 TEST(InteriorPoint, goes_on_while_its_merit_falls) {
-  // Forty contacts constrain as many dofs. The method updates the lagged friction repeatedly, for
-  // up to fifty steps. It needs 31 steps on average, and 50 without its safeguards against a
-  // stagnating residual.
+  // Forty contacts constrain as many dofs. The method updates lagged friction for up to fifty
+  // steps. It needs 31 on average, and 50 without its safeguards against a stagnating residual.
   std::mt19937 random(10);
   Options options;
   options.method = Method::interior_point;

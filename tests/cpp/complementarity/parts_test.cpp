@@ -176,9 +176,8 @@ Reached by_interior_point(const ScaledProblem& problem, int most) {
 
 TEST(Parts, InteriorPointConvergesByItself) {
   std::mt19937 random(7);
-  // With a wrong search direction the method may still converge, but in more steps than allowed
-  // here. The present average step counts are 5.7, 7.6 and 9.5; the limits are about a third
-  // higher.
+  // With a wrong search direction the method may still converge, but in more steps. The present
+  // averages are 5.7, 7.6 and 9.5 steps; the limits are a third higher.
   for (const auto& [most_friction, usual] :
        {std::pair{0.0, 7.5}, std::pair{0.9, 10.0}, std::pair{4.0, 12.5}}) {
     int steps = 0;

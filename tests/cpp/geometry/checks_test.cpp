@@ -415,7 +415,7 @@ TEST(BoreChecks, EveryReasonHasANameOfItsOwn) {
 
 TEST(BoreChecks, VertexWithManyNeighboursIsFittedToAllOfThem) {
   // At the bottom of a cup 150 faces meet. The fitted curvature must be that of the cup in all
-  // directions. A fit to only 60 neighbours would give the curvature of an arc.
+  // directions. A fit to 60 neighbours would give that of an arc.
   BoreOptions socket;
   socket.kind = SurfaceKind::socket;
   constexpr double radius = 8e-3;
@@ -441,9 +441,8 @@ TEST(BoreChecks, TooCoarse) {
             "facets_too_coarse open_m=0.00765 allowed_m=0.000102");
   for (const int around : {7, 8, 9, 12, 16})
     EXPECT_NO_THROW(BoreMesh(bore_triangles(round_bore(), around, 3))) << around;
-  // All neighbours of a cup's bottom lie beyond a crease, but the fit uses them nevertheless. Each
-  // of the 150 counts from both of its faces, so more equations result than the 64 that fit on the
-  // stack.
+  // All neighbours of a cup's bottom lie beyond a crease, but the fit uses them. Each of the 150
+  // counts from both of its faces, which exceeds the 64 equations on the stack.
   BoreOptions socket;
   socket.kind = SurfaceKind::socket;
   EXPECT_EQ(refusal(socket_triangles(8e-3, 0.4, 150, 2), socket).find("facets_too_coarse "), 0u);

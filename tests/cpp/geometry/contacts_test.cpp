@@ -60,7 +60,7 @@ TEST(BoreContacts, RoundBoreIsTheAnalyticJoint) {
     EXPECT_NEAR(found[0].depth, exact.penetration_depth, 1e-12);
     EXPECT_NEAR((found[0].normal - exact.normal).norm(), 0, 1e-5);
     EXPECT_NEAR(found[0].section_curvature, -1 / bearing_radius, 1e-5 / bearing_radius);
-    // The radius is larger at both ends of the bore, so the wall is convex along the axis.
+    // The radius is larger at both ends, so the wall is convex along the axis.
     EXPECT_NEAR(found[0].axial_curvature, 0, 1e-5 / bearing_radius);
     EXPECT_EQ(found[0].previous, -1);
     EXPECT_TRUE(mesh.contacts(centre, z_axis, journal_radius, 0).empty() ==
@@ -160,7 +160,7 @@ TEST(BoreContacts, TiltedJournalInATaperedBoreSeesItsSection) {
   }
   EXPECT_NEAR(journal_radius - found[0].depth, nearest, 1e-10);
   EXPECT_NEAR(found[0].normal.dot(axis), 0, 1e-15);
-  // The radius is larger at both ends of the bore, so the wall is convex along the axis.
+  // The radius is larger at both ends, so the wall is convex along the axis.
   EXPECT_NEAR(found[0].axial_curvature, 2 * 5e-5 / 25e-6, 0.02 * 4);
 }
 

@@ -101,7 +101,7 @@ Seen compare(const BoreMesh& mesh, const Walk& walk) {
   EXPECT_EQ(seen.lost, 0);
   // Uncertainty of the smooth wall.
   EXPECT_LT(seen.depth, mesh.prominence());
-  // The contact leaves a patch when the normal has rotated by patch_angle, so the error is smaller.
+  // A contact leaves its patch when the normal has rotated by patch_angle, so the error is smaller.
   EXPECT_LT(seen.normal, patch_angle);
   // Bound: arc length on a patch, patch_angle / k, times the derivative of the curvature k. For the
   // lobes used here this derivative is at most a n^3 / R^3 = 2e4 /m^2, which gives 1e-4 of k. The

@@ -267,7 +267,7 @@ TEST(MeshFormats, Ply) {
   const std::vector<std::array<int, 3>> faces{{0, 1, 2}};
   EXPECT_EQ(parse_triangles(MeshFormat::ply, ply("ascii", elements("3", "1"), body), "").faces,
             faces);
-  // PLY file with faces before vertices, an element and properties to skip, and Windows line ends.
+  // PLY file with faces first, an element and properties to skip, and Windows line ends.
   std::string strange =
       ply("ascii",
           "element face 1\nproperty uchar red\nproperty list uint8 uint32 "

@@ -129,8 +129,7 @@ TEST(SmoothWall, ForceAgainstDepthAt200Facets) {
     }
   std::printf("force at 200 facets around, depth 1e-8 to 1e-6 m: largest error %.2e\n", worst);
   // The relative error of the curvature is 4e-7. The effective radius amplifies it by R2/c = 51;
-  // the square root in Hertz's force halves it. The depth has an error of 2e-13 m, relative to 1e-8
-  // m.
+  // the square root in Hertz's force halves it. The depth error is 2e-13 m of 1e-8 m.
   EXPECT_LT(worst, 1e-4);
 }
 
@@ -276,8 +275,8 @@ TEST(SmoothWall, SharpEdgesAlongTheBoreDoNotReachIntoItsSides) {
       worst = std::max(worst, std::abs(found.distance));
     }
   // A round bore with this facet angle has 2 pi / facet = 195 facets around and an error of 2e-13
-  // m. Beside the edge the fit is one-sided and less accurate, but within 1e-10 m. A fit across the
-  // edge exceeds this limit.
+  // m. Beside the edge the fit is one-sided, but accurate to 1e-10 m. A fit across the edge exceeds
+  // this limit.
   EXPECT_LT(worst, 1e-10);
 }
 

@@ -67,8 +67,7 @@ class Random {
   std::mt19937 generator_{20210110};
 };
 
-/// Mesh of the same shape as bore_triangles(), with irregular vertices on the wall: shifted rings,
-/// uneven spacing.
+/// Mesh as by bore_triangles(), with irregular vertices on the wall: shifted rings, uneven spacing.
 inline Triangles uneven_bore(const BoreShape& shape, int around, int along, double unevenness) {
   Triangles mesh = bore_triangles(shape, around, along);
   Random random;

@@ -63,9 +63,9 @@ linkage::Linkage with_partial_slip(linkage::Linkage model) {
 // Rounding errors are 1e-16 for angles of order 1, and 1e-16 m for the closure of links of 0.05 m.
 constexpr double angle_rounding = 1e-14;
 
-/// Checks equilibrium at a point by virtual work. For each coordinate of the link tips, the
-/// gradient of the potential energy() must equal F_t times the gradient of the material slide at
-/// the contact. Returns the largest difference [N].
+/// Equilibrium at a point by virtual work: for each coordinate of the link tips, the gradient of
+/// energy() equals F_t times the gradient of the material slide at the contact. Returns the largest
+/// difference [N].
 double out_of_balance(const linkage::Linkage& model, const ElasticJointPoint& point) {
   linkage::State at;
   at.bearing_centre = point.bearing_centre;
@@ -121,8 +121,7 @@ TEST(ElasticLoop, PointsAreEquilibriaByVirtualWork) {
       }
       EXPECT_LT(loop.largest_force_residual, 1e-12);
       EXPECT_LT(loop.largest_closure_residual, 2.4e-16);
-      // Limit for steps of 12 K. With a wrong Jacobian, Newton's method converges only linearly and
-      // needs more iterations.
+      // Limit for steps of 12 K. With a wrong Jacobian, Newton's method converges only linearly.
       EXPECT_LE(loop.most_iterations, 6);
     }
   }
@@ -149,10 +148,9 @@ TEST(ElasticLoop, LoadedStateIsAtRestForTheDynamics) {
 }
 
 TEST(ElasticLoop, TendsToTheRigidLoop) {
-  // Depth δ ~ E^(-2/3) and elongation e ~ E^(-1) are comparable at the original E. With the
-  // stiffness factor s, the distance to the rigid loop is D = A s^(-2/3) (1 + B s^(-1/3)), |B| of
-  // order 1; 1.5 is allowed. A tenfold s divides D by 10^(2/3) (1 + B s^(-1/3))/(1 + B (10
-  // s)^(-1/3)).
+  // Depth δ ~ E^(-2/3) and elongation e ~ E^(-1) are comparable at E. With stiffness factor s, the
+  // distance to the rigid loop is D = A s^(-2/3) (1 + B s^(-1/3)), |B| of order 1; 1.5 is allowed.
+  // A tenfold s divides D by 10^(2/3) (1 + B s^(-1/3))/(1 + B (10 s)^(-1/3)).
   for (const double mu : {0.15, 0.3}) {
     const RigidLoop limit = rigid_loop(biased(mu), heating());
     const auto distance = [&](double stiffer) -> Eigen::Array3d {
@@ -243,9 +241,8 @@ TEST(ElasticLoop, JumpThatEndsInSlipIsThatBetweenTwoEquilibria) {
 }
 
 TEST(ElasticLoop, StepsMayBeLongerThanTheRollBetweenTwoLimits) {
-  // At the turning point the tangential force is at one limit; one step later it is beyond the
-  // opposite limit. After the first cycle, the events roll, slip, roll, slip repeat at the same
-  // temperatures.
+  // At the turning point the tangential force is at one limit, one step later beyond the other.
+  // After the first cycle, the events roll, slip, roll, slip repeat at the same temperatures.
   constexpr int cycles = 20;
   for (const double mu : {0.002, 0.005, 0.01, 0.02, 0.05}) {
     for (const TangentialCompliance compliance : {rigid, mindlin}) {
@@ -431,12 +428,12 @@ TEST(ElasticLoop, SlipMayEndWithinABranch) {
       const double expected = powers.partialPivLu().solve(heats)[0];
       std::printf("slip ends at %.9f K, from the slide %.9f K\n", end, expected);
       EXPECT_NEAR(end, expected, 2e-4);
-      // The event is a root of the rate, not of increments, so its only error is rounding: 1e-18
-      // m/K divided by 1e-12 m/K².
+      // The event is a root of the rate, so its only error is rounding: 1e-18 m/K divided by 1e-12
+      // m/K².
       EXPECT_NEAR(run(model, 7, compliance).events[1].temperature_change, end, 1e-5);
     }
-    // Expected deviation: δ/c = 1e-7, while the slope changes by α ΔT = 1e-3 over 50 K. This gives
-    // 5e-3 K if no errors cancel.
+    // Deviation: δ/c = 1e-7 while the slope changes by α ΔT = 1e-3 over 50 K, i.e. 5e-3 K if no
+    // errors cancel.
     linkage::Linkage stiff = model;
     stiff.link_ab.young_modulus *= 1e6;
     stiff.link_bc.young_modulus *= 1e6;
@@ -459,8 +456,7 @@ TEST(ElasticLoop, SeparatesWhereTheForceVanishes) {
               2.0 * loop.points.back().normal_force / slope + 1e-10);
   EXPECT_LT(loop.points.back().normal_force, 1e-11);
   // Separation during slip: where the force vanishes, no spurious end of slip may appear, for any
-  // step size. Newton's method may fail slightly before the smallest force, so the test allows a
-  // factor of ten.
+  // step size. Newton's method may fail slightly earlier, so a factor of ten is allowed.
   for (const double mu : {0.005, 0.05}) {
     const RigidLoop slips = rigid_loop(biased(mu, bias), heating(1.0, -100.0));
     for (const int samples : {3, 200}) {
@@ -487,8 +483,8 @@ TEST(ElasticLoop, SeparatesWhereTheForceVanishes) {
 TEST(ElasticLoop, SlowDampedDynamicsTendsToIt) {
   // Velocities vanish as 1/T for duration T, so the error is A/T + B/T^2 + ... The test assumes
   // that B/T relative to A is at most A/T relative to the jump, i.e. that the lag is of second
-  // order. (This fails if the static path comes close to the friction limit without slipping,
-  // because the dynamics may then slip.)
+  // order. (This fails if the static path nearly reaches the friction limit, because the dynamics
+  // may then slip.)
   for (linkage::Linkage model :
        {biased(0.15), biased(0.3), expanding(0.2), with_partial_slip(biased(0.3))}) {
     model.axial_damping_ratio = 0.1;
@@ -512,8 +508,8 @@ TEST(ElasticLoop, SlowDampedDynamicsTendsToIt) {
         2.0 * error[2] - error[1]);
     EXPECT_NEAR(error[0] / error[1], 2.0, 2.0 * std::abs(error[0] / jump));
     EXPECT_NEAR(error[1] / error[2], 2.0, 2.0 * std::abs(error[1] / jump));
-    // Allowed error after elimination of the A/T term. It is small enough to distinguish the two
-    // compliances after a final roll.
+    // Allowed error without the A/T term. After a final roll it is small enough to distinguish the
+    // two compliances.
     const double rest = error[1] * error[1] / std::abs(jump);
     EXPECT_LT(std::abs(2.0 * error[2] - error[1]), rest);
     if (loop.events.back().motion == JointMotion::roll) {

@@ -40,8 +40,8 @@ TEST(RigidLoop, PointsAreEquilibria) {
     EXPECT_NEAR((point.journal_centre - Eigen::Vector2d(frame, 0.0)).norm(), 0.1 * growth, 1e-16);
     EXPECT_NEAR(point.eccentricity.norm(), 1e-4, 1e-16);
     EXPECT_LE(std::abs(point.contact_angle), std::atan(0.3));
-    // Equilibrium of moments of both links about their pins, with a force (f, 0) at the bearing's
-    // contact point.
+    // Moments of both links about their pins balance, with a force (f, 0) at the bearing's contact
+    // point.
     const double height =
         point.bearing_centre.y() + model.bearing_radius * point.eccentricity.y() / 1e-4;
     const double f = point.spring_moment / height;
@@ -106,8 +106,8 @@ TEST(RigidLoop, SlipLeavesAJumpThatIsIndependentOfSampling) {
 }
 
 TEST(RigidLoop, SeparatesAtItsClosedForm) {
-  // In contact the joint keeps |w| = a + c. Without contact, the spring alone determines |w|, which
-  // shrinks on cooling. The contact force vanishes where both values are equal.
+  // Contact keeps |w| = a + c. Without contact the spring determines |w|, which shrinks on cooling.
+  // The contact force vanishes where both are equal.
   const double bias = 4e-3;
   const linkage::Linkage model = biased(0.0, bias);
   const RigidLoop loop = rigid_loop(model, heating(1.0, -100.0));

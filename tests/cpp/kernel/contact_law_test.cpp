@@ -131,8 +131,8 @@ TEST(ContactLaw, TangentialDamping) {
   EXPECT_NEAR(response.damping_dissipation, damping * speed * speed * 1e-6, 1e-20);
   // The history stores only the spring force.
   EXPECT_EQ(history.tangential_force, undamped_history.tangential_force);
-  // Fast motion of a sticking spring: spring plus damper force is limited to the Coulomb limit, and
-  // the remaining damper force still dissipates.
+  // Fast stick: the sum of spring and damper force is limited to Coulomb's limit; the remaining
+  // damper force dissipates.
   response = hertz_mindlin(parameters, kinematics(1e-6, Vector3(0, 0.2, 0.1)), history);
   EXPECT_FALSE(history.slipping);
   EXPECT_NEAR(response.tangential_force.norm(), 0.3 * response.normal_force, 1e-13);

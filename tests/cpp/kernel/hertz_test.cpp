@@ -27,8 +27,8 @@ TEST(Hertz, PaperTable2Stiffness) {
   const ElasticPair pair = elastic_pair(70e9, 0.3, 70e9, 0.3);
   EXPECT_NEAR(pair.effective_young_modulus, 38461538461.538461538, rounding * 3.9e10);
   EXPECT_NEAR(pair.effective_shear_modulus, 7918552036.1990950226, rounding * 8e9);
-  // The difference R2 - R1 of two rounded radii has an error of 4e-19 m (radii of 5.1e-3 m), i.e.
-  // 4e-15 of c = 1e-4 m. The relative error of K is half of this.
+  // Rounding of radii of 5.1e-3 m causes an error of R2 - R1 of 4e-19 m, 4e-15 of c = 1e-4 m. The
+  // relative error of K is half of this.
   EXPECT_NEAR(internal_effective_radius(5e-3, 5.1e-3), 0.255, 1e-14 * 0.255);
   EXPECT_NEAR(
       hertz_stiffness(pair.effective_young_modulus, internal_effective_radius(5e-3, 5.1e-3)),
@@ -105,7 +105,7 @@ TEST(Hertz, MindlinStiffnessFollowsFromCerruti) {
       const double phi = (i + 0.5) * 2.0 * pi / n;
       const double kernel =
           ((1.0 - nu[body]) + nu[body] * std::cos(phi) * std::cos(phi)) / (2.0 * pi * shear);
-      // Substitution r = a sin(psi): q dr = q0 a d(psi), whose integral over psi is q0 a pi/2.
+      // With r = a sin(psi), q dr = q0 a d(psi), whose integral over psi is q0 a pi/2.
       displacement += kernel * q0 * a * 0.5 * pi * 2.0 * pi / n;
     }
   }

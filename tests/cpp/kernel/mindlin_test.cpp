@@ -104,8 +104,8 @@ TEST(Mindlin, ForceFollowsTheClosedForm) {
 }
 
 // Energy balance of every single step, with loading, unloading, stick, slip and loss of contact.
-// The work of the mean force must equal change of spring energy plus dissipation, to rounding, and
-// dissipation must be >= 0.
+// The work of the mean force equals change of spring energy plus dissipation, to rounding;
+// dissipation >= 0.
 TEST(Mindlin, EnergyIdentityClosesInEveryStep) {
   Random random;
   ContactHistory history;
@@ -159,8 +159,7 @@ TEST(Mindlin, StiffnessChangeKeepsSlideOrForce) {
 }
 
 // A closed loop of slide and normal load without slip must not return more energy than it received.
-// If the contact slides out at high load and back at low load, the fraction k_low/k_high of the
-// energy returns.
+// After sliding out at high load and back at low load, the fraction k_low/k_high returns.
 TEST(Mindlin, UnloadingCreatesNoEnergy) {
   const double high = 2e7;
   const double low = 5e6;

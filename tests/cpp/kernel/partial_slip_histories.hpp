@@ -9,8 +9,7 @@
 
 namespace statejump::kernel::testing {
 
-/// Factors of the tangential stiffness and the normal force of a sphere on a plane, as functions of
-/// the depth [m].
+/// Factors in the tangential stiffness and the normal force of a sphere on a plane.
 inline constexpr double shear_root = 8.0 * 7.9e9 * 0.1, hertz_root = 4.0 / 3.0 * 38.5e9 * 0.1,
                         mu = 0.3;
 inline double stiffness(double depth) {

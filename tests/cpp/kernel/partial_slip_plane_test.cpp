@@ -93,8 +93,7 @@ TEST(PartialSlipPlane, IsARowOfRingsAndTheStepToItsChords) {
     const double most = limit(depth);
     const Tangent slide = along(random.uniform(-pi, pi), random.uniform(0.05, 2.0) * gross(depth));
     const PartialSlipPlane plane = partial_slip_plane(k, most, slide, memory);
-    // Error of the midpoint rule with 4000 annuli. Where |U| is near zero, its direction changes
-    // within few annuli.
+    // Error of the midpoint rule. Where |U| is near zero, its direction changes within few annuli.
     const double off = apart(plane.force, of_rings(k, most, slide, memory, 4000)) / most;
     EXPECT_LT(off, 1e-4) << trial;
     square += off * off / trials;
@@ -119,9 +118,8 @@ TEST(PartialSlipPlane, DerivativesAreThoseOfTheForce) {
     const auto force = [&](double at_k, double at_limit, const Tangent& at_slide) {
       return partial_slip_plane(at_k, at_limit, at_slide, memory).force;
     };
-    // Central differences as for a slide along a line: second derivatives are bounded except for
-    // square roots. Quadrature errors are added, because the quadrature points move with the
-    // pieces.
+    // Central differences: second derivatives are bounded except for square roots. Quadrature
+    // errors are added, because the quadrature points move with the pieces.
     const double h = 1e-5;
     const double rounding = 4e-15 * most;
     const auto near = [&](const Tangent& exact, const Tangent& plus, const Tangent& minus,

@@ -114,9 +114,9 @@ TEST(PartialSlip, CornerWhereSlipBeginsToTurnStays) {
 }
 
 TEST(PartialSlip, PointsThatSayNothingGoFirst) {
-  // A full memory: a zigzag over x^2, in which one point, at each position in turn, lies on the
-  // line between its neighbours. A growing contact then adds one point too many, so the law keeps
-  // three quarters of the points and must drop that one.
+  // The memory is full, with a zigzag over x^2 in which one point lies on the line between its
+  // neighbours. Growth adds one point too many, so the law keeps three quarters of the points and
+  // must drop that one.
   constexpr int full = PartialSlipMemory::capacity;
   const double edge = Contact::stiffness(usual_depth);
   const double limit = mu * Contact::normal(usual_depth);
@@ -160,8 +160,8 @@ TEST(PartialSlip, AsManyPointsAsFitStay) {
 }
 
 TEST(PartialSlip, AtConstantLoadAPointThatSaysHardlyAnythingStays) {
-  // One point deviates from a straight line by 1e-13 of the bound: more than rounding, but less
-  // than the threshold that a growing contact uses to merge points.
+  // A point deviates from a line by 1e-13 of the bound: more than rounding, less than the merge
+  // threshold of a growing contact.
   const double edge = Contact::stiffness(usual_depth);
   const double limit = mu * Contact::normal(usual_depth);
   const double bound = 1.5 * limit / edge;
@@ -208,9 +208,9 @@ TEST(PartialSlip, LoadingUnloadingReloadingAtConstantLoad) {
 }
 
 TEST(PartialSlip, NestedReversalsFollowMasingHoweverManyPointsStick) {
-  // By Masing's rule each branch is twice the first-loading curve, starting at its reversal point.
-  // After many nested reversals, most annuli stick. On the way back the slide closes all loops;
-  // each closed loop must be erased from the memory.
+  // By Masing's rule each branch is twice the first-loading curve, from its reversal point. After
+  // many nested reversals most annuli stick. The way back closes all loops, and the memory must
+  // erase each closed loop.
   const double limit = mu * Contact::normal(usual_depth);
   const double gross = Contact::gross(usual_depth);
   constexpr int turns = 14;
@@ -238,8 +238,8 @@ TEST(PartialSlip, NestedReversalsFollowMasingHoweverManyPointsStick) {
   }
 }
 
-/// Drives a contact through a slide, then through decaying oscillations to rest in the middle,
-/// which leaves nested reversals in its memory.
+/// Drives a contact through a slide, then through decaying oscillations, which leave nested
+/// reversals in its memory.
 /// @param first, last range of half periods; @param visit is called after each step
 template <class Visit>
 void ring(Contact& contact, int first, int last, const Visit& visit) {
@@ -445,8 +445,7 @@ TEST(PartialSlip, WorkIsEnergyAndLoss) {
 }
 
 /// Reference: many flat punches in parallel, each a spring with its own Coulomb limit. Small steps
-/// divide every straight path. It is independent of the law under test and has no memory of
-/// reversals.
+/// divide every straight path. The row shares no code with the law under test.
 class Punches {
  public:
   Punches(int count, double largest_depth)
@@ -525,9 +524,8 @@ Difference against_punches(int histories, int turns, int punches, int steps, boo
   return found;
 }
 
-/// 1000 random histories with nested reversals, loss and return of contact. The finite width of the
-/// punches determines the difference, which decreases with the power 3/2 of the width (error at the
-/// rim).
+/// 1000 random histories with nested reversals, loss and return of contact. The width of the
+/// punches determines the difference, by its power 3/2 (error at the rim).
 TEST(PartialSlip, RandomHistoriesAgainstManyPunches) {
   const Difference coarse = against_punches(1000, 30, 50, 8, false);
   const Difference fine = against_punches(1000, 30, 200, 8, false);
@@ -550,8 +548,8 @@ TEST(PartialSlip, RandomHistoriesInThePlane) {
   EXPECT_LE(eight.mean_square, 2e-3);
 }
 
-/// The slide follows a circle twice, at constant load. The tolerance of a chord is relative to the
-/// slide that erases the memory, so many small steps are as accurate as few.
+/// The slide follows a circle twice, at constant load. A chord's tolerance is relative to the slide
+/// that erases the memory, so many steps are as accurate as few.
 TEST(PartialSlip, ASlideThatTurnsIsFollowedWhateverTheNumberOfSteps) {
   struct Round {
     double share;  // fraction of the slide of gross slip

@@ -54,8 +54,7 @@ JointLaw law_of(const char* normal, const char* dissipation, const char* frictio
   return law;
 }
 
-// The default law evaluates k_t = 4 (G*/E*) 2 E* a, hertz_mindlin() 8 G* a. They differ by a few
-// roundings, which the spring propagates.
+// The default law uses k_t = 4 (G*/E*) 2 E* a, hertz_mindlin() 8 G* a, with different rounding.
 TEST(JointResponse, DefaultLawsAreHertzMindlin) {
   const JointLaw law = law_of("hertz_internal", "none", "mindlin", "material");
   RandomJoint joint;

@@ -61,10 +61,9 @@ TEST(NormalLaws, LineContactsAgainstHighPrecision) {
   expect_relative(esdu.elastic_energy, 0.00849385432061475483, rounding, "U");
 }
 
-// Independent values. The depth follows from the gap at phi = 0: Persson's pressure, integrated
-// with the logarithmic Green's function of disc and hole to 25 digits. The stiffness is a central
-// difference, accurate to 1e-11; the energy a quadrature of delta dF. epsilon is the half angle of
-// the contact arc.
+// Independent values. The depth follows from the gap at phi = 0: Persson's pressure, integrated to
+// 25 digits with the logarithmic Green's function. The stiffness is a central difference (1e-11),
+// the energy a quadrature of delta dF. epsilon is the half angle of the contact arc.
 TEST(NormalLaws, PerssonAgainstPressureIntegral) {
   const NormalState light = at("persson", 1e-6);
   expect_relative(light.force, 174.320828198019069, rounding, "F");
@@ -177,8 +176,8 @@ TEST(NormalLaws, BadInputIsNamed) {
   EXPECT_THROW(validate(joint, {nan}), std::invalid_argument);
 }
 
-// Restitution of an impact m delta'' = -F, integrated by RK4 until the force vanishes. The expected
-// value is the integral in damped_force().
+// Restitution of an impact m delta'' = -F, by RK4 until the force vanishes. Compare with the
+// integral in damped_force().
 double impact_restitution(const NormalLaw& law, double ratio, double v0) {
   const double mass = 1.0;
   const auto acceleration = [&](double x, double v) {

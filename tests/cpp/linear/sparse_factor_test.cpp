@@ -64,8 +64,8 @@ TEST(SparseFactor, TellsTheSignOfTheDeterminant) {
 
 TEST(SparseFactor, ChoosesOtherPivotsWhereThoseOfTheLastMatrixDoNotServe) {
   // All three matrices have the same pattern. The first one has its pivots on the diagonal. In the
-  // second, the diagonal is 1e-14 of the other entries, so the same pivots would leave two correct
-  // digits. In the third, the diagonal is zero.
+  // second, the diagonal is 1e-14 of the other entries and would leave two correct digits. In the
+  // third, the diagonal is zero.
   Eigen::Matrix3d dense;
   dense << 4.0, 1.0, 0.5, 1.0, 5.0, 1.0, 0.25, 1.0, 3.0;
   SparseFactor factor;

@@ -139,8 +139,8 @@ TEST(Run, FewestStepsAreThoseOfTheMethodsStability) {
     ASSERT_TRUE(is_taken(many));
     while (many - few > 1) (is_taken((few + many) / 2) ? many : few) = (few + many) / 2;
     EXPECT_LE(growth(zeta, 0.01 / many), 1.0) << zeta;
-    // At ζ = 0.3 the eigenvalues are far from both axes of the stability region, where the accepted
-    // step is more conservative.
+    // At ζ = 0.3, far from both axes of the stability region, the bound on the step is more
+    // conservative.
     EXPECT_GT(growth(zeta, 0.01 / (0.85 * few)), 1.0) << zeta;
   }
 }

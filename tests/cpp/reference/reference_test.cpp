@@ -361,8 +361,8 @@ TEST(Reference, EveryLawInFiftyDigits) {
     };
     const Big condition = r.normal.condition;
     note(c.names.normal + " force", state.force - r.normal.force, condition * r.normal.force);
-    // At the turning point of F, k is infinite, so the errors of k and of the damping grow with the
-    // square of the condition number.
+    // At the turning point of F, k is infinite, so errors of k and damping grow as the square of
+    // the condition number.
     note(c.names.normal + " stiffness", state.stiffness - r.normal.stiffness,
          condition * condition * r.normal.stiffness);
     note(c.names.normal + " energy", state.elastic_energy - r.normal.energy,

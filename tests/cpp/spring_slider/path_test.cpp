@@ -325,8 +325,8 @@ TEST(SpringSliderPath, CyclesThatAreLeftOutAreComputed) {
     EXPECT_EQ(some.displacement, all.displacement);
     EXPECT_EQ(some.thermal_work, all.thermal_work);
     EXPECT_EQ(some.stage, all.stage);
-    // Requested times lie in cycle 142. Stored are the first two cycles, 142 with its neighbours,
-    // and the last two: seven of 300 cycles, each equal to that of the complete path.
+    // The path stores seven of 300 cycles: the first two, 142 with its neighbours, and the last
+    // two. Each equals that of the complete path.
     std::vector<int> kept;
     std::size_t at = 0;
     for (const Segment& segment : path.segments) {
@@ -428,9 +428,9 @@ TEST(SpringSliderPath, EqualsSmallStepsForRandomModels) {
     if (run % 4 < 2) model.start_friction = StartFriction::frictionless;
     const auto [times, changes] = seven_changes(uniform);
     const Path path = solve(model, table(times, changes));
-    // Every reversal of the program coincides with a step. Between reversals the mapping clamps x
-    // to monotone bounds, so its result does not depend on the steps. Only rounding of l_T − l0
-    // remains, an ulp of 0.5 m in every step that slides.
+    // Every reversal of the program is a step. Between them the mapping clamps x to monotone
+    // bounds, so its result does not depend on the steps. Only rounding of l_T − l0 remains, an ulp
+    // of 0.5 m in every step that slides.
     const int steps = 400;
     const double tolerance = 7 * steps * 2e-16;
     // The block starts in the middle or, without friction, in the equilibrium of the springs.

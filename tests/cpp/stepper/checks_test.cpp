@@ -120,8 +120,8 @@ double time_of(const Scene& scene, long step) {
   return static_cast<double>(step) * scene.time_step;
 }
 
-/// Relative shortening of the link per kelvin. The length is never exactly 0 at a step, where the
-/// force would be infinite.
+/// Relative shortening of the link per kelvin. No step has exactly the length 0, where the force
+/// would be infinite.
 constexpr double shrinks = 0.9;  // [1/K]
 
 /// A crowd of joints with an additional link whose length becomes negative within a few steps.

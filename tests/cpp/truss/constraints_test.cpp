@@ -70,7 +70,7 @@ TEST(Constraints, AreTheLimitOfAStiffSpring) {
 }
 
 TEST(Constraints, LeverCarriesByItsRatio) {
-  // With u_B = 3 u_C, equilibrium is k u_B + k' u_C / 3 = F.
+  // For u_B = 3 u_C, equilibrium is k u_B + k' u_C / 3 = F.
   Model model = facing_bars();
   model.joints.clear();
   model.programs = {triangle(0.0)};
@@ -136,8 +136,8 @@ TEST(Constraints, RotateWithTheTruss) {
 }
 
 TEST(Constraints, CompatibleExpansionIsFreeOfForce) {
-  // All bars have equal thermal strain, so u = α ΔT X. This satisfies the constraint X_C u_B = X_B
-  // u_C along each axis.
+  // All bars have equal thermal strain, so u = α ΔT X, which satisfies X_C u_B = X_B u_C along each
+  // axis.
   Model model;
   model.programs = {triangle(100.0)};
   model.nodes = {node("A", 0, 0, 0), node("B", 1.0, 0.2, 2), node("C", 0.7, 1.1, 2),

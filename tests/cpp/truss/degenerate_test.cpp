@@ -153,7 +153,7 @@ TEST(Degenerate, BlocksThatSlipAtTheSameInstantAndLeaveAMechanismAreAnError) {
   } catch (const Failure& failed) {
     EXPECT_EQ(failed.fields().kind, FailureKind::friction_exhausted);
     EXPECT_EQ(failed.fields().joints.size(), 2u);
-    // The blocks slip when the bar force reaches the friction limit: E A α ΔT = f (1 + α ΔT).
+    // The blocks slip when E A α ΔT = f (1 + α ΔT).
     EXPECT_NEAR(*failed.fields().temperature_change, friction / (rigidity - friction) / expansion,
                 1e-6);
   }
@@ -247,7 +247,7 @@ TEST(Degenerate, ClearanceNearlyZeroHoldsAsNone) {
       for (const State& state : path.states) {
         EXPECT_LE(std::abs(slide(model, state)), clearance + 1e-18) << clearance;
       }
-      // On cooling the block sticks at its stop, because friction can carry the force of the bar.
+      // On cooling the block sticks at its stop: friction can carry the bar's force.
       EXPECT_NEAR(slide(model, path.states.back()), clearance, 1e-18) << clearance;
       EXPECT_LE(path.events.size(), 6u) << clearance;
     }

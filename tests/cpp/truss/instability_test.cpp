@@ -71,8 +71,8 @@ double footed_at(double stiffness, double x) {
   return (free / std::hypot(1.0, 0.1) - 1.0) / 1e-3;
 }
 
-/// Expects that solve() fails at the temperature `change` of the limit point, for several
-/// increments, with and without event location.
+/// Expects that solve() fails at temperature `change`, for several increments, with and without
+/// event location.
 /// @param coarsest fewest increments per branch for the runs without event location
 void expect_end(const Model& model, double change, double tolerance, int coarsest = 1) {
   for (const bool locate : {true, false}) {
@@ -194,8 +194,7 @@ TEST(Instability, SlipThatTheTrussOvertakesEndsThePathAtTheLimitPoint) {
 
 TEST(Instability, AStrutThatStaysStraightBeyondItsBucklingLoadIsRefused) {
   // Two collinear bars are compressed by heating. Their common pin buckles sideways when 2 P / L
-  // reaches the stiffness of its lateral spring, 2400 N/m at 100 K. No lateral force acts on the
-  // pin.
+  // reaches the lateral spring's stiffness, 2400 N/m at 100 K. No lateral force acts on the pin.
   const auto strut = [](double stiffness) {
     Model model;
     model.programs = {triangle(100.0)};

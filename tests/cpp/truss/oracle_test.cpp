@@ -114,8 +114,7 @@ Model random_truss(unsigned seed, int sliders) {
       movable.push_back(slider.first);
       movable.push_back(slider.second);
     }
-    // Links that are constrained carry E A times a strain of up to 3e-3, a few kN; friction forces
-    // cover this range.
+    // Constrained links carry E A times a strain of up to 3e-3, a few kN.
     slider.friction_force = draw.logarithmic(1.0, 1000.0);
     if (draw.happens(0.1)) slider.friction_force = 0.0;
     if (draw.happens(0.1)) slider.friction_force = 1e6;
@@ -196,7 +195,7 @@ TEST_P(Oracle, OrderOfPartsDoesNotMatter) {
 
 TEST_P(Oracle, RandomTrussesMinimiseTheirEnergy) {
   // Each test runs ten trusses. A change is located to 1e-9 of a branch, in which a joint slides a
-  // few mm, i.e. to 1e-12 m. Other joints have at most the same error.
+  // few mm: 1e-12 m. Other joints have no larger error.
   constexpr double tolerance = 1e-11;
   std::size_t events = 0;
   for (unsigned seed = 10 * GetParam(); seed < 10 * GetParam() + 10; ++seed) {

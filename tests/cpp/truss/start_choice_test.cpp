@@ -37,8 +37,8 @@ double jump(const Path& path) {
   return along(path.states.back()) - along(path.states.front());
 }
 
-/// Newton's tolerances at both ends of the cycle: 1e-13 of 1.2 mm for closures, and 1e-12 of 200 N
-/// for forces, which divided by k is 1.6e-16 m.
+/// Newton's tolerances at both ends of the cycle: 1e-13 of 1.2 mm for closures; 1e-12 of 200 N,
+/// over k 1.6e-16 m, for forces.
 constexpr double close = 2.0 * (1.2e-16 + 1.6e-16);
 
 TEST(StartChoice, BarStartsStuckOrWithoutFriction) {

@@ -278,8 +278,8 @@ TEST(Truss, SlipThatTurnsRoundWithinAStepIsLocated) {
   ASSERT_EQ(fine_turns.size(), 3u);  // one in each branch, and one at the corner between them
   for (const int increments : {1, 2, 5, 8, 30}) {
     for (const bool locate : {true, false}) {
-      // Without event location an increment over a whole branch detects no event, because both ends
-      // have the same position.
+      // Without event location, an increment over a whole branch shows no event: both ends have
+      // equal positions.
       if (!locate && increments == 1) continue;
       options.locate_events = locate;
       options.increments_per_branch = increments;
@@ -290,8 +290,8 @@ TEST(Truss, SlipThatTurnsRoundWithinAStepIsLocated) {
       const std::vector<double> found = turns(path);
       ASSERT_EQ(found.size(), fine_turns.size()) << increments;
       for (std::size_t i = 0; i < found.size(); ++i) {
-        // The overshoot is the slide of 1e-3 m times the square of the time delay, which is below
-        // 1e3 roundings of 1e-18 m.
+        // The overshoot, a slide of 1e-3 m times the squared delay, is below 1e3 roundings of 1e-18
+        // m.
         EXPECT_NEAR(found[i], fine_turns[i], 1e-6) << increments;
       }
     }
@@ -351,8 +351,8 @@ TEST(Truss, SlipEndsAtTheCornerHoweverLongTheIncrement) {
     ASSERT_NE(held + 1, path.events.end());
     EXPECT_EQ((held + 1)->before, JointStatus::stick);
     EXPECT_EQ((held + 1)->after, JointStatus::slip_minus);
-    // Solves: one for the start and, in each branch, one for the short step plus its increments. No
-    // solve searches an event.
+    // Solves: one at the start; in each branch one for the short step, plus the increments. None
+    // searches an event.
     EXPECT_EQ(path.solves, 1 + 2 * (1 + increments));
   }
 }

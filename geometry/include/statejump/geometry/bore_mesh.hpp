@@ -137,8 +137,8 @@ class BoreMesh {
                                          const std::vector<BoreContact>& previous = {}) const;
 
   /// Radii of the smooth wall [m] around the fitted axis, at the axial position z [m] from the
-  /// wall's middle and at the angles 2 pi i/count from axis_x() towards axis_y(). A radius is NaN
-  /// where there is no wall.
+  /// wall's middle, at angles 2 pi i/count from axis_x() towards axis_y(). NaN where there is no
+  /// wall.
   std::vector<double> section_radii(double z, int count) const;
 
   const Triangles& triangles() const;    ///< scaled and flipped, otherwise as given

@@ -200,8 +200,8 @@ TYPED_TEST(ElementContract, ThermalRateIsTheRateOfTheForceWhereNothingMoves) {
                         this->elements()[i].thermal_rate(this->frames[i], state, rates, writer);
                       })
             .residual;
-    // Thermal strain makes forces nonlinear in time. Over a second the effect is 1e-3; in the fifth
-    // derivative it is 1e-15.
+    // Thermal strain makes forces nonlinear in time. The effect is 1e-3 over a second, 1e-15 in the
+    // fifth derivative.
     const VectorXd difference = derivative(
         [&](double h) {
           const std::vector<double> then{60.0 + h * rates[0], -35.0 + h * rates[1]};
@@ -251,8 +251,8 @@ TYPED_TEST(ElementContract, WorksOfForceAndTemperatureAreTheChangeOfTheEnergy) {
     const double whole = unbalanced(duration);
     const double half = unbalanced(0.5 * duration);
     // The quadrature is of fourth order, so its error per step is of fifth order: half the step has
-    // 1/32 of the error. The factor 1/16 allows for sixth-order terms. The remaining error is
-    // rounding and that of Simpson's rule.
+    // 1/32 of the error. The factor 1/16 allows for sixth-order terms, and the second term for
+    // rounding and Simpson's rule.
     EXPECT_LE(half, whole / 16.0 + 1e-12 * stored) << this->elements()[i].name;
     EXPECT_LE(whole, 1e-3 * stored) << this->elements()[i].name;
   }

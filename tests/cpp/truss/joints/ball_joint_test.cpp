@@ -127,8 +127,7 @@ TEST(BallJoint, EnergyIsKeptWhateverTheIncrements) {
       return std::abs(relative_residue(path)) * path.states.back().joint_dissipation.sum() / work;
     };
     // Step halving and event location may each cause an energy error of the tolerance, with the
-    // same sign. Errors are relative to the largest work, which is less than twice the solver's
-    // scale.
+    // same sign. The scale is the largest work, less than twice the solver's.
     EXPECT_LT(lost(), 2.0 * options.energy_tolerance);
     // Without step halving more energy is lost.
     options.energy_tolerance = 1.0;

@@ -14,8 +14,8 @@ namespace statejump::truss {
 /// Compares the Jacobian of a truss with central differences of its residual at z, after a step
 /// from `before`, for each given status of the joints and with pinned joints. Also compares the
 /// time derivative of the residual at fixed unknowns.
-/// @param displacement_step, force_step steps of the unknowns [m], [N]; over them the residual must
-///     be nearly linear
+/// @param displacement_step, force_step steps of the unknowns [m], [N]; small, so that the residual
+///     is nearly linear
 /// @param between state after a preceding step; empty if there is none
 inline void check_gradients(const Model& model, const Eigen::VectorXd& z,
                             const Eigen::VectorXd& before, const std::vector<JointStatus>& branches,

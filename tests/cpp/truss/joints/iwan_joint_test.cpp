@@ -155,8 +155,8 @@ TEST(IwanJoint, IncrementsDoNotMatterAndEnergyIsKept) {
     EXPECT_NEAR(end.joint_dissipation[0], ends.front().joint_dissipation[0],
                 1e-9 * ends.front().joint_dissipation[0]);
   }
-  // The thermal work is a quadrature across the corners of the polygonal force law, so its error is
-  // of second order.
+  // The quadrature of the thermal work crosses corners of the polygon, so its error is of second
+  // order.
   EXPECT_LT(std::abs(residues[1]), 1e-4);
   EXPECT_LT(std::abs(residues[3]), 0.5 * std::abs(residues[1]));
 }
@@ -181,8 +181,8 @@ TEST(IwanJoint, HeatOfSmallCyclesGoesWithTheForceToThreePlusChi) {
     }
     forces.push_back(0.5 * (force(model, *top) - force(model, end)));
     heats.push_back(end.joint_dissipation[0] - start.joint_dissipation[0]);
-    // Closed-form heat: ∫ 4 φ (u − φ) R φ^χ dφ from 0 to u. The intervals have 1/20 of their slide
-    // φ, which causes a second-order error.
+    // Heat: ∫ 4 φ (u − φ) R φ^χ dφ from 0 to u. The interval length φ/20 causes a second-order
+    // error.
     const double amplitude = 0.5 * (slide(model, *top) - slide(model, end));
     share = std::pow(amplitude / last, chi + 1.0);
     const double closed = 4.0 * one.tangent_stiffness / (1.0 + one.stiffness_ratio) * share *

@@ -128,8 +128,8 @@ TEST(TrussPartialSlip, EnergyIsKeptToSecondOrderInTheIncrement) {
     options.increments_per_branch = increments;
     const State end = solve(model, options).states.back();
     const double left = std::abs(residue(end)) / end.joint_dissipation.sum();
-    // Relative energy residue: at the onset of gross slip the rates jump within an increment, which
-    // leaves 0.4/n² to 0.8/n² for n increments per branch.
+    // Energy residue: rates jump within an increment when gross slip begins. This leaves 0.4/n² to
+    // 0.8/n² for n increments.
     EXPECT_LT(left, 1.0 / increments / increments) << increments;
   }
 }

@@ -103,8 +103,8 @@ TEST(MotionBall, SlidesAroundItsSocketByItsOwnEquation) {
   const Vector3d aside = down.unitOrthogonal();
   const Vector3d along = down.cross(aside);
   // The ball starts beside the deepest point of the socket, perpendicular to the slope, so that the
-  // directions of motion and friction change. The run lasts a third of the time until friction
-  // would stop the ball.
+  // directions of motion and friction change. Friction would stop the ball after three times the
+  // duration.
   const double seconds = 0.02;
   const Vector3d place = clearance * (std::cos(0.6) * down + std::sin(0.6) * aside);
   const Vector3d speed = 0.08 * along;

@@ -31,7 +31,7 @@ TEST(ContactProblem, WorstContactIsTheOneThatLacksMostOfAVelocity) {
   // Friction is zero although the contacts slide at 1 and 0.9 and friction could stop both.
   EXPECT_EQ(worst({10.0, 0.0, 100.0, 0.0}, {-40.0, 1.0, -25.0, 0.9}), 0);
   EXPECT_EQ(worst({10.0, 0.0, 100.0, 0.0}, {-40.0, 0.8, -25.0, -0.9}), 1);
-  // Violations of the normal law and of friction add up: 1 + 1 for the first contact, 1.5 for the
+  // Violations of the normal law and of friction add up: 1 + 1 at the first contact, 1.5 at the
   // second.
   EXPECT_EQ(worst({10.0, 0.0, 0.0, 0.0}, {-39.0, 1.0, -1.5, 0.0}), 0);
 }

@@ -213,8 +213,8 @@ TEST(Motion, ContactProblemsAreSolvedOnlyWhereBranchesAreNotFound) {
       EXPECT_LT(motion.factorizations, motion.steps / 4);
     }
   }
-  // When a bar with elastic friction reaches its stop, the active-set iteration fails. The contact
-  // problem then reports its merit.
+  // The active-set iteration fails when a bar with elastic friction reaches its stop; the merit is
+  // reported.
   Model heated = bar(0.1);
   std::get<Slider>(heated.joints[0]).tangential_stiffness = 1e6;
   options = {};
@@ -286,7 +286,7 @@ TEST(Motion, ProgressEndsAMotion) {
 
 TEST(Motion, SlowHeatingFollowsTheQuasiStaticPath) {
   // Start, slip and reversals of the program excite oscillations of amplitude v sqrt(m/k),
-  // proportional to the heating rate. The error is of first order in the rate.
+  // so the error is of first order in the heating rate.
   const auto error = [](double seconds) {
     const Model model = bar(seconds);
     const double k = 70e9 * 9e-6 / 0.5;
@@ -380,7 +380,7 @@ Model rod_on_floor(double friction) {
 TEST(Motion, SlidesThatCannotGoOnAreNamed) {
   // Per newton of normal force the tip accelerates by 1 + 3 cos a (cos a -+ mu sin a) [1/kg]. At 60
   // degrees this is negative for mu > 1.347 if the tip moves towards the foot of the rod. The rod
-  // is stiff enough to be rigid in steps of 10 us.
+  // is so stiff that it is rigid in steps of 10 us.
   const double speed = 1.0;
   const auto first_step = [&](double friction, double towards, long steps) {
     const Model model = rod_on_floor(friction);

@@ -41,8 +41,8 @@ Motion thrown(const Model& model, long steps, double tolerance = 0.0) {
 }
 
 TEST(MotionRings, BlockSlidesAndSwingsAsInExplicitSteps) {
-  // The block first slips completely, then oscillates within the friction bound, which dissipates
-  // energy in every period.
+  // The block first slips completely, then oscillates within the friction bound and dissipates in
+  // every period.
   const Model model = in_part(block(100.0, 0.03));
   MotionOptions options;
   options.steps = options.sample_every = 40000;

@@ -134,8 +134,8 @@ TEST(MotionSize, SystemsOfAStepDoNotGrowWithTheJointsThatSlip) {
 }
 
 TEST(MotionSize, FrictionJustWithinItsBoundHoldsWithoutAContactProblem) {
-  // A friction force this close to its bound occurs among ten thousand joints. The slider must not
-  // switch to slip, because the iteration would switch it back.
+  // Among ten thousand joints, one is this close to its bound. It must not switch to slip, because
+  // the iteration would switch it back.
   Model model;
   model.programs = {lasting(0.1)};
   model.nodes = {node("B", 0, 0, 1)};

@@ -192,8 +192,8 @@ TEST(SmoothSteps, KeepTheirOrderOverChangesOfBranches) {
     // Order five: a quarter of the step divides the error by 4^5 = 2^10. Measured are 2^9.8 to
     // 2^10.
     EXPECT_GT(std::log2(by), 9.0) << (coarse.place - exact).norm();
-    // Located status changes cause errors as small as those of a run without changes. If changes
-    // were accepted only at ends of steps, the error would be a thousand times larger.
+    // Located status changes cause errors as small as without changes. With changes only at ends of
+    // steps, the error would be a thousand times larger.
     const double error = (fine.place - exact).norm();
     if (rubs.least_changes == 0) smooth_error = error;
     EXPECT_LT(error, 20.0 * smooth_error + 1e-15);

@@ -46,7 +46,7 @@ struct ContactResponse {
   double damping_dissipation;        ///< of this step [J], >= 0
 };
 
-/// Checks the parameters of a contact. Call this function whenever they are set.
+/// Checks the parameters of a contact. Call it whenever they are set.
 /// @throws std::invalid_argument that names the field, its value and its range.
 inline void validate(const ContactParameters& parameters) {
   const auto positive = [&](double value, const char* name, const char* range) {

@@ -212,8 +212,8 @@ inline BallContact outer_ball_contact(const BodyMotion& ball_1, double radius_1,
 ///     delta = R - (w - (r_1 - r_2) . n),   P = r_1 + (R - delta/2) n,
 ///
 /// where w is the distance of the wall from the slot's centre. The velocities are those of the
-/// material at P, as in revolute_contact(). The effective radius is R, because the wall is flat.
-/// There is no square root and no division.
+/// material at P. The effective radius is R, because the wall is flat. Cost: no square root, no
+/// division.
 /// @param slider body 1, whose centre is the pad's centre of curvature
 /// @param pad_radius R [m], > 0
 /// @param slot body 2

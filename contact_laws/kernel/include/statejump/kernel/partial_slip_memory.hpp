@@ -117,8 +117,8 @@ class PartialSlipMemory {
     prefix_.count = 0;
   }
   /// Makes the first `count` points the prefix, which must be empty.
-  /// @param at_centre, at_last values of an upper bound of |U| at the centre and at the last point;
-  ///     it is linear in x^2 [m]
+  /// @param at_centre, at_last upper bound of |U|, linear in x^2, at the centre and the last point
+  ///     [m]
   void set_prefix(int count, double at_centre, double at_last);
 
  private:

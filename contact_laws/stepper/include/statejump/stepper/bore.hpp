@@ -38,7 +38,7 @@ struct BoreGeometry {
 };
 
 /// Physics of a pair. The members are the attributes of BorePhys. Forces and stiffnesses are sums
-/// over its contacts.
+/// over contacts.
 struct BorePhysics : ContactPhysics {
   std::vector<ContactPhysics> contacts;
 };

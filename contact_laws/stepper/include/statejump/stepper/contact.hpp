@@ -336,8 +336,8 @@ template <class Physics, class Host>
 }
 
 /// Makes one step with the Hertz–Mindlin law.
-/// @return false if the contact is open, true if it touches. If the check fails, the result is
-///     true, but no forces are applied.
+/// @return false if the contact is open, true if it touches. After a failed check it is true, but
+///     no forces are applied.
 template <class Geometry, class Physics, class Host>
 bool hertz_mindlin_step(const Geometry& geometry, Physics& physics, Host&& host) {
   ScopedHistory scoped(geometry, physics);
@@ -417,8 +417,8 @@ struct FirstTouch {
 
 /// Makes one step with named laws. The contact must have no Misfit. If it touches, begin() must
 /// have been called.
-/// @return false if the contact is open, true if it touches. If the check fails, the result is
-///     true, but no forces are applied.
+/// @return false if the contact is open, true if it touches. After a failed check it is true, but
+///     no forces are applied.
 /// @throws std::domain_error outside the range of a law
 template <class Law, class Geometry, class Physics, class Host>
 bool joint_law_step(const Law& law, const Geometry& geometry, Physics& physics,

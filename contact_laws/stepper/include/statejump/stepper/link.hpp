@@ -186,8 +186,8 @@ inline Quaternion rotation_in_plane(const Vector3& from, const Vector3& to,
 /// Rotates the tip with its link and returns the force on the tip [N] that carries its moment.
 ///
 /// The contacts of this step load the tip with a moment M. A couple of forces +-(M x u) / L at the
-/// ends of the link (direction u, length L) replaces it, except for its component along the link: u
-/// L x (M x u) / L = M - (M.u) u.
+/// ends of the link replaces it, except for the component along the link: u L x (M x u) / L = M -
+/// (M.u) u.
 /// @param moment M [N m]; @param orientation, spin of the tip, updated
 inline Vector3 rotate_tip(Link& link, const LinkStep& step, const Vector3& moment,
                           Quaternion& orientation, Vector3& spin) {
@@ -271,9 +271,9 @@ struct Torsion {
   double slipAngle = 0;          ///< s_f [rad]
 };
 
-/// A spring counts as planar if the unit directions of its links have components along its axis of
-/// at most this size. Rounding in a rotated plane is far smaller. The neglected terms are of order
-/// of its square.
+/// Largest component of a link's unit direction along the spring's axis with which a spring counts
+/// as planar. Rounding in a rotated plane is far smaller. Neglected terms are of order of its
+/// square.
 constexpr double largest_tilt = 1e-6;
 
 inline bool is_planar(const Span& span, const Vector3& axis) {

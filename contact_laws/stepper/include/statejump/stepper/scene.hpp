@@ -50,8 +50,8 @@ class Scene {
   FirstTouch begun, begun_in_bores;
   bool any_contact = false;  ///< a contact was computed since the arrays were filled
 
-  /// Function that creates the physics of the contact with a given index when this contact begins.
-  /// It returns nothing for invalid materials.
+  /// Creates the physics of the contact with a given index when it begins; nothing for invalid
+  /// materials.
   using CreatePhysics = std::function<std::optional<ContactPhysics>(std::size_t)>;
 
   /// Function called in the last step of a run, between forces and motion. Positions, forces and

@@ -10,8 +10,7 @@
 namespace statejump::yade_abi {
 
 #pragma GCC diagnostic push
-// The classes have virtual functions, for which offsetof is not standard. GCC lays out single
-// inheritance as offsetof assumes.
+// The classes have virtual functions. GCC lays out single inheritance as offsetof assumes.
 #pragma GCC diagnostic ignored "-Winvalid-offsetof"
 
 static_assert(sizeof(yade::Vector3r) == 24 && alignof(yade::Vector3r) == 8);

@@ -15,7 +15,7 @@ struct ImpactParameters {
   double impact_speed = 1.0;  ///< delta_dot_0 [m/s], > 0: approach speed when the contact began
 };
 
-/// Checks restitution e and impact speed. Call this function whenever they are set. Some laws
+/// Checks restitution e and impact speed. Call it whenever they are set. Some laws
 /// reject e = 0, see restitution_of().
 inline void validate(const ImpactParameters& impact) {
   check(parameter::restitution_from_zero, impact.restitution);

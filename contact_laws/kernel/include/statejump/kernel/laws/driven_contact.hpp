@@ -66,7 +66,7 @@ inline NormalGeometry driven_geometry(double effective_radius, double radial_cle
   return {journal_radius, journal_radius + radial_clearance, contact_length};
 }
 
-/// Checks a driven contact. Call this function whenever the contact is set.
+/// Checks a driven contact. Call it whenever the contact is set.
 /// @throws std::invalid_argument that names the field, its value and its range, or the law that
 ///        needs a missing field
 inline void validate(const DrivenContact& contact) {

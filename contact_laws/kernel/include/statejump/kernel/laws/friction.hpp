@@ -20,7 +20,7 @@ struct FrictionParameters {
   double v1 = parameter::v1.default_value;  ///< [m/s]; ambrosio: full friction for v >= v1
 };
 
-/// Checks friction parameters. Call this function whenever they are set.
+/// Checks friction parameters. Call it whenever they are set.
 /// @throws std::invalid_argument that names the field, its value and its range
 inline void validate(const FrictionParameters& parameters) {
   check(parameter::friction_coefficient, parameters.friction_coefficient);

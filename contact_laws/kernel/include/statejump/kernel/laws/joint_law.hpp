@@ -54,7 +54,7 @@ inline std::string incompatibility(const JointLaw& law) {
          names_with<NormalLaw>(Trait::point_contact) + ", not '" + law_info(law.normal).name + "'";
 }
 
-/// Checks the parameters and whether the laws are compatible. Call this function whenever they are
+/// Checks the parameters and whether the laws are compatible. Call it whenever they are
 /// set.
 /// @throws std::invalid_argument that names the field, its value and its range
 inline void validate(const JointLaw& law) {

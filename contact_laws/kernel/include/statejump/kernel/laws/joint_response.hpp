@@ -119,10 +119,9 @@ JointResponse joint_response(const Law& law, const ContactParameters& parameters
 }
 
 /// Change of the potential V(delta, R1, R2) of the normal law when only the radii change, at fixed
-/// depth [J]. The effect of the radii on the depth, -F dc, is not included. Subtracting V after and
-/// before one time step would lose too many digits. So a central difference along the change of the
-/// radii is used, with a step of 1e-5 times the smaller of clearance and R1. Its relative error is
-/// about 1e-9.
+/// depth [J]. The effect of the radii on the depth, -F dc, is not included. The change in one time
+/// step is too small to subtract two values of V. A central difference along the change is used,
+/// with a step of 1e-5 of the smaller of clearance and R1. Its relative error is about 1e-9.
 /// @param depth [m]; @param before, after radii at both ends of the step [m]
 template <class Law>
 double radius_energy_change(const Law& law, const NormalMaterial& material, double depth,

@@ -74,7 +74,7 @@ struct LawParameter {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 };
 
-/// Checks a parameter. Call this function whenever it is set.
+/// Checks a parameter. Call it whenever it is set.
 /// @throws std::invalid_argument that names the parameter, its value and its range
 inline void check(const LawParameter& parameter, double value) {
   if (parameter.allows(value)) return;

@@ -40,7 +40,7 @@ struct NormalState {
   double elastic_energy;  ///< integral of F over delta [J], >= 0
 };
 
-/// Checks geometry and material. Call this function whenever they are set, because the laws do not
+/// Checks geometry and material. Call it whenever they are set, because the laws do not
 /// check them.
 /// @throws std::invalid_argument that names the field, its value and its range
 inline void validate(const NormalGeometry& geometry, const NormalMaterial& material) {

@@ -70,8 +70,7 @@ struct PaperVelocity {
   }
 
  private:
-  /// Applies the matrix n n^T + (delta/|d|) (1 - n n^T), which is symmetric and thus its own
-  /// transpose.
+  /// Applies n n^T + (delta/|d|) (1 - n n^T), a symmetric matrix, i.e. its own transpose.
   static Vector3 across(const JointContact& contact, const Vector3& v) {
     const double fraction =
         contact.eccentricity > 0.0 ? contact.penetration_depth / contact.eccentricity : 0.0;
