@@ -33,8 +33,8 @@ struct ThermalShape : RegisteredIndexable<ThermalShape, yade::Shape> {
       "no "
       "residue.";
   Real thermalStrain = 0;
-  // Strain rate over the last step [1/s], from which a law computes when within the step an
-  // expanding joint closed. The engine sets it in every step, so it is not saved.
+  // Strain rate over the last step [1/s], which gives the time within the step when an expanding
+  // joint closed. It is set in every step, so it is not saved.
   Real thermalStrainRate = 0;
   ThermalShape() { createIndex(); }
   void check() const;

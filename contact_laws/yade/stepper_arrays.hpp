@@ -53,8 +53,7 @@ class JointArrays {
   std::vector<std::size_t> interactions_;  // index of each contact in YADE's container
   std::vector<std::pair<ThermalShape*, std::size_t>> heated_;  // shapes and index of their strain
   std::unordered_map<const ThermalShape*, std::size_t> strains_;  // index of each shape's strain
-  // Index of a strain that several bodies share for the whole run, by heater, expansion
-  // coefficient, strain and rate.
+  // Indices of strains that bodies share, by heater, expansion coefficient, strain and rate.
   std::map<std::tuple<std::size_t, Real, Real, Real>, std::size_t> common_strains_;
   std::map<const ThermalProgram*, std::size_t> programs_;
 };

@@ -13,8 +13,8 @@ namespace {
 using ConstVector = Eigen::Map<const Vector3>;
 using Vector = Eigen::Map<Vector3>;
 
-// Layout of the track. Its header contains the position of the last search and the travel for which
-// this search is valid.
+// Layout of the track. The header has the position of the last search and the travel for which it
+// is valid.
 enum Header {
   at_centre = 0,
   at_axis = 3,

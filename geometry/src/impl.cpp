@@ -149,7 +149,7 @@ void BoreMesh::Impl::make_jets(int degree) {
       seen[v] = v;
       std::size_t done = 0;
       // If the first ring alone exceeds most_neighbours, two complete rings are used. Part of a
-      // ring would leave one side undetermined; a single ring does not determine the fourth order.
+      // ring leaves one side undetermined; one ring does not determine the fourth order.
       std::size_t taken = most_neighbours;
       for (int rings = 0; rings < 6; ++rings) {
         const std::size_t last = ring.size();

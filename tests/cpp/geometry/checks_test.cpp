@@ -429,8 +429,8 @@ TEST(BoreChecks, VertexWithManyNeighboursIsFittedToAllOfThem) {
 }
 
 TEST(BoreChecks, TooCoarse) {
-  // Three to six facets around the bore do not determine the fitted polynomials. Such meshes once
-  // gave depths of 1e7 m.
+  // Three to six facets around the bore do not determine the fitted polynomials. They once gave
+  // depths of 1e7 m.
   for (const int around : {3, 4, 5, 6})
     for (const int along : {1, 2, 4, 20}) {
       const std::string failure = refusal(bore_triangles(round_bore(), around, along));

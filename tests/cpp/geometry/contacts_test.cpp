@@ -85,8 +85,8 @@ TEST(BoreContacts, ThreeLobesTouchThrice) {
     EXPECT_NEAR(contact.depth, 1e-7, 1e-11);
     const double angle = std::atan2(contact.point.y(), contact.point.x()) - 0.3;
     EXPECT_NEAR(std::cos(3 * angle), -1, 1e-9);
-    // Wall r = R + a cos(3t): its curvature is (r - 9 a)/r^2 at the minimum of r, here negative
-    // because the wall is concave.
+    // Wall r = R + a cos(3t): curvature (r - 9 a)/r^2 at the minimum of r; concave, so it is
+    // negative here.
     const double r = smallest;
     EXPECT_NEAR(contact.section_curvature, -(r - 9e-5) / (r * r), 1e-4 / r);
   }

@@ -30,8 +30,8 @@ using Eigen::Vector2d;
 constexpr auto rigid = TangentialCompliance::rigid;
 constexpr auto mindlin = TangentialCompliance::mindlin;
 
-/// The stress-free angle of the torsion spring differs from the ideal flare angle, so the spring
-/// always loads the joint.
+/// The torsion spring's stress-free angle is not the ideal flare angle, so the spring always loads
+/// the joint.
 linkage::Linkage biased(double mu, double bias = 0.05, double stiffer = 1.0) {
   linkage::Linkage model = umbrella();
   model.law.friction = kernel::laws::friction_law(mu > 0.0 ? "mindlin" : "none");
@@ -522,8 +522,8 @@ TEST(ElasticLoop, SlowDampedDynamicsTendsToIt) {
 
 TEST(ElasticLoop, SlowDampedDynamicsCreepsAsMuchWithPartialSlip) {
   // Without gross slip the motion does not lag behind a friction limit, so the error is A/T^2 +
-  // B/T^3 + ... for duration T. Richardson extrapolation leaves the B term, less than a quarter of
-  // the last error.
+  // B/T^3 + ... for duration T. Richardson extrapolation leaves the B term, below a quarter of the
+  // last error.
   linkage::Linkage model = with_partial_slip(biased(0.4));
   model.axial_damping_ratio = 0.1;
   model.pin_damping = 0.1;

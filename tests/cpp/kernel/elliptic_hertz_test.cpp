@@ -62,8 +62,8 @@ TEST(EllipticHertz, AgreesWithJohnsonByArithmeticGeometricMean) {
     const double larger = 3.9;
     const EllipticShape shape = elliptic_shape({larger, larger / ratio, 0});
     const Reference expected = reference(larger, static_cast<long double>(larger / ratio));
-    // Near the circle the reference loses digits by cancellation: at ratio 1.01, K - E is 1e-2 of
-    // K, so its error is 1e-16.
+    // Near the circle the reference loses digits: at ratio 1.01, K - E is 1e-2 of K and has an
+    // error of 1e-16.
     EXPECT_NEAR(shape.short_axis / shape.long_axis, expected.axes, 1e-12 * expected.axes);
     EXPECT_NEAR(shape.long_axis, expected.long_axis, 1e-12 * expected.long_axis);
     EXPECT_NEAR(shape.stiffness, expected.stiffness, 1e-12 * expected.stiffness);
@@ -150,8 +150,8 @@ TEST(EllipticHertz, MonotonicInTheRatio) {
 }
 
 TEST(EllipticHertz, RelativeCurvatures) {
-  // A journal in a bore with parallel axes is a line contact. At a right angle the curvatures are
-  // 1/R1 and -1/R2.
+  // Journal in a bore: parallel axes give a line contact, perpendicular axes the curvatures 1/R1
+  // and -1/R2.
   const RelativeCurvature line = relative_curvature(200, 0, -196, 0, 0);
   EXPECT_DOUBLE_EQ(line.larger, 4);
   EXPECT_DOUBLE_EQ(line.smaller, 0);

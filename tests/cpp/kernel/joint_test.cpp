@@ -162,8 +162,8 @@ TEST(Revolute, RefusesABearingThatDoesNotHoldTheJournal) {
   const BodyMotion body = at(Vector3::Zero());
   EXPECT_THROW(revolute_contact(body, 5e-3, body, 5e-3, Vector3::UnitZ()), std::invalid_argument);
   EXPECT_THROW(revolute_contact(body, 5e-3, body, 4e-3, Vector3::UnitZ()), std::invalid_argument);
-  // The fast check must accept a bearing smaller than its journal, so that revolute_contact()
-  // reports the error.
+  // The fast check must accept a bearing smaller than its journal, which revolute_contact()
+  // reports.
   EXPECT_TRUE(revolute_touches(body.position, 5e-3, body.position, 4.9e-3, Vector3::UnitZ()));
   EXPECT_TRUE(revolute_touches(body.position, 5e-3, body.position, 5e-3, Vector3::UnitZ()));
   const double infinity = std::numeric_limits<double>::infinity();
@@ -295,8 +295,7 @@ TEST(Transport, SpecialCases) {
 }
 
 // A journal rolls around its bearing a hundred times in small steps. All normals lie in one plane
-// (no holonomy), so the tangential force must return to its initial value without loss of
-// magnitude.
+// (no holonomy), so the tangential force must return to its initial value.
 TEST(Transport, DoesNotDriftOverManySteps) {
   Vector3 force(0, 3, 4);
   Vector3 normal = Vector3::UnitX();

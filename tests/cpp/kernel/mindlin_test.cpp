@@ -10,7 +10,7 @@ namespace {
 
 using testing::Random;
 
-/// Work done on the contact in one step, by the mean of the forces at both ends of the step.
+/// Work done on the contact in one step, by the mean of both end forces.
 double work(const Vector3& old_force, const Vector3& new_force, const Vector3& slide) {
   return -0.5 * (old_force + new_force).dot(slide);
 }
@@ -38,15 +38,15 @@ TEST(Mindlin, SlipHoldsTheCoulombLimitAgainstTheSlide) {
   EXPECT_NEAR(history.tangential_force.x(), -1.8, 1e-15);
   EXPECT_NEAR(history.tangential_force.y(), 2.4, 1e-15);
   EXPECT_NEAR(energy.elastic, 4.5e-6, 1e-20);  // 1/2 3^2/1e6
-  // loss = work - energy: 1/2 * 3 N * 5 um - 4.5 uJ, where the force rises from 0
+  // work minus energy: 1/2 * 3 N * 5 um - 4.5 uJ; the force rises from 0
   EXPECT_NEAR(energy.dissipation, 3e-6, 1e-20);
   const MindlinEnergy steady = mindlin_step(1e6, 3.0, Vector3(3e-6, -4e-6, 0), history);
   EXPECT_NEAR(steady.dissipation, 15e-6, 1e-19);  // limit times the whole slide
 }
 
-// Triangle wave of slide with amplitude X under constant load. Closed form of a spring in series
-// with a Coulomb slider: the loop is a parallelogram that dissipates 4 L (X - L/k) if X > L/k, with
-// the friction limit L.
+// Triangle wave of slide with amplitude X under constant load. A spring in series with a Coulomb
+// slider has a parallelogram as loop, which dissipates 4 L (X - L/k) if X > L/k, L = friction
+// limit.
 TEST(Mindlin, LoopDissipation) {
   const double k = 2e7;
   const double limit = 30.0;

@@ -23,7 +23,7 @@ inline double gross(double depth) {
 }
 
 /// Memory of a contact after `steps` random steps, including loss and return of contact.
-/// @param way converts a signed slide [m] into a slide vector in the tangent plane
+/// @param way converts a signed slide [m] into a vector in the tangent plane
 template <class Way>
 PartialSlipMemory random_history(Random& random, int steps, Way&& way) {
   PartialSlipMemory memory;

@@ -170,8 +170,8 @@ TEST(JointResponse, VelocityAndWrenchBelongTogether) {
   }
 }
 
-// The damped force is F (1 + (chi/K) v). The impact speed in chi is that of the contact, but at
-// least smallest_impact_speed.
+// The force is F (1 + (chi/K) v); chi uses the impact speed of the contact, but at least
+// smallest_impact_speed.
 TEST(JointResponse, DissipationUsesTheImpactSpeed) {
   JointLaw law = law_of("hertz_internal", "hunt_crossley", "none", "material");
   law.smallest_impact_speed = 0.02;
@@ -247,8 +247,7 @@ TEST(RadiusEnergyChange, TurnsItsSignWithTheChange) {
         NormalGeometry{5.001e-3, 5.103e-3, 0.01}}) {
     const double there = radius_energy_change(HertzInternal{}, material, 2e-6, one, other);
     const double back = radius_energy_change(HertzInternal{}, material, 2e-6, other, one);
-    // Both directions evaluate the same difference. V is rounded, which matters relative to a step
-    // of 1e-5.
+    // Both directions evaluate the same difference. V is rounded, relative to a step of 1e-5.
     EXPECT_NEAR(there, -back, 1e-10 * std::abs(there));
     EXPECT_NE(there, 0.0);
   }

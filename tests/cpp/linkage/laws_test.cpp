@@ -107,8 +107,8 @@ TEST(LinkageLaws, FrictionSeesTheMaterialAtTheContactPoint) {
     for (const double turn_bc : {7e-4, -9e-4}) {
       state.bearing_velocity = turn_ab * Eigen::Vector2d(-ab.y(), ab.x());
       state.journal_velocity = turn_bc * Eigen::Vector2d(-bc.y(), bc.x());
-      // Velocity along (0, 1) at the contact point, which is half-way between the surfaces, 5.1 mm
-      // + 5 nm from the bearing's centre.
+      // Velocity along (0, 1) at the contact point half-way between the surfaces, 5.1 mm + 5 nm
+      // from the bearing's centre.
       const double speed = turn_bc * (bc.x() + 5e-3 - 5e-9) - turn_ab * (ab.x() + 5.1e-3 + 5e-9);
       const double share = (std::abs(speed) - 1e-5) / 9e-5;
       ASSERT_TRUE(share > 0.1 && share < 0.99) << share;

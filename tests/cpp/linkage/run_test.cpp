@@ -150,8 +150,7 @@ TEST(Run, RepeatsBitForBitAndStopsWhenUnstable) {
   const linkage::Run second = matched(umbrella(), heating(), 20000, 100);
   ASSERT_EQ(first.samples.size(), 201u);
   EXPECT_EQ(first.samples.back().state.journal_centre, second.samples.back().state.journal_centre);
-  // For AB, ω = 8695 rad/s, so the largest stable step is 2.78/ω = 0.32 ms. A longer step is
-  // rejected.
+  // For AB, ω = 8695 rad/s, so steps above 2.78/ω = 0.32 ms are rejected.
   const State rest = initial_state(umbrella(), Start::rest, 0.0);
   EXPECT_THROW(simulate(umbrella(), heating(), rest, {3120, 0}), std::invalid_argument);
   EXPECT_NO_THROW(simulate(umbrella(0.3e-3), heating(), rest, {3135, 0}));

@@ -283,8 +283,8 @@ TEST(RestInBore, Shoulder) {
   ASSERT_EQ(corner.parts.size(), 1u);
   EXPECT_EQ(corner.area + corner.length + corner.diameter, 0.0);
   EXPECT_NEAR((corner.parts[0].representative - Vector3d(c, 0, b)).norm(), 0.0, 1e-18);
-  // Without friction, a force perpendicular to the axis has a line of rest positions over the whole
-  // height.
+  // Without friction, a force perpendicular to the axis has a line of rest positions, as long as
+  // the bore.
   const RestSet line = rest_in_bore(c, b, {{1.0, 0.0, 0.0}}, 0.0).any;
   ASSERT_EQ(line.parts.size(), 1u);
   EXPECT_NEAR(line.length, 2.0 * b, 1e-18);

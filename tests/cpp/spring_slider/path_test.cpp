@@ -36,7 +36,7 @@ void expect_events(const Path& path, const std::vector<Expected>& expected) {
   }
 }
 
-// Temperature change at slip: the root of E A (α l0 ΔT − x) = s f l0 (1 + α ΔT) in closed form.
+// ΔT at slip: closed-form root of E A (α l0 ΔT − x) = s f l0 (1 + α ΔT).
 double root(double x, double s) {
   return (EA * x + s * f * l0) / (alpha * l0 * (EA - s * f));
 }
@@ -348,8 +348,8 @@ TEST(SpringSliderPath, CyclesThatAreLeftOutAreComputed) {
 }
 
 TEST(SpringSliderPath, MemoryOfALongProgramIsThatOfTheTimes) {
-  // The path stores the same segments for any number of cycles. Only the displacement at the end of
-  // each cycle is added.
+  // The path stores equally many segments for any number of cycles, plus one end displacement per
+  // cycle.
   const auto kept = [](int cycles) {
     const thermal::Program program = cycle(thermal::Shape::sine, cycles);
     const Eigen::Vector2d ends(0.0, program.duration());

@@ -187,8 +187,8 @@ TEST(Degenerate, SlipThatStopsAtACornerGoesOnAtTheNextOne) {
 
 TEST(Degenerate, StopThatIsReachedAsTheTemperatureTurns) {
   const double farthest = sliding(100.0, 1.0);
-  // The block reaches its stop at the reversal, or earlier or later by rounding, by the event
-  // tolerance or by 1 nm.
+  // The block reaches its stop at the reversal, or misses it by rounding, by the event tolerance or
+  // by 1 nm.
   for (const double early : {0.0, 1e-16, -1e-16, 1e-15, -1e-15, 1e-12, -1e-12, 1e-9, -1e-9}) {
     for (const bool locate : {true, false}) {
       Model model = bar(triangle(100.0));

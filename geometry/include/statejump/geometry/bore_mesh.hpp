@@ -129,9 +129,9 @@ class BoreMesh {
                                     double maximum_gap,
                                     const std::vector<BoreContact>& previous = {}) const;
 
-  /// Contacts of a ball in a socket or bore, found like contacts(): local minima of the distance
-  /// between wall and centre. BoreContact::section_curvature is the smaller principal curvature,
-  /// axial_curvature the larger one.
+  /// Contacts of a ball in a socket or bore: local minima of the distance between wall and centre.
+  /// BoreContact::section_curvature is the smaller principal curvature, axial_curvature the larger
+  /// one.
   std::vector<BoreContact> ball_contacts(const Eigen::Vector3d& ball_centre, double ball_radius,
                                          double maximum_gap,
                                          const std::vector<BoreContact>& previous = {}) const;

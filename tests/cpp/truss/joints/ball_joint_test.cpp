@@ -95,8 +95,8 @@ TEST(BallJoint, OpensAndClosesWhereTheRodThatPressesItIsAsLongAsTheWay) {
                  {"Y", 3, 1, 1e9, 10.0, 0.0, 0, 1.0},
                  {"Z", 4, 1, 1e9, pressed, expansion, 0, 1.0}};
   const Path path = solve(model);
-  // As the load tends to zero, the friction bound vanishes before the tangential deflection does.
-  // So the contact slips before it opens.
+  // As the load vanishes, so does the friction bound, but not the tangential deflection. The
+  // contact slips before it opens.
   const JointStatus expected[] = {JointStatus::stick, JointStatus::slip_plus, JointStatus::open,
                                   JointStatus::stick};
   ASSERT_GE(path.events.size(), 3u);

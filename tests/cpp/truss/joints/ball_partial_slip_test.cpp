@@ -87,8 +87,8 @@ TEST(BallPartialSlip, IncrementsMatterToFirstOrderAndEnergyIsKeptToTheChords) {
     } else {
       off[increments == 50 ? 0 : 1] = (moved - fine).norm() / fine.norm();
     }
-    // Each chord has an error of 1e-4 of the limit, and several chords lie within the slide that
-    // erases the memory. More steps have more chords.
+    // A chord has an error of 1e-4 of the limit; several lie within the slide that erases the
+    // memory. More steps have more chords.
     EXPECT_LT(std::abs(relative_residue(path)), 3e-4) << increments;
     double before = 0.0;
     for (const State& state : path.states) {

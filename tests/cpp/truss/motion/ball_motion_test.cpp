@@ -140,9 +140,8 @@ TEST(MotionBall, MovesAsTheJournalDoesInAPlane) {
   MotionOptions options;
   options.steps = 4000;
   options.sample_every = 400;
-  // Ball and journal have the same law, in three and in two dimensions. The ball may also have
-  // friction components across its direction. Both share the linear start of the force over the
-  // depth.
+  // Ball and journal have the same law, in three and two dimensions. The ball may have friction
+  // components across its direction. Both share the linear start of the depth.
   expect_ball_moves_as_journal(
       [&](const Model& model) { return simulate(model, rib_inertia(), options); }, 1e-6, 1e-4);
 }

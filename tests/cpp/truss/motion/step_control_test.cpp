@@ -54,7 +54,7 @@ TEST(StepControl, ErrorsFallWithTheToleranceAtSecondOrder) {
   const double close = error(1e-9, many);
   // The error of a step is proportional to h³, so a tolerance 1000 times smaller needs 10 times the
   // steps. The global error, proportional to h², then decreases by 100. Step lengths are powers of
-  // two, which blurs both ratios.
+  // two.
   EXPECT_NEAR(std::log2(static_cast<double>(many) / static_cast<double>(few)), std::log2(10.0),
               0.7);
   EXPECT_NEAR(std::log2(coarse / close), std::log2(100.0), 1.4);

@@ -143,8 +143,8 @@ struct CyclePlace {
 };
 
 /// Position of the time 0 <= t < duration in its cycle. The division may round across the end of a
-/// cycle; the loops correct this. Cycles then end exactly at the products k·period, where the
-/// differences are zero.
+/// cycle; the loops correct this. Cycles end at the products k·period, where the differences are
+/// zero.
 inline CyclePlace cycle_place(const Program& program, double t) {
   double k = std::floor(t / program.period);
   while (k > 0.0 && t < k * program.period) k -= 1.0;

@@ -63,8 +63,8 @@ inline double revolute_penetration(const Vector3& journal_centre, double journal
 }
 
 /// Returns whether journal and bearing touch, i.e. revolute_penetration() > 0. It compares squares,
-/// so no square root is needed. Both functions may disagree within rounding, |delta| of about 1e-16
-/// of the clearance. A bearing not larger than the journal counts as touching, so that
+/// without a square root. Both functions may disagree within rounding, |delta| of about 1e-16 of
+/// the clearance. A bearing not larger than the journal counts as touching, so that
 /// revolute_contact() reports it. NaN positions count as touching too, so that the depth becomes
 /// NaN.
 inline bool revolute_touches(const Vector3& journal_centre, double journal_radius,

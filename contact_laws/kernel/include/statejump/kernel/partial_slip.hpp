@@ -365,8 +365,8 @@ class PartialSlipStep {
   /// that change the force least.
   void store_memory() {
     double merged = old_.merged();
-    // When the contact grows along a straight path, its old edge lies on a line between neighbours;
-    // in small steps along a curve it lies near one. The threshold is a thousandth of the least
+    // When the contact grows, its old edge lies on a line between neighbours if the path is
+    // straight, and near one in small steps of a curve. The threshold is a thousandth of the least
     // merged change.
     const double nothing = edge_ > old_edge_ ? 1e-3 * least_merged * limit() : 0.0;
     for (int i = size_ - 2; i > 0 && i >= size_ - 3; --i) {

@@ -35,8 +35,7 @@ struct Body {
   double inverse_mass = 0;            ///< [1/kg], 0 for a body that cannot move
   unsigned blocked = all_dofs;
   bool damped = true;
-  // `added_...` are the forces since the last sum, from any thread as in YADE; `force` and `torque`
-  // are the sums.
+  // Forces since the last sum (`added_...`), from any thread as in YADE, and the sums.
   Vector3 added_force = Vector3::Zero(), added_torque = Vector3::Zero();
   Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
   Vector3 permanent_force = Vector3::Zero(), permanent_torque = Vector3::Zero();

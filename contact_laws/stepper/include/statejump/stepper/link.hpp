@@ -51,7 +51,7 @@ inline Span span_of(const Vector3& root, const Vector3& tip) {
   return span;
 }
 
-/// Damping coefficient c = 2 zeta sqrt(k m) [N s/m] of a link, with its stiffness at the reference
+/// Damping coefficient c = 2 zeta sqrt(k m) [N s/m] with the link's stiffness at the reference
 /// temperature.
 /// @param inverse_mass 1/m1 + 1/m2 [1/kg]
 inline double damping_coefficient(const Link& link, double inverse_mass) {

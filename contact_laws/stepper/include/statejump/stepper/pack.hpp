@@ -66,7 +66,7 @@ struct Pack3 {
 [[gnu::always_inline]] inline Pack3 operator*(const Pack3& a, double b) {
   return {a.x * b, a.y * b, a.z * b};
 }
-/// Adds products in the same order as Eigen adds three numbers, so that results have the same bits.
+/// Adds products in the order of Eigen's sum of three numbers, for equal bits.
 [[gnu::always_inline]] inline Pack dot(const Pack3& a, const Pack3& b) {
   return a.x * b.x + (a.y * b.y + a.z * b.z);
 }

@@ -65,8 +65,8 @@ using Se3r = Se3<Real>;
 
 class Scene;
 
-// Placeholder for members that the plugin does not use. If the plugin constructs the object, zeros
-// equal YADE's defaults (null pointers). Otherwise YADE fills these bytes.
+// Bytes of members that the plugin does not use. In objects of the plugin, zeros equal YADE's
+// defaults (null pointers); YADE fills those of its own objects.
 template <std::size_t size, std::size_t alignment = alignof(void*)>
 struct alignas(alignment) Unused {
   std::array<char, size> bytes{};

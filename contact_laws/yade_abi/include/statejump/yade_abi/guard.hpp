@@ -11,7 +11,7 @@ namespace statejump::yade_abi {
 
 struct GuardOptions {
   // Whether build identifiers are compared, which is the only check that covers every member. Tests
-  // with a deliberately wrong declaration switch this check off, so that the other checks run.
+  // with a wrong declaration switch it off, so that the other checks run.
   bool check_build_ids = true;
 };
 

@@ -150,8 +150,8 @@ struct HertzPaper {
 
 /// Hertz with the curvature of a pin in a hole, R = R1 R2/(R2 - R1) [m]: F = 4/3 E* sqrt(R)
 /// delta^1.5 (Johnson 1985, eqs 4.14, 4.22, 4.23). See hertz(), internal_effective_radius().
-/// Limits: the law assumes a point contact with a = sqrt(R delta) << R1, whereas a real cylinder in
-/// a bore touches along a line.
+/// Limits: a point contact with a = sqrt(R delta) << R1, whereas a real cylinder in a bore touches
+/// along a line.
 struct HertzInternal {
   static constexpr LawInfo info{
       "hertz_internal",
