@@ -10,7 +10,7 @@ namespace statejump::dem {
 constexpr unsigned int all_translations_blocked = 7;
 constexpr unsigned int all_rotations_blocked = 56;
 
-// 1/m [1/kg]; 0 (infinite mass) for a body that cannot translate or has no mass.
+// Inverse mass 1/m [1/kg]; 0 (infinite mass) for a body that cannot translate or has no mass.
 inline yade::Real inverse_mass(const yade::State& state) {
   const bool fixed = (state.blockedDOFs & all_translations_blocked) == all_translations_blocked;
   return fixed || !(state.mass > 0) ? 0 : 1 / state.mass;

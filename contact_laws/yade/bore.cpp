@@ -113,7 +113,8 @@ void MeshBore::check() {
   for (const Vector3r& vertex : mesh_->triangles().vertices) {
     half_box_ = half_box_.cwiseMax(vertex.cwiseAbs());
   }
-  // Collects edges of one triangle only; neighbours have a common edge in opposite directions.
+  // `edges` collects edges of only one triangle. Two neighbours contain their common edge in
+  // opposite directions.
   std::vector<std::array<int, 2>> edges, opposite;
   for (const auto& face : mesh_->triangles().faces) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -210,8 +211,9 @@ namespace {
   text << "the wall of the MeshBore conforms too closely: its radius of curvature is "
        << wall_radius << " m, that of the " << inner << " " << radius << " m,";
   text << " at the contact at (" << point.x() << ", " << point.y() << ", " << point.z() << ") m";
-  record_failure({"wall_conforms", "radius of curvature", text_of(wall_radius), "above " + text_of(radius)},
-                 text.str(), scene, contact);
+  record_failure(
+      {"wall_conforms", "radius of curvature", text_of(wall_radius), "above " + text_of(radius)},
+      text.str(), scene, contact);
 }
 
 }  // namespace
@@ -238,7 +240,7 @@ bool BoreContacts::find(const stepper::BoreProbe& probe, const MeshBore& bore,
     return false;
   }
   stepper::BoreStep step;
-  // The wall's geometry and the kernel throw; no exception may reach YADE's loop.
+  // The wall's geometry and the kernel may throw, but no exception may reach YADE's loop.
   try {
     step = stepper::find_in_bore(
         probe, {*bore.mesh(), bore.expanded(1), bore.thermalStrainRate, patchAngle}, motion(state1),

@@ -80,7 +80,7 @@ struct MeshBore : RegisteredIndexable<MeshBore, ThermalShape> {
   Vector3r half_box_ = Vector3r::Zero();
 };
 
-// Vertices and triangles of a bore and of a cup, as keywords for MeshBore.
+// Vertices and triangles of a bore or of a cup, as keyword arguments of MeshBore.
 boost::python::dict bore_triangles(Real radius, Real length, int around, int along,
                                    const boost::python::object& lobes, Real wear_depth,
                                    Real wear_angle, Real wear_width, Real crown,
@@ -151,7 +151,7 @@ struct BorePhys : RegisteredIndexable<BorePhys, JointPhys> {
   }
 };
 
-// Contact search of a pair; the two functors that use it differ in the accepted body.
+// Contact search of a pair. Two functors use it, for different types of body 1.
 class BoreContacts {
  public:
   Real patchAngle = 2e-4;

@@ -16,7 +16,8 @@ inline kernel::BodyMotion motion(const yade::State& state) {
 
 using stepper::axis_of;
 
-// Report failures; separate functions, to keep texts out of the path of every step. Lengths in m.
+// These functions report failures. They are separate to keep texts out of the code of every step.
+// Lengths are in m.
 [[gnu::cold]] void fail_closed(const char* inner, yade::Real inner_radius, const char* outer,
                                yade::Real outer_radius, const yade::Scene& scene,
                                const yade::Interaction& contact);
@@ -25,7 +26,8 @@ using stepper::axis_of;
 [[gnu::cold]] void fail_tilted(const yade::Scene& scene, const yade::Interaction& contact);
 [[gnu::cold]] void fail_unstable(yade::Real effective_mass, yade::Real stiffness,
                                  const yade::Scene& scene, const yade::Interaction& contact);
-// "time 0.5 s, temperature change 40 K": with all changes imposed by thermal engines, if any.
+// Text such as "time 0.5 s, temperature change 40 K", with all temperature changes imposed by
+// thermal engines.
 std::string when(const yade::Scene& scene);
 
 }  // namespace statejump::dem

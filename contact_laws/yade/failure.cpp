@@ -24,7 +24,7 @@ Failure first_failure;
 std::optional<Failure> thrown_failure;
 const yade::Scene* failed_scene = nullptr;
 long failed_iteration = 0;
-// Per thread, because YADE makes a run, and a single step, in a separate thread.
+// Stored per thread, because YADE makes each run and each single step in a separate thread.
 thread_local const yade::Scene* looked_at = nullptr;
 
 bool raised_by_an_engine(const yade::Scene& scene) {
@@ -82,7 +82,7 @@ void record_failure(Failure failure) {
   failed_iteration = scene->iter;
   failed = true;
   if (raised_by_an_engine(*scene)) return;
-  // No engine will throw the failure: print it and end the run.
+  // If no engine will throw the failure, print it and end the run.
   std::cerr << "statejump_yade: " << first_failure.sentence() << std::endl;
   scene->stopAtIter = scene->iter + 1;
 }

@@ -14,8 +14,8 @@
 
 namespace statejump::dem {
 
-// Base of engines whose action() starts with begin(). record_failure() looks for this base class to
-// find out whether an engine of the scene will throw the failure.
+// Base of engines whose action() starts with begin(). From this class record_failure() recognises
+// whether an engine of the scene will throw the failure.
 class RaisesFailures {
  public:
   RaisesFailures() = default;
@@ -24,12 +24,12 @@ class RaisesFailures {
 
  protected:
   virtual ~RaisesFailures() = default;
-  // Throws the failure that contacts have recorded. Also checks O.dt in every step. In the first
-  // step of a run, because a script may have changed anything, checks all numbers of the scene.
+  // Throws the failure that contacts have recorded. Checks O.dt in every step. In the first step of
+  // a run it checks all numbers of the scene, because a script may have changed any of them.
   static void begin(const yade::Scene& scene);
 };
 
-// What went wrong, for programs. Codes are public and do not change.
+// Cause of a failure, for programs. Codes are public and do not change.
 struct FailureDetail {
   const char* code = "failed";
   std::string quantity = {};  // name as in the sentence, without an article
@@ -40,37 +40,37 @@ struct FailureDetail {
 std::string text_of(yade::Real value, int digits = 9);
 std::string text_of(const yade::Vector3r& value);  // "(1, 2, 3)"
 
-// A failure as fields. Scripts use the fields, with the part's name in their model, and do not
-// parse the sentence.
+// A failure as fields. Scripts insert the part's name in their model and use these fields instead
+// of parsing the sentence.
 struct Failure {
-  // Type of the failed part. It has two bodies or one; the scene has none.
+  // Type of the failed part. A part has one or two bodies; the scene has none.
   enum class Part : unsigned char { contact, link, torsion_spring, prismatic_joint, body, scene };
   Part part = Part::contact;
   int id1 = -1;
   int id2 = -1;  // for a torsion spring, id1 and id2 are the tips of its two links
-  // Text before and after the name of a link, spring, prismatic joint or body. For a contact, which
-  // is named at the end, and for the scene, `before` contains the whole sentence.
+  // Text before and after the name of a link, spring, prismatic joint or body. For a contact (named
+  // at the end) and for the scene, `before` contains the whole sentence.
   std::string before = {};
   std::string after = {};
   yade::Real time = 0;  // [s]
-  // Only if the time step is too long: the largest stable step of this part [s].
+  // Largest stable step of this part [s], set only if the time step is too long.
   yade::Real stable_time_step = std::numeric_limits<yade::Real>::quiet_NaN();
   std::string when = {};  // time and temperature changes as text
   FailureDetail detail = {};
   std::string sentence() const;
 };
 
-// For functors: records the first failure of a step; an engine throws it.
+// Functors call this to record the first failure of a step, which an engine then throws.
 void record_failure(Failure failure);
-// For functors: records a failure of a contact. If one of its numbers is invalid, the failure
-// reports that number instead of the sentence.
+// Functors call this to record a failure of a contact. If one of the contact's numbers is invalid,
+// the failure reports that number instead of the sentence.
 void record_failure(FailureDetail detail, const std::string& sentence, const yade::Scene& scene,
                     const yade::Interaction& contact);
 // For engines: throws std::runtime_error with the sentence.
 [[noreturn]] void throw_failure(Failure failure);
-// The last thrown failure that was not yet taken, as a dict: part, bodies (two ids, one or none),
-// before, after, time, stable_time_step (None if the step is not the cause), code, quantity, value,
-// allowed, sentence. None if there is no failure.
+// Returns the last thrown failure once, as a dict: part, bodies (one or two ids, or none), before,
+// after, time, stable_time_step (None if the step is not the cause), code, quantity, value,
+// allowed, sentence. Returns None if there is no new failure.
 boost::python::object take_failure();
 
 }  // namespace statejump::dem

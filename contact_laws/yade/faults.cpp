@@ -44,7 +44,7 @@ FailureDetail not_allowed(const std::string& quantity, const Value& value,
   return {"not_allowed", quantity, text_of(value), allowed};
 }
 
-// Example: "the mass of body 3 is nan kg, allowed is above 0".
+// Creates a sentence such as "the mass of body 3 is nan kg, allowed is above 0".
 template <class Value>
 Failure of_body(const yade::Scene& scene, int id, const std::string& name, const Value& value,
                 const std::string& unit, const std::string& allowed) {
@@ -71,8 +71,8 @@ Fault fault_of_motion(const yade::Scene& scene, int id, const yade::State& state
   return std::nullopt;
 }
 
-// The mass must be > 0 if the body can translate, an inertia if it can rotate about that axis;
-// otherwise they may be 0.
+// The mass must be > 0 if the body can translate. An inertia must be > 0 if the body can rotate
+// about that axis. Otherwise they may be 0.
 Fault fault_of_inertia(const yade::Scene& scene, int id, const yade::State& state) {
   constexpr unsigned translations = 7;
   const bool moves = (state.blockedDOFs & translations) != translations;
@@ -91,7 +91,7 @@ Fault fault_of_inertia(const yade::Scene& scene, int id, const yade::State& stat
   return std::nullopt;
 }
 
-// Permanent forces are only valid after the ForceResetter has run in this step.
+// Permanent forces are valid only after the ForceResetter has run in this step.
 Fault fault_of_forces(const yade::Scene& scene, int id) {
   auto& forces = const_cast<yade::ForceContainer&>(scene.forces);  // its getters are not const
   if (forces.lastReset != scene.iter || !forces.getPermForceUsed()) return std::nullopt;

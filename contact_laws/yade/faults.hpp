@@ -14,9 +14,9 @@ namespace statejump::dem {
 struct PrismaticJoint;
 struct TorsionSpring;
 
-// First fault of the plugin's objects. Checked are: bodies that have a shape of the plugin or
-// belong to links or guides, with their materials and permanent forces; contacts, links, springs,
-// guides; the time step.
+// First fault of the plugin's objects. The check covers bodies that have a shape of the plugin or
+// belong to links or guides, with their materials and permanent forces; also contacts, links,
+// springs, guides and the time step.
 [[gnu::cold]] std::optional<Failure> fault_of_scene(const yade::Scene& scene);
 
 // First fault of a contact: its bodies, physics, geometry and forces.
@@ -27,11 +27,11 @@ struct TorsionSpring;
 [[gnu::cold]] std::optional<Failure> fault_of_link(const yade::Scene& scene,
                                                    const ThermalLink& link);
 
-// First fault in the parameters of a torsion spring, which must have both links.
+// First fault in the parameters of a torsion spring. Both of its links must exist.
 [[gnu::cold]] std::optional<Failure> fault_of_spring(const yade::Scene& scene,
                                                      const TorsionSpring& spring);
 
-// First fault of a slider between two bodies: its bodies and parameters.
+// First fault of a slider between two bodies, in its bodies or parameters.
 [[gnu::cold]] std::optional<Failure> fault_of_prismatic(const yade::Scene& scene,
                                                         const PrismaticJoint& joint);
 
@@ -43,10 +43,10 @@ struct MaterialFault {
 };
 [[gnu::cold]] std::optional<MaterialFault> fault_of(const ThermalFrictMat& material);
 
-// Throws because at this thermal strain a body has no positive length.
+// Throws the failure that a body has no positive length at this thermal strain.
 [[noreturn, gnu::cold]] void fail_strain(const yade::Scene& scene, int id, Real strain,
                                          Real expansion);
-// For functors: records that a law returned a number that is not finite.
+// Functors call this to record that a law returned a number that is not finite.
 [[gnu::cold]] void fail_answer(Real stiffness, const Vector3r& force, const yade::Scene& scene,
                                const yade::Interaction& contact);
 // Throws because a force on a body is not finite.

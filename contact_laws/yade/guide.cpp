@@ -22,7 +22,7 @@ void GuidePlanes::action() {
     refuse({"other_number", "GuidePlanes", std::to_string(ids.size()),
             std::to_string(normals.size())});
   }
-  // Read all forces before adding the first: after an addition, YADE requires another sum over
+  // Reads all forces before adding the first one. After an addition, YADE requires another sum over
   // threads before it returns a force.
   scene->forces.sync();
   std::vector<Vector3r> held(ids.size());

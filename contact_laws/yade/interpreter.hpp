@@ -5,7 +5,7 @@
 
 namespace statejump::dem {
 
-// Holds Python's global interpreter lock (GIL), which a running simulation does not hold.
+// Holds Python's global interpreter lock (GIL). A running simulation does not hold it.
 class Interpreter {
  public:
   Interpreter() : state_(PyGILState_Ensure()) {}

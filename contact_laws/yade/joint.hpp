@@ -84,8 +84,8 @@ struct JointPhys : RegisteredIndexable<JointPhys, yade::FrictPhys> {
   Real impactSpeed = 0;
   Real dissipationSlope = 0;
   Real frictionSlope = 0;
-  // Values of the last step, for the trapezoidal rule of the thermal work; updated only if
-  // O.trackEnergy is on.
+  // Values of the last step, which the trapezoidal rule of the thermal work needs. They are updated
+  // only if O.trackEnergy is on.
   Real previousElasticForce = 0;
   Real previousElasticEnergy = 0;
   Real previousClearance = 0;
@@ -285,14 +285,14 @@ struct Law2_JointGeom_JointPhys_HertzMindlin
   JointEnergies energies_;
 };
 
-// Documentation of an attribute, generated from the catalogue: for a law attribute, the laws of
-// that kind with their descriptions; for a parameter, its meaning and the laws that read it.
+// Documentation of an attribute, generated from the catalogue. For a law attribute it lists the
+// laws of that kind with descriptions; for a parameter, its meaning and the laws that read it.
 template <class Law>
 const char* law_docs();
 const char* parameter_docs(const kernel::laws::LawParameter& parameter);
 
-// Common part of all law functors with named laws: attributes, checks and the step of one contact.
-// A functor derives from it and adds law_attributes() to its own attributes.
+// Base of all law functors with named laws: attributes, checks and the step of one contact. A
+// derived functor adds law_attributes() to its own attributes.
 class NamedJointLaw {
  public:
   std::string normalLaw = kernel::laws::HertzInternal::info.name;
@@ -343,13 +343,13 @@ class NamedJointLaw {
                   "Number of contacts that have begun [-]"));
   }
 
-  // Builds the law from the attributes. Throws std::invalid_argument that names class and
+  // Builds the law from the attributes. Throws std::invalid_argument that names the class and the
   // attribute.
   void build(const char* class_name);
   // The law of the last build().
   const kernel::laws::JointLaw& law() const { return named_.law; }
-  // Steps one contact: applies its forces to both bodies and adds its energies to O.energy. False
-  // if it is open.
+  // Steps one contact: applies its forces to both bodies and adds its energies to O.energy. Returns
+  // false if the contact is open.
   bool step(const JointGeom& geometry, JointPhys& physics, const yade::Interaction& contact,
             yade::Scene& scene);
 

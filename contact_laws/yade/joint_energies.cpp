@@ -6,7 +6,7 @@
 namespace statejump::dem {
 namespace {
 
-// Stored as strings, because the tracker needs a std::string in every step.
+// The names are stored as strings, because the tracker needs a std::string in every step.
 const std::string joint_elastic = "jointElastic";
 const std::string joint_friction = "jointFriction";
 const std::string joint_damping = "jointDamping";
@@ -14,8 +14,8 @@ const std::string joint_thermal_work = "jointThermalWork";
 
 }  // namespace
 
-// YADE extends its list of energies without a lock, so that entries of concurrent threads can get
-// lost. So one thread enters all names before any thread adds a value.
+// YADE extends its list of energies without a lock, so concurrent threads could lose entries.
+// Therefore one thread enters all names before any thread adds a value.
 void JointEnergies::name(const yade::Scene& scene) {
   if (named_.load(std::memory_order_acquire)) return;
   const std::lock_guard<std::mutex> lock(naming_);

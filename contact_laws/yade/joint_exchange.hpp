@@ -45,7 +45,8 @@ struct ContactHost {
 };
 
 // Sets the physics of a new contact between two materials.
-// @param inverse_mass 1/m1 + 1/m2 [1/kg]; @param fail function that receives an error sentence
+// @param inverse_mass 1/m1 + 1/m2 [1/kg]; @param fail function that receives the sentence of an
+//     error
 template <class Physics, class Fail>
 void fill_physics(const Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys& functor,
                   const ThermalFrictMat& first, const ThermalFrictMat& second, Real inverse_mass,
@@ -66,7 +67,7 @@ void fill_physics(const Ip2_ThermalFrictMat_ThermalFrictMat_JointPhys& functor,
   physics.tangentialDampingRatio = functor.tangentialDampingRatio;
 }
 
-// Copies the state of a contact between YADE's objects and plain values, in either direction.
+// Copies the state of a contact from YADE's objects to plain values, or in the opposite direction.
 template <class From, class To>
 void copy_geometry(const From& from, To& to) {
   to.normal = from.normal;

@@ -7,8 +7,8 @@
 
 namespace statejump::dem {
 
-/// dynamic_cast to a class derived from From, null for an object of another class. Caches the
-/// results for the last classes seen, because dynamic_cast compares class names in every call.
+/// dynamic_cast to a class derived from From; null for an object of another class. The results for
+/// the last classes are cached, because dynamic_cast compares class names in every call.
 template <class To, class From>
 To* known_cast(From* from) {
   struct Answer {

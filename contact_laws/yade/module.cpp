@@ -60,7 +60,8 @@ using OurClasses = ClassList<
 #endif
     >;
 
-// Returns an empty string on success, otherwise the error sentence that the Python wrapper raises.
+// Returns an empty string on success, otherwise the sentence of the error that the Python wrapper
+// raises.
 std::string setup(const boost::python::object& wrapper) {
   if (auto difference = yade_abi::difference_from_running_yade(wrapper);
       !difference.sentence.empty()) {
@@ -80,7 +81,7 @@ std::string setup(const boost::python::object& wrapper) {
   return "";
 }
 
-// Penetration depth [m] of two bodies of the same material under a force [N].
+// Penetration depth [m] at which two bodies of the same material carry a force [N].
 double hertz_depth(double force, double effectiveRadius, double young, double poisson) {
   kernel::require(force >= 0, "force", force, "[0, inf) N");
   kernel::require(effectiveRadius > 0, "effectiveRadius", effectiveRadius, "(0, inf) m");
@@ -89,7 +90,7 @@ double hertz_depth(double force, double effectiveRadius, double young, double po
       force);
 }
 
-// Names of all laws; the keys are the names of the attributes that accept them.
+// Names of all laws. Each key is the name of the attribute that accepts these laws.
 boost::python::dict law_names() {
   namespace laws = kernel::laws;
   boost::python::dict names;
@@ -105,7 +106,7 @@ boost::python::dict law_names() {
   return names;
 }
 
-// Version of the files that this YADE's O.save writes; it changes with the version of Boost.
+// Version of the archives that O.save of this YADE writes. It changes with the version of Boost.
 unsigned archive_version() {
   const auto version = boost::archive::BOOST_ARCHIVE_VERSION();
   return version;

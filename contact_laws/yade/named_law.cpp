@@ -18,7 +18,7 @@ namespace {
 
 namespace laws = kernel::laws;
 
-// Returns the law of one kind by name, or throws an exception that lists the known names.
+// Returns the law of a given type and name, or throws an exception that lists the known names.
 template <class Law>
 Law law_by_name(Law (*find)(const std::string&), const char* class_name, const char* attribute,
                 const std::string& name) {
@@ -35,7 +35,8 @@ Law law_by_name(Law (*find)(const std::string&), const char* class_name, const c
   return find(name);
 }
 
-// Stores a sentence until the program ends, as Python requires of documentation strings.
+// Keeps a sentence in memory until the program ends, which Python requires of documentation
+// strings.
 const char* kept(const std::string& sentence) {
   static std::mutex mutex;
   static std::set<std::string> sentences;
@@ -43,7 +44,7 @@ const char* kept(const std::string& sentence) {
   return sentences.insert(sentence).first->c_str();
 }
 
-// Appends the names of the laws of one kind that read a parameter, separated by commas.
+// Appends the names of the laws of one type that read a parameter, separated by commas.
 template <class Law>
 void add_readers(const laws::LawParameter& parameter, std::string& names) {
   for (const laws::LawInfo& info : laws::law_infos<Law>()) {

@@ -18,7 +18,8 @@
 namespace statejump::dem {
 namespace {
 
-// Names in O.energy; stored as strings, because the tracker needs a std::string in every step.
+// These names of O.energy are stored as strings, because the tracker needs a std::string in every
+// step.
 const std::string prismatic_elastic = "prismaticElastic";
 const std::string prismatic_friction = "prismaticFriction";
 const std::string prismatic_damping = "prismaticDamping";
@@ -26,7 +27,7 @@ const std::string prismatic_damping = "prismaticDamping";
 [[noreturn, gnu::cold]] void fail(const yade::Scene& scene, const PrismaticJoint& joint,
                                   const FailureDetail& detail, const std::string& before,
                                   const std::string& after, Real stable) {
-  // An invalid number of the joint or of its bodies is the cause and is reported instead.
+  // If a number of the joint or of its bodies is invalid, it is the cause and is reported instead.
   if (auto fault = fault_of_prismatic(scene, joint)) throw_failure(*std::move(fault));
   throw_failure({Failure::Part::prismatic_joint, joint.id1, joint.id2, before, after, scene.time,
                  stable, when(scene), detail});

@@ -42,7 +42,7 @@ inline void require_not_negative(const char* class_name, const char* attribute, 
   require(stepper::ValueRange::not_negative, class_name, attribute, value, unit);
 }
 
-// Checks numbers that a script sets. 0 is always accepted, because it means not yet set.
+// Checks numbers that a script sets. It always accepts 0, which means that a number is not yet set.
 template <class Object, std::size_t size>
 void require_settable(const char* class_name, const stepper::Quantities<Object, size>& quantities,
                       const Object& object) {
@@ -53,7 +53,7 @@ void require_settable(const char* class_name, const stepper::Quantities<Object, 
   }
 }
 
-// Example: "above 0 [m/s]", "0 or above [m/s]" or "in (0, 1] [-]".
+// Text of a range, for example "above 0 [m/s]", "0 or above [m/s]" or "in (0, 1] [-]".
 inline std::string allowed_range(const kernel::laws::LawParameter& parameter) {
   std::ostringstream text;
   const char* excluded = parameter.low_excluded ? "above " : "";

@@ -19,15 +19,15 @@ struct Refusal {
 // The only place with the wording of refusals.
 std::string sentence(const Refusal& refusal);
 
-// Keeps it for take_refusal(). An engine raises in a thread of YADE, where a Python exception would
-// lose its attributes.
+// Keeps a refusal for take_refusal(). Engines raise errors in a thread of YADE, where a Python
+// exception would lose its attributes.
 void keep(const Refusal& refusal);
 
 // Keeps it, then throws std::invalid_argument with the sentence.
 [[noreturn, gnu::cold]] void refuse(const Refusal& refusal);
 
-// The last refusal that was not yet taken, as a dict: code, key, value, allowed, sentence. None if
-// there is none.
+// Returns the last refusal once, as a dict: code, key, value, allowed, sentence. Returns None if
+// there is no new refusal.
 boost::python::object take_refusal();
 
 }  // namespace statejump::dem

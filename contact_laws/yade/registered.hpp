@@ -44,7 +44,7 @@ constexpr Attribute<Class, Type> attribute(const char* name, Type Class::*member
   return {name, member, doc, false};
 }
 
-// Attribute that the simulation writes and a script can only read. It is saved.
+// Attribute that the simulation writes and that is read-only for scripts. It is saved.
 template <class Class, class Type>
 constexpr Attribute<Class, Type> read_only(const char* name, Type Class::*member, const char* doc) {
   return {name, member, doc, true};
@@ -65,13 +65,14 @@ class Registered : public Base {
 
   void pySetAttr(const std::string& key, const boost::python::object& value) override;
 
-  // Called after construction from keywords, after loading and whenever YADE calls it.
+  // YADE calls this after construction from keywords, after loading, and at other times.
   void callPostLoad() override {
     Base::callPostLoad();
     static_cast<Derived&>(*this).check();
   }
 
-  // Throws std::invalid_argument for values out of range. A class with ranges hides this function.
+  // Throws std::invalid_argument for values out of range. A derived class with ranges hides this
+  // function.
   void check() const {}
 
   void pyRegisterClass(boost::python::object scope) override;
@@ -89,8 +90,8 @@ class Registered : public Base {
   }
 };
 
-// Base of classes that take part in YADE's multiple dispatch. Derived must call createIndex() in
-// its constructor.
+// Base of classes that take part in YADE's multiple dispatch. The constructor of Derived must call
+// createIndex().
 template <class Derived, class Base>
 class RegisteredIndexable : public Registered<Derived, Base> {
  public:

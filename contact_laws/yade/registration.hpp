@@ -35,8 +35,8 @@ void archive_value(Archive& archive, const char* name, Type& value) {
   archive& boost::serialization::make_nvp(name, value);
 }
 
-// Numbers are text in XML archives. The radius of a flat face is infinite and an unset time is NaN;
-// an XML archive writes such numbers but cannot read them.
+// XML archives store numbers as text. They can write infinite numbers (radius of a flat face) and
+// NaN (unset time), but cannot read them.
 template <class Archive>
 void archive_value(Archive& archive, const char* name, Real& value) {
   if constexpr (std::is_same_v<Archive, boost::archive::xml_oarchive>) {
@@ -53,7 +53,8 @@ void archive_value(Archive& archive, const char* name, Real& value) {
   }
 }
 
-// By component, because YADE's serialization of vectors is not part of its interface.
+// Archives a vector by component, because YADE's serialization of vectors is not part of its
+// interface.
 template <class Archive>
 void archive_value(Archive& archive, const char* name, Vector3r& value) {
   static constexpr const char* components[3] = {"_x", "_y", "_z"};
@@ -63,7 +64,7 @@ void archive_value(Archive& archive, const char* name, Vector3r& value) {
   }
 }
 
-// Archives a list of triples as one list of numbers, for the same reason.
+// Archives a list of triples as one list of numbers, without YADE's serialization of vectors.
 template <class Archive, class Triple, class Number>
 void archive_triples(Archive& archive, const char* name, std::vector<Triple>& list,
                      std::vector<Number> flat) {
@@ -189,7 +190,8 @@ void Registered<Derived, Base>::pyRegisterClass(boost::python::object scope) {
     if (a.read_only) {
       entry.add_property(a.name, get, a.doc);
     } else {
-      // Checks the value as the constructor does; if it is rejected, the old value remains.
+      // Checks the new value as the constructor does. If the value is rejected, the old one
+      // remains.
       const auto set = [member, name = a.name](Derived& self, const py::object& value) {
         const Type old = self.*member;
         self.*member = detail::value_of<Type>(Derived::class_name, name, value);
@@ -234,7 +236,7 @@ void register_factory() {
 
 }  // namespace statejump::dem
 
-// Exports a class to O.save under its name and instantiates everything registered for it.
+// Exports a class to O.save under its name, and instantiates all code registered for this class.
 #define STATEJUMP_EXPORT_AS(Class, Name) \
   BOOST_CLASS_EXPORT_GUID(Class, Name)   \
   template class statejump::dem::Registered<Class, Class::RegisteredBase>;

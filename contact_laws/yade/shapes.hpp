@@ -33,8 +33,8 @@ struct ThermalShape : RegisteredIndexable<ThermalShape, yade::Shape> {
       "no "
       "residue.";
   Real thermalStrain = 0;
-  // Rate over the last step [1/s], set by the engine in every step, so not saved. It determines
-  // when within the step an expanding joint closed.
+  // Strain rate over the last step [1/s], which gives the time within the step when an expanding
+  // joint closed. It is set in every step, so it is not saved.
   Real thermalStrainRate = 0;
   ThermalShape() { createIndex(); }
   void check() const;
@@ -170,8 +170,8 @@ struct SlotFace : RegisteredIndexable<SlotFace, ThermalShape> {
   }
 };
 
-// Bounding boxes for YADE's collider. A journal is inside its bearing, so their boxes always
-// overlap and the collider never loses the pair.
+// Bounding boxes for YADE's collider. A journal is inside its bearing, so both boxes always overlap
+// and the collider never loses this pair.
 template <class ShapeOfOurs>
 struct Bo1 : Registered<Bo1<ShapeOfOurs>, yade::BoundFunctor> {
   static constexpr const char* class_name = ShapeOfOurs::bound_functor_name;

@@ -18,8 +18,9 @@
 namespace statejump::dem {
 namespace {
 
-// Acceleration of a body per unit force with the given arm [1/kg]: by translation along the force,
-// and by rotation if the body can rotate. A force that does not rotate it has arm 0.
+// Acceleration of a body per unit force with the given lever arm [1/kg]: from translation along the
+// force and, if the body can rotate, from rotation. A force that does not rotate the body has arm
+// 0.
 Real mobility(const yade::State& state, Real arm_squared) {
   Real smallest_inertia = 0;
   for (int i = 0; i < 3; ++i) {
@@ -35,8 +36,9 @@ Real mobility(const yade::State& state, Real arm_squared) {
 // Sums stiffness and damping over the springs and dashpots of each body.
 //
 // Let s be the elongation of a spring of stiffness k between two bodies. Then s^2 <= 2 (s1^2 +
-// s2^2) and s_i^2 <= mobility_i * 2 * (kinetic energy per unit rate squared). So the largest
-// eigenvalue is at most the largest sum of 2 k mobility over the springs of one body.
+// s2^2) and, for its end on body i, s_i^2 <= mobility_i * 2 * (kinetic energy per unit rate
+// squared). So the largest eigenvalue is at most the largest sum of 2 k mobility over the springs
+// of one body.
 class BodySums {
  public:
   explicit BodySums(const yade::Scene& scene)
@@ -71,9 +73,9 @@ class BodySums {
 
   void add(const TorsionSpring& spring) {
     if (!spring.link1 || !spring.link2) return;
-    // The angle is the sum of up to four displacements, each over the length of its link. So its
-    // square is at most the number of moving ends times the sum of the squares. A common factor 2
-    // is applied later.
+    // The angle is a sum of up to four displacements, each divided by the length of its link. Its
+    // square is at most the number of moving ends times the sum of squares. A common factor 2 is
+    // applied later.
     const std::array<LinkEnds, 2> links = {ends_of(scene_, *spring.link1),
                                            ends_of(scene_, *spring.link2)};
     int moving = 0;

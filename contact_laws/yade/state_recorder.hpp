@@ -37,7 +37,7 @@ struct StateRecorder : Registered<StateRecorder, yade::GlobalEngine> {
   std::vector<yade::shared_ptr<TorsionSpring>> springs;
   std::vector<yade::shared_ptr<PrismaticJoint>> joints;
 
-  // Quantities that a scene does not store with its objects. The caller must hold the GIL.
+  // Quantities that a scene does not store in its objects. The caller must hold the GIL.
   struct Sums {
     const stepper::Energies& energies;
     const stepper::StoredEnergies& stored;

@@ -16,15 +16,15 @@
 namespace statejump::dem {
 namespace {
 
-// Number of steps that the stepper may make before YADE's own loop must make one.
+// Number of steps that the stepper may make before the next step that YADE's own loop must make.
 long steps_ahead(const yade::Scene& scene, long substeps) {
   if (scene.subStepping || !(scene.dt > 0)) return 0;
   const long beyond = scene.iter % substeps;
   long ahead = beyond == 0 ? 0 : substeps - beyond;
   if (scene.stopAtIter > scene.iter) ahead = std::min(ahead, scene.stopAtIter - scene.iter - 1);
   if (scene.stopAtTime > scene.time) {
-    // YADE stops only if its time equals stopAtTime exactly, so YADE itself makes the last steps
-    // before that time.
+    // YADE stops only if its time equals stopAtTime exactly. YADE itself therefore makes the last
+    // steps before that time.
     const Real left = (scene.stopAtTime - scene.time) / scene.dt - 2;
     if (left < static_cast<Real>(ahead)) ahead = std::max(0L, static_cast<long>(left));
   }
@@ -33,7 +33,7 @@ long steps_ahead(const yade::Scene& scene, long substeps) {
 
 long run(stepper::Scene& arrays, long steps, const stepper::Scene::CreatePhysics& make,
          const stepper::Scene::Observe& observe) {
-  // Energies are summed over all contacts in their order, so the scene must not be split.
+  // Energies are summed over all contacts in order, so the scene must not be split.
   if (arrays.tracks_energy) return arrays.run(steps, make, observe);
   stepper::Partition partition(arrays);
   if (partition.size() == 1) return arrays.run(steps, make, observe);
@@ -66,7 +66,7 @@ class StepsAhead {
   }
 
  private:
-  // Number of steps until the next sample of a recorder is due.
+  // Number of steps until a recorder takes its next sample.
   long steps_to_a_sample() const {
     long steps = std::numeric_limits<long>::max();
     for (const StateRecorder* recorder : engines_.recorders) {
@@ -76,9 +76,9 @@ class StepsAhead {
     return steps;
   }
 
-  // Estimated number of steps until a body may leave its collider bound. If it does, the piece is
-  // repeated up to that step. With meshed bores a repetition costs as much as YADE's own loop, so a
-  // piece covers only most of the distance at the current velocities and the last one is short.
+  // Estimated number of steps until a body may leave its collider bound. If a body leaves it within
+  // a piece of steps, the piece is repeated up to that step. With meshed bores this costs as much
+  // as YADE's own loop, so a piece covers only most of the distance at current velocities.
   long steps_to_a_bound() const {
     constexpr Real most_of_the_way = 0.75;
     constexpr long shortest = 8;  // copying the arrays once costs about as much as one step
@@ -96,7 +96,7 @@ class StepsAhead {
     return std::max(shortest, static_cast<long>(most_of_the_way * steps));
   }
 
-  // Makes steps and stops before the first step that YADE's own loop must make.
+  // Makes steps, but stops before the first step that YADE's own loop must make.
   long make_piece(long steps) {
     start_ = arrays_;
     const long last = arrays_.iteration + steps - 1;
@@ -124,7 +124,7 @@ class StepsAhead {
       if (done > 0) attempt(done, {});
     }
     if (!arrays_.has_finite_state()) {
-      // YADE's own loop reports the step with the invalid number; repeat the steps before it.
+      // YADE's own loop reports the step with the invalid number. Repeat only the steps before it.
       arrays_ = start_;
       done = 0;
       while (arrays_.run(1, make_) == 1 && arrays_.has_finite_state()) ++done;

@@ -34,8 +34,8 @@ struct JointStepper : Registered<JointStepper, yade::GlobalEngine>, RaisesFailur
   }
 
  private:
-  // Whether YADE's own loop made the previous step with the same engines and number of bodies. Then
-  // contacts and names of energies exist.
+  // Returns whether YADE's own loop made the previous step with the same engines and number of
+  // bodies. Contacts and names of energies then exist.
   bool follows_an_ordinary_step();
   long last_iteration_ = -1;
   const yade::Scene* last_scene_ = nullptr;

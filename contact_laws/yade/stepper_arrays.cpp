@@ -61,7 +61,7 @@ void scatter_stage(const PrismaticJoints& to, const stepper::Stage& from) {
 
 void scatter_stage(const GuidePlanes&, const stepper::Stage&) {}  // no state
 
-// Copies the geometry fields that YADE itself uses, for any contact of two round bodies.
+// Copies the geometry fields that YADE itself reads, for any contact of two round bodies.
 template <class From, class To>
 void copy_place(const From& from, To& to) {
   to.normal = from.normal;
@@ -99,7 +99,7 @@ void copy_bore_physics(const From& from, To& to) {
   }
 }
 
-// False if only YADE's own loop can handle the state of this pair.
+// Returns false if only YADE's own loop can handle the state of this pair.
 bool gather_bore(const yade::Interaction& from, stepper::Bore& to) {
   const auto* geometry = known_cast<const BoreGeom>(from.geom.get());
   const auto* physics = known_cast<const BorePhys>(from.phys.get());
@@ -255,7 +255,8 @@ std::size_t JointArrays::strain_of(const yade::Body& body, stepper::Scene& array
   return common->second;
 }
 
-// Finds dimensions and joint type of a pair. False if no functor of the scene accepts the pair.
+// Finds dimensions and joint type of a pair. Returns false if no functor of the scene accepts the
+// pair.
 bool JointArrays::find_parts(const yade::Body& one, const yade::Body& two,
                              stepper::Contact& contact) const {
   const yade::Shape* const first = one.shape.get();
@@ -304,7 +305,8 @@ bool JointArrays::find_parts(const yade::Body& one, const yade::Body& two,
   return false;
 }
 
-// Returns the bore if a functor of the scene accepts the pair as a contact with a meshed bore.
+// Returns the bore if a functor of the scene accepts the pair as a contact with a meshed bore,
+// otherwise nothing.
 std::optional<stepper::Bore> JointArrays::find_bore(const yade::Body& one, const yade::Body& two,
                                                     stepper::Contact& contact) const {
   const auto* hole = known_cast<const MeshBore>(two.shape.get());

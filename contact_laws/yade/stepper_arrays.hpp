@@ -22,10 +22,10 @@ class JointArrays {
  public:
   JointArrays(yade::Scene& scene, const JointEngines& engines) : scene_(scene), engines_(engines) {}
 
-  // Fills the arrays. False if YADE's own loop must make the next step. Throws
+  // Fills the arrays. Returns false if YADE's own loop must make the next step. Throws
   // std::invalid_argument for a body that the stepper does not support.
   bool gather(stepper::Scene& arrays);
-  // Writes the changed state back to YADE. The caller must hold the GIL.
+  // Writes the new state back to YADE. The caller must hold the GIL.
   void scatter(const stepper::Scene& arrays);
   // Physics of a contact that begins; empty for invalid materials.
   std::optional<stepper::ContactPhysics> physics(std::size_t contact) const;
@@ -53,7 +53,7 @@ class JointArrays {
   std::vector<std::size_t> interactions_;  // index of each contact in YADE's container
   std::vector<std::pair<ThermalShape*, std::size_t>> heated_;  // shapes and index of their strain
   std::unordered_map<const ThermalShape*, std::size_t> strains_;  // index of each shape's strain
-  // Strains that are and remain equal, by heater, expansion coefficient, strain and rate.
+  // Indices of strains that bodies share, by heater, expansion coefficient, strain and rate.
   std::map<std::tuple<std::size_t, Real, Real, Real>, std::size_t> common_strains_;
   std::map<const ThermalProgram*, std::size_t> programs_;
 };

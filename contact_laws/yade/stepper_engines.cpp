@@ -102,7 +102,7 @@ class Reader {
          {"NewtonIntegrator", Known::newton},
          {"PeriodicEngine", Known::onlooker},
          {"TimeStepper", Known::time_stepper}}};
-    // This function runs before every run of steps, so it first compares names, which is fast.
+    // Before every run of steps this function is called, so it compares names first, which is fast.
     if (class_name == "PyRunner") return Known::onlooker;
     for (const auto& [name, which] : bases) {
       if (class_name == name) return which;
@@ -143,7 +143,8 @@ class Reader {
     return true;
   }
 
-  // Calls take_one for every functor of a dispatcher; it returns false for unsupported ones.
+  // Calls `take_one` for every functor of a dispatcher. `take_one` returns false for an unsupported
+  // functor.
   template <class Take>
   static void read_functors(const py::object& loop, const char* dispatcher, Take&& take_one) {
     const py::object functors(loop.attr(dispatcher).attr("functors"));
@@ -185,7 +186,8 @@ class Reader {
     if (py::extract<int>(integrator.attr("mask"))() > 0) {
       refuse({"mask", "NewtonIntegrator.mask"});
     }
-    // YADE versions differ in whether numerical damping acts on gravity, and thus in its energy.
+    // YADE versions differ in whether numerical damping acts on gravity, and thus in the energy of
+    // gravity.
     if (scene_.trackEnergy && newton.damping != 0 && !newton.gravity.isZero(0)) {
       refuse({"damped_gravity", "NewtonIntegrator.damping"});
     }

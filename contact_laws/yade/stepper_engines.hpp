@@ -31,7 +31,7 @@ struct JointEngines {
   bool has_collider = false;
 };
 
-// Reads the engines of a scene, those of YADE through Python. Throws std::invalid_argument for an
+// Reads the engines of a scene; those of YADE through Python. Throws std::invalid_argument for an
 // unknown engine or an unsupported order.
 JointEngines joint_engines(const yade::Scene& scene, const yade::Engine& stepper);
 

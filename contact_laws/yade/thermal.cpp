@@ -19,7 +19,8 @@
 namespace statejump::dem {
 namespace {
 
-// Names in O.energy; stored as strings, because the tracker needs a std::string in every step.
+// These names of O.energy are stored as strings, because the tracker needs a std::string in every
+// step.
 const std::string link_elastic = "linkElastic";
 const std::string link_damping = "linkDamping";
 const std::string link_thermal_work = "linkThermalWork";
@@ -66,7 +67,8 @@ void throw_fault(const yade::Scene& scene, const ThermalLink& link) {
                  {length == 0 ? "ends_coincide" : "distance_not_finite"}});
 }
 
-// Throws: the stress-free length at this temperature is not positive or the force not finite.
+// Throws the failure that the stress-free length at this temperature is not positive or the force
+// is not finite.
 [[gnu::cold, gnu::noinline]] void fail_force(const yade::Scene& scene, const ThermalLink& link,
                                              const stepper::LinkStep& step) {
   throw_fault(scene, link);
@@ -191,14 +193,15 @@ void ThermalLink::check() const {
 
 void ThermalLinks::action() {
   begin(*scene);
-  // Only a tip that rotates with its link needs the moments of this step. YADE's sum over threads
+  // Only a tip that rotates with its link needs the moments of this step. Summing them over threads
   // costs as much as the rest of this engine.
   bool needs_moments = false;
   for (const auto& link : links) {
     if (!link) refuse({"holds_none", "ThermalLinks.links"});
     needs_moments = needs_moments || link->tipTurnsWithLink;
   }
-  // Read all moments before adding the first force: after an addition, YADE requires another sum.
+  // Reads all moments before adding the first force. After an addition, YADE requires another sum
+  // over threads.
   moments_.assign(links.size(), Vector3r::Zero());
   if (needs_moments) {
     scene->forces.sync();

@@ -68,9 +68,9 @@ struct ThermalExpansionEngine : Registered<ThermalExpansionEngine, yade::GlobalE
   std::vector<int> ids;
   Real temperatureChange = 0;
 
-  // A body as found when the targets were collected. It is compared before use, to detect that a
-  // script erased the body or changed its shape. It holds plain pointers: Python objects may only
-  // be released under the GIL, which a running simulation does not hold.
+  // A body and its shape when the targets were collected. They are compared before use, to detect
+  // that a script erased the body or changed its shape. The pointers are plain, because Python
+  // objects may only be released under the GIL, which a running simulation does not hold.
   struct Target {
     std::size_t id;
     ThermalShape* shape;
@@ -178,7 +178,8 @@ struct ThermalLinks : Registered<ThermalLinks, yade::GlobalEngine>, RaisesFailur
   }
 
  private:
-  // @param moment of the contacts on the tip [N m]; zero unless the tip rotates with the link
+  // @param moment moment of the contacts on the tip [N m]; zero unless the tip rotates with the
+  //     link
   void act(ThermalLink& link, const Vector3r& moment);
   std::vector<Vector3r> moments_;
   std::array<int, 4> energy_ids_ = {-1, -1, -1, -1};

@@ -15,7 +15,7 @@ namespace statejump::dem {
 namespace {
 
 // This flag is private in YADE's own headers and public in the declared interface. An explicit
-// instantiation ignores access rights, so this works with both.
+// instantiation ignores access rights, so it works with both.
 bool& view_has_functors();
 
 template <bool* flag>
@@ -27,15 +27,16 @@ template struct PrivateFlag<&yade::OpenGLRenderer::initDone>;
 constexpr int sides = 96;
 constexpr Real pi = 3.14159265358979323846;
 
-// Restores YADE's drawing state. The matrix is excluded: YADE saves it around each body, and
-// OpenGL's matrix stack is short. After about thirty pictures it has room for only one more.
+// Restores YADE's drawing state, except for the matrix. YADE itself saves the matrix around each
+// body, and OpenGL's matrix stack is short: after about thirty pictures it has room for only one
+// more.
 class Painter {
  public:
   Painter(const Vector3r& color, Real opacity) {
     glPushAttrib(GL_ENABLE_BIT | GL_CURRENT_BIT | GL_LINE_BIT | GL_POLYGON_BIT |
                  GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_LIGHTING_BIT);
     glDisable(GL_CULL_FACE);
-    // Both sides of a face look the same, lit according to the given normal.
+    // Light both sides of a face alike, according to the given normal.
     glLightModeli(GL_LIGHT_MODEL_TWO_SIDE, GL_FALSE);
     glColorMaterial(GL_FRONT_AND_BACK, GL_AMBIENT_AND_DIFFUSE);
     glEnable(GL_COLOR_MATERIAL);
@@ -65,7 +66,7 @@ void circle(Real radius, Real z) {
   glEnd();
 }
 
-// Lines on the cylinder parallel to the axis; few, so that rotation is visible.
+// Draws a few lines on the cylinder, parallel to its axis, which make rotation visible.
 void generators(Real radius, Real half_length, int count) {
   glBegin(GL_LINES);
   for (int i = 0; i < count; ++i) {
@@ -76,7 +77,7 @@ void generators(Real radius, Real half_length, int count) {
   glEnd();
 }
 
-// Cylinder wall. sign of the normal for lighting: 1 seen from outside, -1 from inside.
+// Draws a cylinder wall. `sign` of the normal for lighting: 1 if seen from outside, -1 from inside.
 void wall(Real radius, Real half_length, Real sign) {
   glBegin(GL_QUAD_STRIP);
   for (int i = 0; i <= sides; ++i) {
@@ -88,7 +89,7 @@ void wall(Real radius, Real half_length, Real sign) {
   glEnd();
 }
 
-// Ring in the plane at height z; a disc if the inner radius is 0.
+// Draws a ring in the plane at height z, or a disc if the inner radius is 0.
 void ring(Real inner, Real outer, Real z) {
   glBegin(GL_QUAD_STRIP);
   glNormal3d(0, 0, z < 0 ? -1 : 1);
@@ -100,7 +101,8 @@ void ring(Real inner, Real outer, Real z) {
   glEnd();
 }
 
-// Part of a sphere from its lowest point up to a polar angle [rad]. sign: as for wall().
+// Draws a sphere from its lowest point up to a polar angle [rad]. `sign` has the same meaning as in
+// wall().
 void sphere(Real radius, Real polar, Real sign) {
   constexpr int rings = 24;
   for (int k = 0; k < rings; ++k) {
@@ -243,7 +245,8 @@ void draw(const Ball& ball, const yade::State&, bool wire) {
 }
 
 void draw(const Socket& socket, const yade::State&, bool wire) {
-  // Draws only the lower half, so that the inside is visible; the contact uses the whole sphere.
+  // The drawing shows only the lower half, so that the inside is visible. The contact uses the
+  // whole sphere.
   const Real radius = socket.expanded(socket.radius);
   {
     const Painter painter(socket.color, 1);
@@ -301,7 +304,7 @@ void draw(const MeshBore& bore, const yade::State&, bool wire) {
 }
 
 void draw(const Slider& slider, const yade::State&, bool wire) {
-  // The pads are parts of one sphere; its bounding box is drawn as the slider.
+  // Both pads are parts of one sphere. The slider is drawn as the bounding box of this sphere.
   const Real half = slider.expanded(slider.radius);
   const Painter painter(slider.color, 1);
   if (wire) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);

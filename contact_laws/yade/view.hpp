@@ -11,11 +11,12 @@
 #ifdef STATEJUMP_HAS_VIEW
 namespace statejump::dem {
 
-// Lets a 3-D view that started before the plugin was loaded find the plugin's drawing functors.
-// Without them YADE ends with a failed assertion when such a view draws one of these shapes.
+// Makes a 3-D view that started before the plugin was loaded find the plugin's drawing functors.
+// Without this call, YADE ends with a failed assertion when such a view draws a shape of the
+// plugin.
 void refresh_view();
 
-// Magnification of a journal's play in the drawing. It is static, because YADE constructs the view
+// Magnification of a journal's play in drawings. It is static, because YADE constructs the view
 // functors itself and scripts cannot access them.
 struct ViewSettings {
   static Real clearance_scale() { return clearance_scale_; }

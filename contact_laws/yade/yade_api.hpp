@@ -29,8 +29,8 @@
 
 namespace statejump::dem {
 
-// Functions that the two interfaces offer under different names or access rights. A null pointer
-// to a body means that the body was erased.
+// Functions that the plugin's declarations and YADE's own headers offer under different names or
+// access rights. A null pointer to a body means that the body was erased.
 inline std::size_t number_of_bodies(const yade::Scene& scene) {
   return scene.bodies->size();
 }
@@ -51,7 +51,8 @@ inline yade::Interaction& interaction_to_change(const yade::Scene& scene, std::s
 // Creates the Python classes of factory classes, base classes first.
 inline void register_python_classes(const std::vector<std::string>& class_names) {
 #ifdef STATEJUMP_REAL_YADE_HEADERS
-  // buildDynlibDatabase() is private here; YADE's plugin loader calls it with the pending list.
+  // YADE's headers declare buildDynlibDatabase() private. YADE's plugin loader calls it with the
+  // list of pending classes.
   auto& pending = yade::ClassFactory::instance().pluginClasses;
   const auto kept = pending;
   pending.assign(class_names.begin(), class_names.end());

@@ -97,7 +97,8 @@ struct Minimum {
   double value;
 };
 
-/// Drops minima that rise by less than the prominence before a lower one; the lowest always stays.
+/// Removes each minimum that rises by less than the prominence before a lower minimum. The lowest
+/// one always remains.
 void drop_flat(std::vector<Minimum>& minima, const std::vector<double>& values, double prominence) {
   const int count = static_cast<int>(values.size());
   while (minima.size() > 1) {
@@ -120,7 +121,8 @@ void drop_flat(std::vector<Minimum>& minima, const std::vector<double>& values, 
   }
 }
 
-/// Distance of the wall from the journal's centre in a direction of its section; derivatives.
+/// Distance of the wall from the journal's centre along a direction in the journal's section, with
+/// derivatives.
 struct Section {
   const BoreMesh::Impl& m;
   Vector3 centre, axis;
@@ -148,7 +150,8 @@ struct Section {
     return true;
   }
 
-  /// Finds the local minimum between two angles relative to `start`; false if `start` has no wall.
+  /// Finds the local minimum of the distance between two angles relative to `start`. Returns false
+  /// if `start` meets no wall.
   bool minimum(const Vector3& start, double low, double high, int near, Sample& best) const {
     const Vector3 across = cross(axis, start);
     double angle = 0;
@@ -169,7 +172,7 @@ struct Section {
       (sample.slope > 0 ? high : low) = angle;
       double next = angle - sample.slope / sample.bend;
       if (!(sample.bend > 0) || !(next > low && next < high)) next = 0.5 * (low + high);
-      // A change of 1e-10 rad at a minimum changes the distance by a fraction of only 1e-20.
+      // Near a minimum, a change of 1e-10 rad changes the distance only by a fraction of 1e-20.
       if (std::abs(next - angle) < 1e-10) return true;
       angle = next;
     }
@@ -226,8 +229,8 @@ std::vector<BoreContact> find_contacts(const BoreMesh::Impl& m, const Vector3& j
   if (survey) survey->not_flat = infinity;
   if (grid.least - std::hypot(centre_x, centre_y) > limit) return {};
 
-  // Distances of the grid samples in the journal's section, interpolated between rows.
-  // thread_local, so that repeated calls allocate no memory.
+  // Distances of the grid samples in the journal's section, interpolated between rows. The vectors
+  // are thread_local, so that repeated calls allocate no memory.
   thread_local std::vector<double> distance, x, y, z;
   for (auto* v : {&distance, &x, &y, &z}) v->resize(columns);
   const bool tilted = lean_x * lean_x + lean_y * lean_y > 0;
@@ -237,7 +240,8 @@ std::vector<BoreContact> find_contacts(const BoreMesh::Impl& m, const Vector3& j
     if (tilted) level -= m.wall.radius * (grid.cosine[c] * lean_x + grid.sine[c] * lean_y);
     const double row = (level - grid.low) / grid.step;
     distance[c] = infinity;
-    // The wall beside a missing sample is unknown: assume that it is not flatter than the journal.
+    // The wall beside a missing sample is unknown. Assume that it is at least as curved as the
+    // journal.
     if (survey && !(row >= 0 && row <= grid.rows - 1)) survey->not_flat = 0;
     if (!(row >= 0 && row <= grid.rows - 1)) continue;
     const int lower = std::min(static_cast<int>(row), grid.rows - 2);
@@ -265,8 +269,8 @@ std::vector<BoreContact> find_contacts(const BoreMesh::Impl& m, const Vector3& j
     const double before = distance[(c + columns - 1) % columns];
     const double after = distance[(c + 1) % columns];
     if (!(here <= before && here < after) && !(here < before && here <= after)) continue;
-    // Between columns the wall may be nearer than at the sample, by the estimate of a parabola.
-    // Interpolation between rows adds an eighth of the second difference.
+    // Between columns the wall may be nearer than at the sample; `below` is a parabolic estimate of
+    // this. Interpolation between rows adds an eighth of the second difference.
     double below = 0;
     for (const double side : {before, after})
       if (side < infinity) below = std::max(below, side - here);
@@ -324,7 +328,7 @@ std::vector<BoreContact> find_ball_contacts(const BoreMesh::Impl& m, const Vecto
   const Grid& grid = m.grid;
   const int cells = grid.rows * grid.columns;
   const double limit = ball_radius + maximum_gap;
-  // Lower bound of the distance, from the offset to the axis (for a socket: to the middle).
+  // The offset from the axis (for a socket: from the middle) gives a lower bound of the distance.
   const Vector3 offset = ball_centre - m.wall.centre;
   const Vector3 across = m.kind == SurfaceKind::bore
                              ? Vector3(offset - offset.dot(m.wall.axis) * m.wall.axis)
@@ -338,9 +342,9 @@ std::vector<BoreContact> find_ball_contacts(const BoreMesh::Impl& m, const Vecto
     distance[i] = d >= 0 ? d : infinity;
     if (survey && d >= 0) survey->look_at(d, grid.hollow[i], grid.sag);
   }
-  // Selects cells whose part of the wall may contain a point nearer than `limit`. Such a point is
-  // at most `reach` away from the sample perpendicular to the line of sight, and nearer than the
-  // plane there by at most the sag of the wall.
+  // Selects cells whose part of the wall may contain a point nearer than `limit`. Perpendicular to
+  // the line of sight, such a point is at most `reach` away from the sample. Along it, the point is
+  // nearer than the sample by at most the sag of the wall.
   const double within = limit + 0.01 * m.wall.radius + grid.sag;
   std::vector<int> order;
   for (int i = 0; i < cells; ++i)
@@ -350,8 +354,8 @@ std::vector<BoreContact> find_ball_contacts(const BoreMesh::Impl& m, const Vecto
   std::sort(order.begin(), order.end(), [&](int a, int b) {
     return distance[a] < distance[b] || (distance[a] == distance[b] && a < b);
   });
-  // Floods from the lowest cell upwards. A basin that joins a lower one after rising less than the
-  // prominence is dropped.
+  // Floods the cells from the lowest upwards. A basin is dropped if it joins a lower one before it
+  // has risen by the prominence.
   thread_local std::vector<int> basin;
   basin.assign(cells, -1);
   std::vector<int> parent, root, alive;

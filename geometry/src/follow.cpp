@@ -13,7 +13,8 @@ namespace {
 using ConstVector = Eigen::Map<const Vector3>;
 using Vector = Eigen::Map<Vector3>;
 
-// Layout of the track. Header: position of the last search and the travel for which it is valid.
+// Layout of the track. The header has the position of the last search and the travel for which it
+// is valid.
 enum Header {
   at_centre = 0,
   at_axis = 3,
@@ -22,9 +23,9 @@ enum Header {
   at_flat = 8,  // whether contacts may be followed on the smooth wall beyond their patch
   header_size = 9
 };
-// One patch of wall per contact. For a journal, u is the wall's normal, which may be inclined to
-// the section; k_a is the curvature in the section, k_b perpendicular to it. For a ball, u and v
-// are the principal directions of k_a and k_b. Concave curvatures are positive.
+// Layout of a patch of the wall, one per contact. For a journal, u is the wall's normal, which may
+// be inclined to the section; k_a is the curvature in the section, k_b perpendicular to it. For a
+// ball, u and v are the principal directions of k_a and k_b. Concave curvatures are positive.
 enum Patch {
   at_point = 0,
   at_normal = 3,
@@ -44,9 +45,9 @@ constexpr double one_place = 1 - 0.0001;  // cosine; contacts with normals close
                                           // considered as one and searched again
 constexpr int most_refinements = 3;
 
-// Distance of a point from a circle through the origin. The tangent of the circle there is
-// horizontal, its centre is at height 1/k, and the point has coordinates (along, height). Exact for
-// any k, also 0.
+// Distance of a point from a circle through the origin. At the origin the tangent of the circle is
+// horizontal; the centre of the circle is at height 1/k. The point is (along, height). The result
+// is exact for any k, also 0.
 struct OnCircle {
   double distance;
   double cosine;  // of the rotation of the normal
@@ -109,7 +110,8 @@ void write_patch(double* patch, const Hit& hit, const Probe& probe, bool is_ball
   patch[at_face] = hit.face;
 }
 
-/// Moves a patch on the smooth wall to its contact's new position; false if a search is needed.
+/// Moves a patch on the smooth wall to the new position of its contact. Returns false if a search
+/// is needed.
 bool refine(const BoreMesh::Impl& m, double* patch, const Probe& probe, bool is_ball, double angle,
             FollowedContact& one) {
   const Vector3 start = ConstVector(patch + at_normal);
@@ -127,7 +129,7 @@ bool refine(const BoreMesh::Impl& m, double* patch, const Probe& probe, bool is_
   return false;
 }
 
-/// Searches the whole wall and restarts the track; continued contacts keep their labels.
+/// Searches the whole wall and creates a new track. Contacts that continue keep their labels.
 void search(const BoreMesh& mesh, const Probe& probe, bool is_ball, std::vector<double>& track) {
   const BoreMesh::Impl& m = mesh.impl();
   std::vector<Vector3> before;
@@ -145,8 +147,8 @@ void search(const BoreMesh& mesh, const Probe& probe, bool is_ball, std::vector<
       is_ball ? find_ball_contacts(m, probe.centre, probe.radius, reach, before, &survey)
               : find_contacts(m, probe.centre, probe.axis, probe.radius, reach, before, &survey);
   track.assign(header_size, 0);
-  // In a section of the wall there is always a nearest point; no contact means that the section
-  // misses the wall.
+  // Every section of the wall has a nearest point. So if there is no contact, the section misses
+  // the wall.
   double free = now.empty() && !is_ball ? 0 : is_ball ? reach : 2 * play;
   for (std::size_t i = 0; i < now.size(); ++i) {
     const BoreContact& one = now[i];

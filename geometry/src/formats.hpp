@@ -15,23 +15,23 @@ enum class MeshFormat : unsigned char { off, stl, ply, obj };
 /// Name of the format, e.g. "OFF".
 const char* to_string(MeshFormat format);
 
-/// Format for the extension of a file name; none for any other extension.
+/// Mesh format for the extension of a file name; nothing for any other extension.
 std::optional<MeshFormat> format_of(const std::string& file);
 
-/// Triangles from the whole content of a file. The content may be untrusted: time and memory are
-/// bounded by a multiple of its length, whatever counts it declares.
+/// Creates triangles from the whole content of a file. The content may be untrusted: time and
+/// memory are bounded by a multiple of its length, whatever counts it declares.
 ///
-/// Polygons are split into fans. Equal vertices are merged and numbered by first appearance;
-/// vertices of STL, and of PLY with float coordinates, also if they differ by rounding of floats.
-/// OFF: text, also with normals, colours and texture (N, C, ST), which are skipped. STL: text or
-/// binary, also with attributes after its facets. PLY: text and both binary byte orders, any
-/// elements besides vertex (x, y, z) and face or tristrips (vertex_indices or vertex_index). OBJ: v
-/// and f, indices from 1, or negative ones from the last vertex; a backslash at the end continues a
-/// line; everything else is skipped.
-/// @param name printed first in errors
-/// @throws MeshFailure `unreadable` if the content is not of this format, `bad_faces` for corners
-///         that
-///         do not exist, vertices that are not finite and a mesh without faces
+/// Polygons are split into fans. Equal vertices are merged and numbered by first appearance.
+/// Vertices of STL, and of PLY with float coordinates, are also merged if they differ by rounding.
+/// OFF: text; normals, colours and texture (N, C, ST) are skipped.
+/// STL: text or binary; attributes after the facets are skipped.
+/// PLY: text or binary in either byte order. It reads vertex (x, y, z) and face or tristrips
+///   (vertex_indices or vertex_index); other elements are skipped.
+/// OBJ: v and f, with indices from 1 or negative ones from the last vertex. A backslash at the end
+///   continues a line; everything else is skipped.
+/// @param name name of the mesh, printed first in errors
+/// @throws MeshFailure `unreadable` if the content is not of this format; `bad_faces` for corners
+///     that do not exist, vertices that are not finite, or a mesh without faces
 Triangles parse_triangles(MeshFormat format, std::string_view content, const std::string& name);
 
 }  // namespace statejump::geometry

@@ -25,7 +25,8 @@ constexpr int most_steps = 4096;               // largest number of faces that f
 constexpr double prominence_per_mismatch = 4;  // see BoreMesh::prominence()
 constexpr double least_prominence = 1e-12;     // [m]
 
-/// Runs work(begin, end) on parts of 0..count in threads. Results must not depend on the split.
+/// Runs work(begin, end) on parts of 0..count in parallel threads. Results must not depend on the
+/// division.
 template <class Work>
 void in_parallel(int count, const Work& work) {
   const int threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 8);
@@ -42,7 +43,7 @@ void in_parallel(int count, const Work& work) {
   for (std::thread& thread : pool) thread.join();
 }
 
-/// Smooth step with zero slope at 0 and 1, so that blended patches join smoothly across edges.
+/// A smooth step with zero slope at 0 and 1, with which blended patches join smoothly across edges.
 double step(double x) {
   return x * x * (3 - 2 * x);
 }
@@ -111,7 +112,8 @@ void BoreMesh::Impl::make_jets(int degree) {
     }
   const int count = static_cast<int>(vertices.size());
 
-  // Faces at each vertex, and vertex normals weighted with the angles of the faces.
+  // Finds the faces at each vertex and computes vertex normals weighted with the angles of the
+  // faces.
   std::vector<int> start(count + 1, 0);
   for (const auto& c : corner)
     for (const int v : c) ++start[v + 1];
@@ -146,8 +148,8 @@ void BoreMesh::Impl::make_jets(int degree) {
       ring.assign(1, v);
       seen[v] = v;
       std::size_t done = 0;
-      // If the first ring alone exceeds most_neighbours, two complete rings are used: part of a
-      // ring does not determine the other side, and one ring not the fourth order.
+      // If the first ring alone exceeds most_neighbours, two complete rings are used. Part of a
+      // ring leaves one side undetermined; one ring does not determine the fourth order.
       std::size_t taken = most_neighbours;
       for (int rings = 0; rings < 6; ++rings) {
         const std::size_t last = ring.size();
@@ -226,14 +228,15 @@ void BoreMesh::Impl::make_grid() {
       const Vector3 across = grid.cosine[c] * wall.axis_x + grid.sine[c] * wall.axis_y;
       Vector3 from = wall.centre, direction = across;
       if (bore) {
-        // Slightly inside both ends, because rounding of the border could hide the wall there.
+        // The ray starts slightly inside both ends, because rounding of the border could hide the
+        // wall there.
         double z = grid.low + r * grid.step;
         z = std::clamp(z, wall.low + 1e-6 * (wall.high - wall.low),
                        wall.high - 1e-6 * (wall.high - wall.low));
         from += z * wall.axis;
       } else {
         const double polar = std::clamp(grid.low + r * grid.step, 1e-6, pi - 1e-6);
-        // The axis points to the opening; polar angle 0 is the bottom of the cup.
+        // The axis points to the opening, so the polar angle 0 is the bottom of the cup.
         direction = std::sin(polar) * across - std::cos(polar) * wall.axis;
       }
       const Hit hit = meet(from, direction, near);
@@ -245,7 +248,8 @@ void BoreMesh::Impl::make_grid() {
       grid.face[cell] = hit.face;
     }
   }
-  // Between samples the wall can be nearer, at most by the largest difference of neighbours.
+  // Between samples the wall can be nearer than at them, at most by the largest difference of
+  // neighbours.
   double least = std::numeric_limits<double>::infinity(), largest_step = 0;
   for (int r = 0; r < grid.rows; ++r)
     for (int c = 0; c < grid.columns; ++c) {
@@ -260,7 +264,8 @@ void BoreMesh::Impl::make_grid() {
   make_reach();
 }
 
-/// A sample represents the wall half-way to its neighbours, all the way if one of them is missing.
+/// Computes how far a sample represents the wall: half-way to its neighbours, or the whole way if
+/// one is missing.
 void BoreMesh::Impl::make_reach() {
   grid.reach.assign(grid.radius.size(), 0);
   for (int cell = 0; cell < static_cast<int>(grid.radius.size()); ++cell) {
@@ -277,8 +282,9 @@ void BoreMesh::Impl::make_reach() {
 }
 
 /// Rejects facets that are too coarse to determine the surface between them. At 95 % of the edges
-/// the uncertainty must be below a fiftieth of the radius, which is the whole clearance of a wide
-/// joint. Elsewhere, as at sharp edges, the limit is half a radius. No polynomial may diverge.
+/// the uncertainty must be below a fiftieth of the radius, which equals the clearance of a wide
+/// joint. At the remaining edges, such as sharp ones, the limit is half a radius. No polynomial may
+/// diverge.
 void BoreMesh::Impl::refuse_coarse(const std::string& name) const {
   const double usual = (prominence - least_prominence) / prominence_per_mismatch;
   const double allowed = 0.02 * wall.radius;
@@ -347,7 +353,8 @@ Hit BoreMesh::Impl::follow(const Vector3& point, const Vector3& direction, int s
     const Vector3 a = jet[c[0]].origin - point;
     const Vector3 b = jet[c[1]].origin - point;
     const Vector3 d = jet[c[2]].origin - point;
-    // Signed volumes: equal for both faces of an edge, so no line passes between them.
+    // These signed volumes are equal for both faces of an edge, so no line passes between the
+    // faces.
     const std::array<double, 3> volume{direction.dot(cross(b, d)), direction.dot(cross(d, a)),
                                        direction.dot(cross(a, b))};
     const double sum = volume[0] + volume[1] + volume[2];
@@ -376,7 +383,7 @@ Hit BoreMesh::Impl::follow(const Vector3& point, const Vector3& direction, int s
         if (sign * volume[k] < 0 && neighbour[face][k] >= 0 && neighbour[face][k] != from)
           other = k;
       if (other < 0) {
-        // A line that misses the border only by rounding counts as a hit.
+        // A line that misses the border only by rounding hits the wall.
         const bool touching = *std::min_element(hit.weight.begin(), hit.weight.end()) > -1e-9;
         double total = 0;
         for (double& w : hit.weight) total += (w = std::max(w, 0.0));
@@ -417,7 +424,7 @@ void BoreMesh::Impl::blend(const Vector3& point, const Vector3& direction, Hit& 
 Hit BoreMesh::Impl::meet(const Vector3& point, const Vector3& direction, int start) const {
   Hit hit;
   if (start >= 0) hit = follow(point, direction, start);
-  // The ray must hit the free side of the wall, at s > 0.
+  // The ray must hit the free side of the wall at a distance s > 0.
   const auto faces_ray = [&](const Hit& h) {
     if (!h.found || !(h.s > 0)) return false;
     const auto& c = corner[h.face];
@@ -451,7 +458,7 @@ bool BoreMesh::Impl::meet_near(const Vector3& point, const Vector3& direction, i
 }
 
 bool BoreMesh::Impl::descend(const Vector3& query, Hit& hit) const {
-  // Newton's method for the foot of the normal; the step is halved until the distance decreases.
+  // Newton's method for the foot of the normal. The step is halved until the distance decreases.
   double distance = (query - hit.point).norm();
   for (int iteration = 0; iteration < 50; ++iteration) {
     const Vector3 way = query - hit.point;
@@ -459,7 +466,8 @@ bool BoreMesh::Impl::descend(const Vector3& query, Hit& hit) const {
     const Vector3 rest = way - off * hit.normal;
     if (rest.norm() <= 1e-13 * wall.radius) return true;
     const Principal p = principal(hit);
-    // Hessian of half the squared distance: 1 - off * (curvature towards the free side).
+    // Divides by the Hessian of half the squared distance, 1 - off * (curvature towards the free
+    // side).
     const auto divided = [&](const Vector3& direction, double curvature) -> Vector3 {
       const double hessian = 1 + off * curvature;
       return rest.dot(direction) / (hessian > 1e-6 ? hessian : std::max(-hessian, 1e-2)) *
@@ -479,7 +487,7 @@ bool BoreMesh::Impl::descend(const Vector3& query, Hit& hit) const {
       }
       blend(target, hit.normal, next);
       const double now = (query - next.point).norm();
-      // Accepts the last quadratic steps, which change the distance by less than rounding.
+      // Also accepts the last quadratic steps, which change the distance by less than rounding.
       if (now <= distance * (1 + 4e-16) + 1e-17) {
         const bool last = move.norm() <= 1e-13 * wall.radius;
         hit = next;

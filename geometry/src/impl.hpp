@@ -31,7 +31,7 @@ struct Hit {
   Eigen::Matrix3d bend;  ///< curvature tensor [1/m], positive where the wall rises to the free side
 };
 
-/// Points of the smooth wall on a grid around the axis: starting points of searches. Column i is at
+/// Points of the smooth wall on a grid around the axis, from which searches start. Column i is at
 /// the angle 2 pi i/columns; rows are levels of z (bore) or of the polar angle (socket).
 struct Grid {
   int columns = 0, rows = 0;
@@ -45,7 +45,7 @@ struct Grid {
   std::vector<double> hollow;  ///< largest concave curvature of the faces around the sample [1/m]
   double sag = 0;              ///< largest error of linear interpolation between rows [m]
 
-  /// Calls use for the up to eight cells around one. Columns are cyclic, rows are not.
+  /// Calls `use` for each of the up to eight cells around a cell. Columns are cyclic, rows are not.
   template <class Use>
   void for_neighbours(int cell, const Use& use) const {
     const int row = cell / columns, column = cell % columns;
@@ -68,21 +68,23 @@ struct BoreMesh::Impl {
 
   Impl(Triangles given, const BoreOptions& options, const std::string& name);
 
-  /// Follows a line from face to face, from a nearby face, until it passes through one.
+  /// Finds the face that a line passes through, by walking from face to face, starting nearby.
   Hit follow(const Vector3& point, const Vector3& direction, int start) const;
-  /// Facet that a ray first hits from its front side; -1: none.
+  /// Finds the facet that a ray first hits from its front side; returns -1 if there is none.
   int shoot(const Vector3& point, const Vector3& direction) const;
   /// follow() from a nearby face; shoot() if that fails.
   Hit meet(const Vector3& point, const Vector3& direction, int start) const;
-  /// Intersection of a ray with the wall, from a nearby face and a good guess of the distance;
-  /// false if there is none.
+  /// Intersects a ray with the wall, starting from a nearby face and a good guess of the distance.
+  /// Returns false if there is no intersection.
   bool meet_near(const Vector3& point, const Vector3& direction, int start, double guess,
                  Hit& hit) const;
-  /// Computes point, normal and bend of a hit from its face, weights and s of the flat face.
+  /// Computes point, normal and bend of a hit from its face, its weights and the distance s to the
+  /// flat face.
   void blend(const Vector3& point, const Vector3& direction, Hit& hit) const;
   /// blend() without normal and curvature.
   double blended_parameter(const Vector3& point, const Vector3& direction, const Hit& hit) const;
-  /// Nearest point of the smooth wall, from a start on it; false if the iteration leaves the wall.
+  /// Finds the nearest point of the smooth wall, starting from a point on it. Returns false if the
+  /// iteration leaves the wall.
   bool descend(const Vector3& query, Hit& hit) const;
 
   Triangles mesh;
@@ -115,7 +117,7 @@ struct Principal {
 };
 Principal principal(const Hit& hit);
 
-/// Curvatures of the wall in the section perpendicular to a journal's axis.
+/// Curvatures of the wall in the section perpendicular to the axis of a journal.
 struct SectionCurvature {
   Vector3 normal;  ///< unit normal of the section curve, in the section, towards the free side
   double section;  ///< normal curvature along the section curve [1/m], concave positive
@@ -129,17 +131,18 @@ struct Survey {
   double not_flat = 0;  ///< out: smallest distance of wall not flatter than the journal (ball) [m]
   std::vector<Hit> hits;  ///< out: wall points of the contacts
 
-  /// Includes a sample of the wall. @param sag of the wall between samples [m]
+  /// Includes a sample of the wall in the survey.
+  /// @param sag sag of the wall between samples [m]
   void look_at(double distance, double hollow, double sag) {
-    // Travel lengthens the distance: counted once, and once more as a margin. The distance from a
-    // centre off the axis has a sag between samples, too, of less than 1e-3 of the play.
+    // Travel increases the distance. It is counted twice, the second time as a margin. The distance
+    // from a centre off the axis also has a sag between samples, less than 1e-3 of the play.
     if (!(hollow * (distance + 2 * travel) < 1))
       not_flat = std::min(not_flat, distance - sag - 0.02 * travel);
   }
 };
 
 /// Implements BoreMesh::contacts() and ball_contacts().
-/// @param previous normals of the earlier contacts, @param survey may be null
+/// @param previous normals of the contacts at the earlier call, @param survey may be null
 std::vector<BoreContact> find_contacts(const BoreMesh::Impl& mesh, const Vector3& journal_centre,
                                        const Vector3& journal_axis, double journal_radius,
                                        double maximum_gap, const std::vector<Vector3>& previous,

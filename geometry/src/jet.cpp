@@ -50,7 +50,7 @@ Bend second(const Jet& jet, double u, double v) {
 
 using Solution = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 14, 1>;
 
-/// Number of neighbours up to which the equations are stored on the stack.
+/// Largest number of neighbours for which the equations are stored on the stack.
 constexpr int usual_rows = 64;
 
 /// Coefficients of the scaled polynomial by weighted least squares.
@@ -96,7 +96,8 @@ double Jet::meet(const Vector3& point, const Vector3& direction, double guess) c
     const double slope = dw - at.hu * du - at.hv * dv;
     const double step = (w0 + s * dw - at.h) / slope;
     s -= step;
-    // Newton's method squares the error: the next step would be of order step^2 times a curvature.
+    // Newton's method squares the error, so the next step would be of order step^2 times a
+    // curvature.
     if (!(std::abs(step) > 1e-9 * (scale_u + scale_v))) break;
   }
   return s;
@@ -111,7 +112,7 @@ JetHit Jet::hit(const Vector3& point, const Vector3& direction, double guess) co
   const Bend bend = second(*this, u, v);
   const double stretch = std::sqrt(1 + at.hu * at.hu + at.hv * at.hv);
   result.normal = (normal - at.hu * tangent_u - at.hv * tangent_v) / stretch;
-  // Dual basis of T_u = t_u + hu n, T_v = t_v + hv n.
+  // Dual basis of the tangents T_u = t_u + hu n, T_v = t_v + hv n.
   const Vector3 along_u = tangent_u + at.hu * normal, along_v = tangent_v + at.hv * normal;
   const double squared = stretch * stretch;  // determinant of the metric
   const Vector3 dual_u = ((1 + at.hv * at.hv) * along_u - at.hu * at.hv * along_v) / squared;
@@ -127,7 +128,8 @@ Jet fit_jet(const Vector3& origin, const Vector3& normal, const Vector3& along,
   Jet jet;
   jet.origin = origin;
   jet.normal = normal;
-  // Along the axes of the surface, coefficients that the neighbours do not determine are small.
+  // In a polynomial along the axes of the surface, coefficients that the neighbours do not
+  // determine are small.
   const Vector3 projected = along - along.dot(normal) * normal;
   if (projected.squaredNorm() > 0.01) {
     jet.tangent_v = projected.normalized();

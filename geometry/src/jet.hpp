@@ -17,8 +17,8 @@ struct JetHit {
                          ///< direction of the normal
 };
 
-/// Smooth surface around a vertex: polynomial height over the tangent plane, through the vertex.
-/// h = sum of coefficients x^i y^j, 1 <= i + j <= 4, x = u/scale_u, y = v/scale_v.
+/// Smooth surface around a vertex: the height over the tangent plane is a polynomial with h = 0 at
+/// the vertex. h = sum of coefficients x^i y^j, 1 <= i + j <= 4, x = u/scale_u, y = v/scale_v.
 struct Jet {
   Vector3 origin;
   Vector3 normal;  ///< normal of the plane, close to that of the surface
@@ -28,7 +28,8 @@ struct Jet {
   double scale_v = 1;
   std::array<double, 14> coefficient{};
 
-  /// Line parameter s at which point + s direction meets the surface, iterated from a guess.
+  /// Line parameter s at which point + s direction intersects the surface, by iteration from a
+  /// guess.
   double meet(const Vector3& point, const Vector3& direction, double guess) const;
   /// meet() with normal and curvature.
   JetHit hit(const Vector3& point, const Vector3& direction, double guess) const;
@@ -36,10 +37,11 @@ struct Jet {
 
 /// Fits a jet to the neighbours of a vertex by least squares; it passes through the vertex.
 ///
-/// Columns are scaled by 0.05^(degree - 1), about the ratio of the stencil size to the radius of
-/// curvature. If the neighbours do not determine all coefficients, this favours the lower powers.
+/// The columns of the least-squares matrix are scaled by 0.05^(degree - 1), where 0.05 is about the
+/// ratio of stencil size to radius of curvature. If the neighbours do not determine all
+/// coefficients, this scaling favours low powers.
 /// @param origin the vertex, @param normal unit, estimate of the surface normal
-/// @param along unit, an axis of the surface (of the bore): one axis of the polynomial
+/// @param along unit vector along the bore's axis, which becomes an axis of the polynomial
 /// @param points neighbours, >= 2
 /// @param degree 2 to 4
 Jet fit_jet(const Vector3& origin, const Vector3& normal, const Vector3& along,

@@ -142,7 +142,8 @@ struct Shown {
   }
 };
 
-/// Puts fields in place of their names. @param[out] complete whether it has all of them
+/// Replaces the names in braces by fields.
+/// @param[out] complete whether all fields exist
 std::string filled(std::string_view text, const MeshFields& fields, bool& complete) {
   std::string result;
   complete = true;

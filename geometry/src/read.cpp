@@ -15,7 +15,7 @@ constexpr std::uintmax_t most_bytes = std::uintmax_t{1} << 31U;  // binary STL o
   throw MeshFailure(file, reason);
 }
 
-/// Whole content of a file. Pipes, devices and other special files are not opened.
+/// Returns the whole content of a file. It does not open pipes, devices and other special files.
 std::string content_of(const std::string& file) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);

@@ -31,7 +31,7 @@ void validate(const BoreShape& shape) {
           "(-radius/2, radius/2) m");
 }
 
-/// Adds a closed band of quadrilaterals, each of two triangles; normals along d/di x d/dj.
+/// Adds a closed band of quadrilaterals, each of two triangles, with normals along d/di x d/dj.
 void add_band(Triangles& mesh, int around, const std::vector<int>& lower,
               const std::vector<int>& upper) {
   for (int i = 0; i < around; ++i) {

@@ -74,7 +74,7 @@ LongestSide longest_side(const Triangles& mesh, const std::array<int, 3>& face) 
 }
 
 bool has_area(const Triangles& mesh, const std::array<int, 3>& face) {
-  // A height below 1e-12 of the longest side is rounding of the corners.
+  // A height below 1e-12 of the longest side is caused by rounding of the corners.
   return area_vector(mesh, face).norm() > 1e-12 * longest_side(mesh, face).squared;
 }
 
@@ -119,7 +119,7 @@ Edges edges_of(const Triangles& mesh, const std::string& name) {
   return edges;
 }
 
-/// The two faces at each edge; edges with more faces are rejected later.
+/// The two faces at each edge. Edges with more faces are rejected later.
 class FacesAtEdges {
  public:
   explicit FacesAtEdges(const Triangles& mesh) {
@@ -144,15 +144,16 @@ class FacesAtEdges {
   std::unordered_map<std::uint64_t, std::array<int, 2>> faces_;
 };
 
-/// Removes faces with collinear corners, which exporters leave where an edge is divided on one side
-/// only. The neighbour at the longest side is divided instead, so the surface does not change. If
-/// this creates another face without area, the face stays and is rejected later.
+/// Removes faces with collinear corners, which exporters leave if an edge is divided in only one of
+/// its faces. The neighbour at the longest side is divided instead, so the surface does not change.
+/// If this creates another face without area, the first face stays and is rejected later.
 void divide_at_flat_faces(Triangles& mesh) {
   std::vector<int> flat;
   for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f)
     if (!has_area(mesh, mesh.faces[f])) flat.push_back(f);
   if (flat.empty()) return;
-  // Longest first: of several such faces on one line, it has a neighbour with an area.
+  // The longest face comes first: of several flat faces on one line, it has a neighbour with an
+  // area.
   std::stable_sort(flat.begin(), flat.end(), [&](int a, int b) {
     return longest_side(mesh, mesh.faces[a]).squared > longest_side(mesh, mesh.faces[b]).squared;
   });

@@ -17,15 +17,16 @@ inline std::array<double, 3> place(const Vector3& point) {
   return {point.x(), point.y(), point.z()};
 }
 
-/// Neighbours of each face: neighbours[f][k] shares the edge opposite to corner k; -1: border.
+/// Neighbours of each face: neighbours[f][k] shares the edge opposite to corner k; -1 at the
+/// border.
 using Neighbours = std::vector<std::array<int, 3>>;
 
 /// Border loop: its vertices in order.
 using Loop = std::vector<int>;
 
-/// Rejects faces that do not exist or are not finite, edges of three faces,
-/// orientations that CGAL cannot make consistent, sheets that meet in a vertex, and several parts.
-/// Removes faces with collinear corners; rejects those that cannot be removed.
+/// Rejects meshes without faces, corners that do not exist, vertices that are not finite, edges of
+/// three faces, orientations that CGAL cannot make consistent, sheets that meet in a vertex, and
+/// several parts. Removes faces with collinear corners; rejects those that cannot be removed.
 /// Reverses faces where neighbours disagree, so that all agree with the first face.
 /// @return neighbours of every face
 Neighbours check_topology(Triangles& mesh, const std::string& name);
@@ -35,7 +36,7 @@ std::vector<Loop> border_loops(const Triangles& mesh, const Neighbours& neighbou
 /// Rejects the first pair of faces that intersect (CGAL, exact predicates).
 void check_self_intersection(const Triangles& mesh, const std::string& name);
 
-/// Neighbours among the given faces only, as indices in `faces`; -1 for other neighbours.
+/// Neighbours among the given faces only, as indices in `faces`; -1 for faces that are not given.
 Neighbours restricted(const Neighbours& neighbours, const std::vector<int>& faces, int face_count);
 
 /// @throws kernel::OutOfRange with the first coordinate that is not finite

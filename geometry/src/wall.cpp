@@ -15,7 +15,7 @@ constexpr double pi = 3.141592653589793238462643;
 constexpr double cosine_45 = 0.70710678118654752440;
 constexpr double crease = 0.76604444311897803520;
 
-/// Least-squares surface: a cylinder, or a sphere (its axis is only a reference direction).
+/// Least-squares surface: a cylinder, or a sphere whose axis is only a reference direction.
 struct Round {
   Vector3 centre, axis;
   double radius = 0;
@@ -53,7 +53,7 @@ struct Weighted {
   double weight;
 };
 
-/// Vertices of the chosen faces, each with a third of the area of its faces as weight.
+/// Vertices of the chosen faces. The weight of a vertex is a third of the area of its faces.
 std::vector<Weighted> corners(const Triangles& mesh, const std::vector<Face>& faces,
                               const std::vector<int>& chosen) {
   std::vector<double> weight(mesh.vertices.size(), 0.0);
@@ -65,7 +65,8 @@ std::vector<Weighted> corners(const Triangles& mesh, const std::vector<Face>& fa
   return result;
 }
 
-/// Kasa's fit |p|^2 = 2 c p + k, linear in c and k; for a cylinder in its cross-section.
+/// Kasa's fit |p|^2 = 2 c p + k, linear in c and k. For a cylinder, the fit is done in its
+/// cross-section.
 Round linear_fit(const std::vector<Weighted>& points, const Vector3& axis, SurfaceKind kind) {
   Vector3 mean = Vector3::Zero();
   double total = 0;
@@ -138,7 +139,7 @@ Vector3 axis_of_normals(const std::vector<Face>& faces, const std::vector<int>& 
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum).eigenvectors().col(0);
 }
 
-/// Area-weighted mean cosine between the normals and the direction to the axis (centre).
+/// Area-weighted mean cosine between normals and the direction to the axis (for a socket: centre).
 double inward(const std::vector<Face>& faces, const std::vector<int>& chosen, const Round& round,
               SurfaceKind kind) {
   double sum = 0, total = 0;
@@ -157,7 +158,7 @@ Round fit(const Triangles& mesh, const std::vector<Face>& faces, const std::vect
   return refine(points, linear_fit(points, axis, kind), kind);
 }
 
-/// Patches of faces whose neighbours meet at less than the crease angle.
+/// Patches of faces in which neighbours meet at less than the crease angle.
 std::vector<std::vector<int>> patches(const std::vector<Face>& faces,
                                       const Neighbours& neighbours) {
   std::vector<std::vector<int>> result;
@@ -177,7 +178,8 @@ std::vector<std::vector<int>> patches(const std::vector<Face>& faces,
   return result;
 }
 
-/// Whether faces surround the axis: no angular gap between adjacent centres exceeds 0.67 pi.
+/// Returns whether faces surround the axis: no angular gap between the centres of adjacent faces
+/// exceeds 0.67 pi.
 bool surrounds(const std::vector<Face>& faces, const std::vector<int>& chosen, const Round& round) {
   if (chosen.size() < 3) return false;
   Vector3 x, y;
@@ -268,7 +270,7 @@ Wall find_wall(const Triangles& mesh, const Neighbours& neighbours, const BoreOp
   if (facing < 0.5 || (kind == SurfaceKind::bore && !surrounds(faces, chosen, round)))
     throw MeshFailure(name, kind == SurfaceKind::bore ? MeshReason::surrounds_no_axis
                                                       : MeshReason::faces_no_centre);
-  // Remove ends and chamfers, then fit the axis to the remaining faces; twice.
+  // Removes ends and chamfers, then fits the axis to the remaining faces; both are done twice.
   for (int pass = 0; pass < 2; ++pass) {
     std::vector<int> kept;
     for (const int f : chosen)

@@ -15,7 +15,7 @@ struct Wall {
   double low = 0, high = 0;  ///< axial range of the wall relative to `centre` [m]
 };
 
-/// Finds the wall; rejects open borders that are not ends, normals that point away from the axis,
+/// Finds the wall. Rejects open borders that are not ends, normals that point away from the axis,
 /// and radii outside the range of the options.
 Wall find_wall(const Triangles& mesh, const Neighbours& neighbours, const BoreOptions& options,
                const std::string& name);

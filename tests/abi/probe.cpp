@@ -16,7 +16,7 @@ py::tuple as_tuple(const statejump::yade_abi::Difference& difference) {
   return py::make_tuple(difference.check, difference.sentence);
 }
 
-// What the plugin's Python package asks for.
+// Sentence of the first difference, as the plugin's Python package requests it.
 std::string setup(const py::object& wrapper) {
   return statejump::yade_abi::difference_from_running_yade(wrapper).sentence;
 }
@@ -26,14 +26,16 @@ py::tuple all_checks(const py::object& wrapper) {
   return as_tuple(statejump::yade_abi::difference_from_running_yade(wrapper));
 }
 
-// Without the build identifiers: they do not change with the declarations that are compiled in.
+// All checks except that of the build identifiers, which do not depend on the compiled
+// declarations.
 py::tuple interface_checks(const py::object& wrapper) {
   GuardOptions options;
   options.check_build_ids = false;
   return as_tuple(statejump::yade_abi::difference_from_running_yade(wrapper, options));
 }
 
-// Name of what an entry of a table points to; entries of the child itself lose the child's name.
+// Name of the function or object that a table entry points to, with `child` instead of the child's
+// name.
 std::string entry_name(const void* entry, const std::string& child) {
   Dl_info info;
   if (!dladdr(entry, &info) || !info.dli_sname || info.dli_saddr != entry) {
@@ -44,8 +46,7 @@ std::string entry_name(const void* entry, const std::string& child) {
   return place == std::string::npos ? name : name.replace(place, child.size(), "child");
 }
 
-// Everything that the compiled declarations amount to: two that give the same are the same
-// interface.
+// All data that the compiled declarations determine. Equal descriptions mean equal interfaces.
 py::list description() {
   const auto declared = statejump::yade_abi::declared_interface();
   py::list result;

@@ -24,7 +24,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const auto& face : mesh.faces)
       for (const int corner : face)
         if (corner < 0 || corner >= count) std::abort();
-    // A triangle takes more than a byte of any format; polygons share their corners.
+    // In every format a triangle takes more than one byte; the triangles of a polygon share its
+    // corners.
     if (mesh.faces.empty() || mesh.faces.size() > size) std::abort();
   } catch (const MeshFailure& failure) {
     if (failure.cause().empty()) std::abort();

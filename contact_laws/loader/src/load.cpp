@@ -52,7 +52,8 @@ bool is_in_the_project(laws::LawKind kind, const std::string& name) {
   return false;
 }
 
-/// Replaces each parameter by the program's own of that name. @return first unknown name
+/// Replaces each parameter of a loaded law by the program's own parameter of that name.
+/// @return first unknown name
 std::string adopt_parameters(laws::LawInfo& info) {
   namespace known = laws::parameter;
   for (const laws::LawParameter*& parameter : info.parameters) {
@@ -111,7 +112,7 @@ std::vector<fs::path> folders() {
 laws::LoadedLaw inspect(const fs::path& file) {
   laws::LoadedLaw law;
   law.origin = file.string();
-  // Objects stay loaded until the program ends, because law tables point into them.
+  // Shared objects stay loaded until the program ends, because law tables point into them.
   void* object = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!object) {
     const char* reason = dlerror();

@@ -14,7 +14,7 @@ std::string size_difference(const DeclaredInterface& declared);
 std::string table_difference(const DeclaredInterface& declared);
 std::string getter_difference(const DeclaredInterface& declared,
                               const boost::python::object& wrapper);
-// Checks that getters or values cover every declared member, with the type that they establish.
+// Checks that getters or values cover every declared member and establish its type.
 std::string coverage_difference(const DeclaredInterface& declared);
 std::string sentinel_difference(const DeclaredInterface& declared,
                                 const boost::python::object& wrapper);

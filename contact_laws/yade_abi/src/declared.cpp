@@ -33,8 +33,8 @@
 
 namespace statejump::yade_abi {
 
-// Outside the unnamed namespace, so that its vtable has a dynamic symbol with a size. Never
-// constructed: the explicit instantiation alone creates the vtable.
+// This class is outside the unnamed namespace, so that its vtable has a dynamic symbol with a size.
+// It is never constructed; the explicit instantiation alone creates the vtable.
 template <class Base>
 struct DoNothing : Base {};
 
@@ -44,7 +44,7 @@ STATEJUMP_VIEW_TABLES(STATEJUMP_CHILD)
 #undef STATEJUMP_CHILD
 
 #pragma GCC diagnostic push
-// The classes have virtual functions; GCC lays out single inheritance as offsetof assumes.
+// The classes have virtual functions. GCC lays out single inheritance as offsetof assumes.
 #pragma GCC diagnostic ignored "-Winvalid-offsetof"
 
 DeclaredInterface declared_interface() {

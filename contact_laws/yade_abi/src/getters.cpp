@@ -16,7 +16,7 @@
 
 namespace statejump::yade_abi {
 
-// Class of the plugin with a getter that is read first, to check that getters can be read.
+// A getter of a class of the plugin. It is read first, to check that getters can be read.
 struct KnownMember {
   long first;
   double second;
@@ -35,7 +35,7 @@ struct Getter {
   std::size_t offset;  // [byte]
 };
 
-// Returns nothing if the function is not a getter of the expected form.
+// Returns nothing if `function` is not a getter of the expected form.
 std::optional<Getter> read_getter(const Memory& memory, const py::object& function) {
   PyObject* const object = function.ptr();
   if (std::string(Py_TYPE(object)->tp_name) != "Boost.Python.function") return std::nullopt;

@@ -22,8 +22,8 @@ struct KnownBinary {
   std::array<const char*, 3> build_ids;  // in the order of checked_libraries
 };
 
-// The build generates from known_binaries.csv: the rows, and built_for_row, the index of the binary
-// that the plugin is built for (-1: built with YADE's own headers).
+// The build generates this file from known_binaries.csv. It contains the rows and built_for_row,
+// the index of the binary that the plugin is built for (-1 if built with YADE's own headers).
 #include "statejump/yade_abi/known_binaries.inc"
 
 std::string name_of(const KnownBinary& binary) {

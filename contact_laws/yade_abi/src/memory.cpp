@@ -22,7 +22,8 @@ Memory::~Memory() {
 bool Memory::copy(const void* from, void* to, std::size_t bytes) const {
   const auto written = write(ends_[1], from, bytes);
   if (written <= 0) return false;
-  // Before an unreadable page some bytes may have been written; read them to empty the pipe.
+  // If an unreadable page follows, some bytes may have been written before it. Read them to empty
+  // the pipe.
   std::vector<char> taken(static_cast<std::size_t>(written));
   const bool whole = read(ends_[0], taken.data(), taken.size()) == written && taken.size() == bytes;
   if (whole) std::memcpy(to, taken.data(), bytes);
@@ -39,7 +40,8 @@ std::optional<std::string> Memory::text(Word address) const {
   constexpr std::size_t longest = 4096;
   std::string result;
   std::array<char, 64> part;
-  // Copy parts that end at page boundaries, because the page after the text may be unreadable.
+  // The text is copied in parts that end at page boundaries, because the page after the text may be
+  // unreadable.
   while (result.size() < longest) {
     const std::size_t bytes = part.size() - address % part.size();
     if (!copy(reinterpret_cast<const void*>(address), part.data(), bytes)) return std::nullopt;

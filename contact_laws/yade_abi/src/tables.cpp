@@ -14,8 +14,8 @@
 namespace statejump::yade_abi {
 namespace {
 
-// yade::Create<Class>() starts with operator new(sizeof(Class)); its argument is an immediate
-// operand: mov edi, imm32 (opcode bf), then call (e8).
+// Size that YADE allocates. yade::Create<Class>() starts with operator new(sizeof(Class)), whose
+// argument is an immediate operand: mov edi, imm32 (opcode bf), then call (e8).
 std::size_t allocated_size(const std::string& class_name) {
   const auto* code = static_cast<const unsigned char*>(
       symbol("_ZN4yade" + mangled_name("Create" + class_name) + "Ev"));
@@ -31,7 +31,7 @@ std::size_t allocated_size(const std::string& class_name) {
   return 0;
 }
 
-// Size [byte] of the symbol that starts at an address; 0 if no symbol starts there.
+// Size [byte] of the symbol that starts at an address; 0 if there is no such symbol.
 std::size_t symbol_size(const void* address) {
   Dl_info info;
   ElfW(Sym)* found = nullptr;
@@ -42,8 +42,9 @@ std::size_t symbol_size(const void* address) {
   return found->st_size;
 }
 
-// Vtable entries that every class defines itself: type information, destructors and their thunks
-// for second bases. They are looked up by name, because finding the name of an address is slow.
+// Vtable entries that every class defines itself: type information, destructors, and thunks of
+// destructors for second bases. They are looked up by name, because finding the name of an address
+// is slow.
 // @param name mangled name without enclosing N and E
 struct OwnEntries {
   OwnEntries(const void* (*find)(const std::string&), const std::string& name) {
@@ -55,8 +56,8 @@ struct OwnEntries {
     }
     entries[i] = find("_ZTIN" + name + "E");
   }
-  // Whether two entries have the same role in their classes. The complete destructor (D1) and the
-  // base destructor (D2) of a class may be the same function.
+  // Returns whether two entries have the same role in their classes. The complete destructor (D1)
+  // and the base destructor (D2) of a class may be the same function.
   bool same_role(const void* entry, const OwnEntries& other, const void* other_entry) const {
     for (std::size_t i = 0; i < entries.size(); ++i) {
       if (entry && entry == entries[i] && other_entry && other_entry == other.entries[i]) {
@@ -113,7 +114,7 @@ std::string table_difference(const DeclaredInterface& declared) {
   for (const auto& one : declared.tables) {
     if (std::string difference = table_difference(one); !difference.empty()) return difference;
   }
-  // Checked by its size in the symbol table, because it is a static member.
+  // A static member has no offset, so its size in the symbol table is checked.
   if (declared.view_flag_size != 0 &&
       symbol_size(symbol("_ZN4yade14OpenGLRenderer8initDoneE")) != declared.view_flag_size) {
     return "OpenGLRenderer.initDone is not the flag that is declared";

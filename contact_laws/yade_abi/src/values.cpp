@@ -21,7 +21,8 @@ namespace py = boost::python;
 using Offsets = std::vector<std::size_t>;
 using SharedPointer = boost::shared_ptr<void>;  // all boost::shared_ptr have the same layout
 
-// Address of the YADE object behind a Python object, as the named class; null for other classes.
+// Address of the YADE object behind a Python object, as an object of the named class; null for
+// other classes.
 char* place_of(const py::object& object, const std::string& class_name) {
   const auto* type =
       static_cast<const std::type_info*>(symbol("_ZTIN4yade" + mangled_name(class_name) + "E"));
@@ -35,8 +36,8 @@ SharedPointer shared(const py::object& object, const std::string& class_name) {
   return {place_of(object, class_name), [object](void*) {}};
 }
 
-// Overwrites bytes of an object with those of a value and restores them at the end of the scope. In
-// between, the library reads the member at the offset that it was compiled with.
+// Overwrites bytes of an object with those of a value and restores them at the end of the scope.
+// Until then, the library reads the member at the offset that it was compiled with.
 class ScopedOverride {
  public:
   ScopedOverride(char* place, const void* value, std::size_t bytes)
@@ -54,7 +55,7 @@ class ScopedOverride {
   std::string kept_;
 };
 
-// ---- sentinels: writes a value at the declared offset and compares what Python shows ------------
+// ---- sentinels: write a value at the declared offset, compare it with what Python shows --------
 
 // Generates numbers that occur nowhere else.
 class Sentinels {
@@ -106,8 +107,8 @@ bool sentinel_shown(Sentinels& next, const DeclaredMember& member, char* place,
   return true;  // pointers, strings and lists are checked only by their getter
 }
 
-// For each class with checked members, a class that can be instantiated. The abstract bases of
-// interaction physics have none.
+// Pairs of a class with checked members and a class that can be instantiated in its place. The
+// abstract bases of interaction physics have none.
 constexpr std::array<std::pair<const char*, const char*>, 15> made_as = {
     {{"Shape", "Sphere"},
      {"Bound", "Aabb"},
@@ -127,7 +128,7 @@ constexpr std::array<std::pair<const char*, const char*>, 15> made_as = {
 
 // ---- values ------------------------------------------------------------------------------------
 
-// Members that Python does not show, with the type that follows from how they are found.
+// Members that Python does not expose. The type follows from the way in which the member is found.
 struct HiddenMember {
   const char* class_name;
   const char* name;
@@ -153,7 +154,7 @@ constexpr std::array<HiddenMember, 12> hidden_members = {
       "std::allocator<boost::shared_ptr<yade::Interaction> > >"},
      {"InteractionContainer", "currSize", "unsigned long"}}};
 
-// Runs the value checks one by one; stops at the first difference and touches nothing after it.
+// Runs the value checks one by one. It stops at the first difference and writes nothing after it.
 class Search {
  public:
   Search(const DeclaredInterface& declared, const py::object& wrapper)
@@ -207,7 +208,7 @@ class Search {
       return table != 0 && word % sizeof(Word) == 0 && memory_.word(word) == table;
     });
   }
-  // Checks that the value is found at the declared offset and nowhere else.
+  // Checks that a value was found at the declared offset of a member and nowhere else.
   void expect_at(const char* class_name, const char* name, const Offsets& found) {
     const auto* declared = member(class_name, name);
     if (!declared || found == Offsets{declared->offset}) return;
@@ -303,7 +304,7 @@ class Search {
            "forces");
   }
 
-  // A dispatcher stores its scene in its functors; this one gets a fresh, empty scene.
+  // A dispatcher stores its scene in its functors. This dispatcher gets a fresh, empty scene.
   void functor() {
     const auto action = function<void(void*)>("_ZN4yade15BoundDispatcher6actionEv");
     const Place functor = make("Bo1_Sphere_Aabb", "Functor");
@@ -344,7 +345,7 @@ class Search {
            "body");
   }
 
-  // Lets the library add an interaction of both bodies and searches for it in the container.
+  // Makes the library add an interaction of two bodies and searches for it in the container.
   void interactions() {
     const auto* list = member("BodyContainer", "body");
     if (!list) return;
@@ -365,7 +366,7 @@ class Search {
       if (read_as<Word>(before.data() + i) == 0) count.push_back(i);
     }
     expect_at("InteractionContainer", "currSize", count);
-    // The list begins with a pointer to its array, the array with one to the interaction.
+    // The list starts with a pointer to its array, and the array with a pointer to the interaction.
     const Word table = table_pointer("Interaction");
     Word found = 0;
     expect_at("InteractionContainer", "linIntrs",

@@ -9,7 +9,8 @@
 
 namespace statejump::geometry::formats {
 
-/// Number from its bytes. @param swapped whether the byte order differs from that of the machine
+/// Converts bytes to a number.
+/// @param swapped whether the byte order differs from that of the machine
 template <class Number>
 Number from_bytes(const char* bytes, bool swapped) {
   std::array<char, sizeof(Number)> own;

@@ -14,7 +14,8 @@ void read_off(std::string_view content, Reading& reading) {
   for (const char* part : {"ST", "C", "N"})
     if (kind.substr(0, std::strlen(part)) == part) kind.remove_prefix(std::strlen(part));
   std::array<std::uint64_t, 2> counts{};
-  // Geomview accepts files without the word OFF, and some collections write no space: OFF8 6 12.
+  // Geomview accepts files that do not begin with OFF. Some collections write no space after it:
+  // OFF8 6 12.
   bool has_count = to_number(kind, counts[0]);
   if (!has_count && kind.substr(0, 3) != "OFF")
     reading.refuse_line(words.line(), MeshReason::wrong_first_word, "OFF");
@@ -29,12 +30,13 @@ void read_off(std::string_view content, Reading& reading) {
       reading.refuse_line(words.line(), MeshReason::line_without_counts);
   }
   words.skip_line();  // the number of edges
-  // The shortest vertex is "0 0 0", the shortest face "3 0 1 2", with line ends 6 and 8 bytes.
+  // The shortest line of a vertex is "0 0 0", that of a face "3 0 1 2": 6 and 8 bytes with line
+  // ends.
   const std::uint64_t length = content.size() + 1;
   if (counts[0] > length / 6 || counts[1] > (length - 6 * counts[0]) / 8)
     reading.refuse(MeshReason::counts_beyond_file,
                    {{"vertices", counts[0]}, {"faces", counts[1]}, {"bytes", content.size()}});
-  // One line per vertex. Normal, colour or texture may follow the three coordinates.
+  // Each line contains one vertex. Normal, colour or texture may follow its three coordinates.
   for (std::uint64_t i = 0; i < counts[0]; ++i) {
     if (!words.next(word)) reading.refuse(MeshReason::ends_before_vertex);
     Eigen::Vector3d point;

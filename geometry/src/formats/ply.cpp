@@ -154,7 +154,7 @@ class PlyBody {
     }
     return 0;
   }
-  /// Next number, which must be an integer of at most 32 bits.
+  /// Reads the next number, which must be an integer of at most 32 bits.
   std::int64_t integer(PlyType type) {
     const double value = number(type);
     constexpr double largest = 4294967296.0;
@@ -178,12 +178,12 @@ class PlyBody {
   std::size_t at_ = 0;
 };
 
-/// Rejects counts that do not fit into the file, and files without vertices or faces.
+/// Rejects counts that exceed the size of the file, and files without vertices or faces.
 void check_elements(const PlyHeader& header, std::string_view content, const Reading& reading) {
   bool has_points = false, has_faces = false;
   std::uint64_t left = content.size() - header.length + 1;  // the last line end may be missing
   for (const PlyElement& element : header.elements) {
-    // In text format a number takes at least a digit and a space.
+    // In text format, each number takes at least two bytes: a digit and a space.
     std::uint64_t least = 0;
     for (const PlyProperty& property : element.properties)
       least += header.ascii ? 2 : bytes_of(property.is_list ? property.count_type : property.type);
@@ -200,7 +200,8 @@ void check_elements(const PlyHeader& header, std::string_view content, const Rea
   if (!has_points || !has_faces) reading.refuse(MeshReason::element_missing);
 }
 
-/// Adds the triangles of consecutive strips. -1 ends a strip; every second triangle is reversed.
+/// Adds the triangles of consecutive strips. The index -1 ends a strip; every second triangle of a
+/// strip is reversed.
 void add_strips(const std::vector<std::int64_t>& corners, Reading& reading) {
   std::size_t start = 0;
   for (std::size_t k = 0; k < corners.size(); ++k) {

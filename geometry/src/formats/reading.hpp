@@ -17,7 +17,7 @@
 
 namespace statejump::geometry::formats {
 
-/// Vertices and polygons read so far, and the error messages of a reader.
+/// Collects the vertices and polygons of a file, and reports the errors of its reader.
 class Reading {
  public:
   Reading(MeshFormat format, const std::string& name) : format_(format), name_(name) {}
@@ -34,10 +34,11 @@ class Reading {
   }
 
   void add_point(const Eigen::Vector3d& point) { points_.push_back(point); }
-  /// Call it for 32-bit coordinates: the same vertex may then differ by rounding between faces.
+  /// Call this for 32-bit coordinates. Copies of a vertex in different faces may then differ by
+  /// rounding.
   void has_floats() { floats_ = true; }
-  /// @param corners indices from 0, checked only at the end. Polygons with fewer than three corners
-  ///        are left out: some programs write edges and points in this way.
+  /// @param corners vertex indices from 0, checked only at the end. Polygons with fewer than three
+  ///     corners are left out, because some programs write edges and points in this way.
   void add_polygon(const std::vector<std::int64_t>& corners) {
     if (corners.size() < 3) ++short_polygons_;
     for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
@@ -62,7 +63,8 @@ class Reading {
                        {{"face", polygon_of_[f]}, {"corner", corner}, {"vertices", count}});
       std::array<int, 3> face{};
       for (std::size_t k = 0; k < 3; ++k) face[k] = number[static_cast<std::size_t>(fans_[f][k])];
-      // Leaves out facets with two equal corners, which exporters write; the surface is the same.
+      // Leaves out facets with two equal corners, which some exporters write. They do not change
+      // the surface.
       if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])
         ++result.removed;
       else
@@ -75,15 +77,17 @@ class Reading {
  private:
   using Cells = std::multimap<std::array<double, 3>, int>;  ///< vertices by cell
 
-  /// Merges equal vertices, and 32-bit float vertices that differ by rounding only.
-  /// @param[out] vertices by first appearance @return index of the vertex of each point
+  /// Merges equal vertices, and 32-bit float vertices that differ only by rounding.
+  /// @param[out] vertices in the order of first appearance
+  /// @return index of the vertex of each point
   std::vector<int> weld(std::vector<Eigen::Vector3d>& vertices) const {
     double largest = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (!points_[i].allFinite()) refuse_faces(MeshReason::vertex_not_finite, {{"vertex", i}});
       largest = std::max(largest, points_[i].cwiseAbs().maxCoeff());
     }
-    // Two units in the last place of the largest coordinate: each of two vertices is rounded once.
+    // Two units in the last place of the largest coordinate, because each of two vertices is
+    // rounded once.
     const double near = floats_ ? 2 * std::numeric_limits<float>::epsilon() * largest : 0;
     Cells known;
     std::vector<int> number(points_.size());
@@ -101,7 +105,8 @@ class Reading {
     return {std::floor(point.x() / size), std::floor(point.y() / size),
             std::floor(point.z() / size)};
   }
-  /// First vertex whose coordinates all differ by at most `near`; -1: none.
+  /// First vertex whose coordinates all differ from the given ones by at most `near`; -1 if there
+  /// is none.
   static int known_vertex(const Cells& known, const std::vector<Eigen::Vector3d>& vertices,
                           const Eigen::Vector3d& point, double near) {
     const std::array<double, 3> cell = cell_of(point, near);
@@ -130,7 +135,8 @@ class Reading {
   bool floats_ = false;
 };
 
-// Each function adds the data of its format. @param content the whole file
+// Each function adds the data of a file in its format.
+// @param content the whole file
 void read_off(std::string_view content, Reading& reading);
 void read_stl(std::string_view content, Reading& reading);
 void read_ply(std::string_view content, Reading& reading);

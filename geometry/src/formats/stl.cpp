@@ -50,8 +50,9 @@ void read_stl_text(std::string_view content, Reading& reading) {
 constexpr std::size_t stl_header = 84;  // [byte]: 80 of text and 4 with the number of facets
 constexpr std::size_t stl_facet = 50;
 
-/// Offset of each facet. The last two bytes of a facet are the number of attribute bytes after it.
-/// Many programs store a colour there, so they only count if the file is longer than its facets.
+/// Offset of each facet. The last two bytes of a facet are the number of attribute bytes that
+/// follow. Many programs store a colour in them, so they only count if the file is longer than its
+/// facets.
 std::vector<std::size_t> facets_of(std::string_view content, std::uint64_t count, bool swapped) {
   const bool has_attributes = content.size() > stl_header + stl_facet * count;
   std::vector<std::size_t> starts;
@@ -77,7 +78,7 @@ void read_stl(std::string_view content, Reading& reading) {
   const std::vector<std::size_t> facets =
       long_enough ? facets_of(content, count, swapped) : std::vector<std::size_t>{};
   if (!long_enough || facets.size() != count) {
-    // A file that begins with "solid" is text, except if its length fits a binary file.
+    // A file that begins with "solid" is text, unless its length is that of a binary file.
     std::string_view word;
     if (Words(content, '\0').next(word) && same_word(word, "solid"))
       return read_stl_text(content, reading);

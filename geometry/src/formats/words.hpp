@@ -22,7 +22,7 @@ inline bool same_word(std::string_view word, std::string_view lower_case) {
          });
 }
 
-/// Converts a whole word to a number, correctly rounded; accepts "nan" and "inf".
+/// Converts a whole word to a correctly rounded number; also accepts "nan" and "inf".
 template <class Number>
 inline bool to_number(std::string_view word, Number& value) {
   if (!word.empty() && word.front() == '+') word.remove_prefix(1);
@@ -33,7 +33,7 @@ inline bool to_number(std::string_view word, Number& value) {
 /// Words of a text, line by line; comments are skipped.
 class Words {
  public:
-  /// @param goes_on whether a backslash at the end of a line continues it on the next one
+  /// @param goes_on whether a backslash at the end of a line continues this line on the next one
   Words(std::string_view text, char comment, bool goes_on = false)
       : text_(text), comment_(comment), goes_on_(goes_on) {}
 
@@ -44,7 +44,7 @@ class Words {
     }
     if (at_ >= text_.size() || text_[at_] == '\n') return false;
     if (comment_ != '\0' && text_[at_] == comment_) {
-      // A backslash does not continue a comment, because names of folders may end with one.
+      // A backslash does not continue a comment, because names of folders may end with a backslash.
       at_ = std::min(text_.find('\n', at_), text_.size());
       return false;
     }
@@ -55,7 +55,7 @@ class Words {
     word = text_.substr(start, at_ - start);
     return true;
   }
-  /// Next word, of this line or a later one; false at the end of the text.
+  /// Reads the next word, from this line or a later one. Returns false at the end of the text.
   bool next(std::string_view& word) {
     while (!in_line(word)) {
       if (at_ >= text_.size()) return false;
@@ -72,7 +72,7 @@ class Words {
   int line() const { return line_; }
 
  private:
-  /// Length of a backslash and line end at the current position; 0 if there is none.
+  /// Length of a backslash followed by a line end at the current position; 0 if there is none.
   std::size_t joint() const {
     if (!goes_on_ || text_[at_] != '\\') return 0;
     const std::string_view rest = text_.substr(at_ + 1, 2);

@@ -13,7 +13,8 @@ struct BareResult {
   double state[8];  ///< tips of AB and BC, then their velocities
 };
 
-/// Temperature change 0 → `peak` K → 0 in `duration` [s], in `steps` steps from the given state.
+/// Runs a temperature change 0 → `peak` K → 0 over `duration` [s] in `steps` steps, from the given
+/// state.
 inline BareResult bare_run(const linkage::Linkage& m, const linkage::State& start, double peak,
                            double duration, int steps) {
   const double ea1 = m.link_ab.young_modulus * m.link_ab.cross_section_area;

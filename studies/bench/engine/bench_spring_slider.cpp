@@ -28,7 +28,7 @@ thermal::Program program(thermal::Shape shape, int cycles) {
   return result;
 }
 
-/// One full Table 1 cycle with all events, into a new Path each time.
+/// Solves one full cycle of Table 1 with all events, into a new Path each time.
 void solve_fresh(benchmark::State& state) {
   const SpringSlider model = table1();
   const auto cycle = program(thermal::Shape::half_sine, 1);

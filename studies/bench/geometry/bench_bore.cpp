@@ -65,7 +65,8 @@ void bore_contacts(benchmark::State& state) {
 }
 BENCHMARK(bore_contacts)->RangeMultiplier(10)->Range(1000, 1000000);
 
-/// The same path in steps of 3e-4 rad: the smooth wall is evaluated in every step.
+/// Follows the contacts of bore_contacts() in steps of 3e-4 rad. The smooth wall is evaluated in
+/// every step.
 void bore_followed(benchmark::State& state) {
   const BoreMesh& mesh = bore(static_cast<int>(state.range(0)));
   std::vector<double> track;

@@ -17,12 +17,12 @@ using testing::random_problem;
 /// Status of one contact in two dimensions.
 enum class Guess { open, stick, slide_plus, slide_minus };
 
-/// Reactions for given statuses if these are consistent; uses no code of the solvers.
+/// Reactions for the given statuses, if they satisfy all conditions. Uses no code of the solvers.
 std::optional<Eigen::VectorXd> with_statuses(const Problem& problem,
                                              const std::vector<Guess>& guesses) {
   const Eigen::MatrixXd& w = std::get<Eigen::MatrixXd>(problem.delassus);
   const Eigen::Index size = problem.q.size();
-  // Unknowns (r, u): u - W r = q and two equations for each contact.
+  // The unknowns are (r, u). The equations are u - W r = q and two equations for each contact.
   Eigen::MatrixXd system = Eigen::MatrixXd::Zero(2 * size, 2 * size);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(2 * size);
   system.topLeftCorner(size, size) = -w;
@@ -52,7 +52,7 @@ std::optional<Eigen::VectorXd> with_statuses(const Problem& problem,
   const Eigen::FullPivLU<Eigen::MatrixXd> factors(system);
   if (!factors.isInvertible()) return {};
   const Eigen::VectorXd found = factors.solve(right);
-  // Far above rounding and far below the entries, which are of order one.
+  // Margin of the comparisons: far above rounding errors, far below the entries of order one.
   constexpr double margin = 1e-10;
   for (std::size_t k = 0; k < guesses.size(); ++k) {
     const Eigen::Index n = 2 * static_cast<Eigen::Index>(k);
@@ -66,7 +66,7 @@ std::optional<Eigen::VectorXd> with_statuses(const Problem& problem,
   return found.head(size);
 }
 
-/// Velocities of all solutions of a problem with two contacts in two dimensions.
+/// Velocities u of all solutions of a problem with two contacts in two dimensions.
 std::vector<Eigen::VectorXd> enumerated(const Problem& problem) {
   std::vector<Eigen::VectorXd> all;
   constexpr std::array guesses = {Guess::open, Guess::stick, Guess::slide_plus, Guess::slide_minus};
@@ -98,11 +98,13 @@ TEST(TwoContacts, give_one_of_the_enumerated_solutions) {
       for (const Eigen::VectorXd& u : all) {
         nearest = std::min(nearest, (u - solution.velocities).norm());
       }
-      // Merit tolerance 1e-10 times the condition of these matrices W, which is below 1e5.
+      // Allowed error: merit tolerance 1e-10 times the condition number of W, which is below 1e5
+      // here.
       EXPECT_LT(nearest, 1e-5 * problem.q.norm()) << to_string(method) << ", problem " << k;
     }
   }
-  // Friction up to 1.5 must make some problems ambiguous and the reference must find that.
+  // With friction up to 1.5, some problems must have several solutions, which the enumeration must
+  // find.
   EXPECT_GT(several, 0);
 }
 
@@ -137,8 +139,8 @@ TEST(InteriorPoint, solves_from_a_cold_start) {
 }
 
 TEST(InteriorPoint, goes_on_while_its_merit_falls) {
-  // Forty contacts constrain as many dofs: rounds of lagged friction, up to fifty steps. The method
-  // needs 31 steps on average; without its measures against a stagnating residual it needs 50.
+  // Forty contacts constrain as many dofs. The method updates lagged friction for up to fifty
+  // steps. It needs 31 on average, and 50 without its safeguards against a stagnating residual.
   std::mt19937 random(10);
   Options options;
   options.method = Method::interior_point;

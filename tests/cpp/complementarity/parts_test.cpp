@@ -25,7 +25,7 @@ Problem sparse_of(Problem problem) {
   return problem;
 }
 
-/// Matrix W of a scaled problem, computed column by column from its products.
+/// Matrix W of a scaled problem, computed column by column from products with unit vectors.
 Eigen::MatrixXd whole(const ScaledProblem& problem) {
   const Eigen::Index size = problem.q().size();
   Eigen::MatrixXd w(size, size);
@@ -95,7 +95,7 @@ TEST(Parts, BlockSystemSolvesItsEquations) {
         const Eigen::VectorXd left =
             rows.a[k].topLeftCorner(dimension, dimension) * u.segment(at, dimension) +
             rows.b[k].topLeftCorner(dimension, dimension) * found->segment(at, dimension);
-        // Random systems with at most 15 unknowns: condition numbers up to some thousand.
+        // These random systems have at most 15 unknowns and condition numbers up to a few thousand.
         EXPECT_LT((left - right[k].head(dimension)).norm(), 1e-11);
       }
     }
@@ -103,7 +103,8 @@ TEST(Parts, BlockSystemSolvesItsEquations) {
 }
 
 TEST(Parts, ContactThatDoesNotApproachCarriesNothing) {
-  // With friction of 4, coupling could also hold it without any load: a second solution.
+  // With a friction coefficient of 4, the coupling of W also permits a second solution: the contact
+  // holds itself without load.
   BlockMatrix w = BlockMatrix::Identity() * 3.0;
   w(0, 1) = w(1, 0) = 1.0;
   for (const double apart : {0.0, 1e-3}) {
@@ -116,7 +117,8 @@ TEST(Parts, ContactThatDoesNotApproachCarriesNothing) {
 }
 
 TEST(Parts, OneContactIsSolvedByItself) {
-  // Open, stuck and sliding; for a W of full rank the solution is exact to rounding.
+  // The random contacts are open, stuck or sliding. W has full rank, so the solution is exact to
+  // rounding.
   std::mt19937 random(6);
   int held[3] = {0, 0, 0};
   for (int run = 0; run < 300; ++run) {
@@ -140,10 +142,12 @@ TEST(Parts, LemkeSolvesByItself) {
     int pivots = 0;
     const auto reactions = lemke(scaled, 200, pivots);
     ASSERT_TRUE(reactions) << run;
-    // Some twenty pivots on a table with entries of order 1; their condition numbers multiply.
+    // Lemke's method makes about twenty pivots on a table with entries of order 1. Their condition
+    // numbers multiply.
     EXPECT_LT(Iterate(scaled, *reactions).merit, 1e-9) << run;
     EXPECT_GT(pivots, 0);
-    // Contacts that separate even without friction carry no reaction and need no pivot.
+    // Now all contacts separate even without friction: the reactions are zero and no pivot is
+    // needed.
     for (Eigen::Index i = 0; i < 6; ++i) problem.q.segment<2>(2 * i) = Eigen::Vector2d::UnitX();
     pivots = 0;
     const auto none = lemke(ScaledProblem(problem), 200, pivots);
@@ -153,7 +157,7 @@ TEST(Parts, LemkeSolvesByItself) {
   }
 }
 
-/// Merit that a method reaches without the other methods, and its number of steps.
+/// Merit that a single method reaches without help from other methods, and its number of steps.
 struct Reached {
   double merit;
   int steps;
@@ -172,8 +176,8 @@ Reached by_interior_point(const ScaledProblem& problem, int most) {
 
 TEST(Parts, InteriorPointConvergesByItself) {
   std::mt19937 random(7);
-  // A wrong search direction may still converge, but not within these average step counts. The
-  // present method needs 5.7, 7.6 and 9.5 steps; the limits are about a third higher.
+  // With a wrong search direction the method may still converge, but in more steps. The present
+  // averages are 5.7, 7.6 and 9.5 steps; the limits are a third higher.
   for (const auto& [most_friction, usual] :
        {std::pair{0.0, 7.5}, std::pair{0.9, 10.0}, std::pair{4.0, 12.5}}) {
     int steps = 0;

@@ -12,8 +12,8 @@ namespace {
 using testing::one_contact;
 using testing::random_problem;
 
-// Results of a 3 x 3 system of condition 3: a few roundings, and a factor 100 for the merit
-// tolerance 1e-10. In practice Newton's method ends far below that tolerance.
+// Tolerance for results of a 3 x 3 system with condition number 3: a few roundings plus 100 times
+// the merit tolerance 1e-10. In practice Newton's method ends far below that tolerance.
 constexpr double tight = 1e-9;
 
 TEST(OneContact, opens_where_nothing_presses) {
@@ -34,7 +34,7 @@ TEST(OneContact, sticks_inside_the_cone) {
 }
 
 TEST(OneContact, slides_against_its_velocity) {
-  // W = w I: r_n = -q_n/w, r_t = -mu r_n q_t/|q_t|, |u_t| = |q_t| - w mu r_n.
+  // Closed form for W = w I: r_n = -q_n/w, r_t = -mu r_n q_t/|q_t|, |u_t| = |q_t| - w mu r_n.
   const double w = 4.0;
   const Problem problem = {3, Eigen::MatrixXd(w * Eigen::Matrix3d::Identity()),
                            Eigen::Vector3d(-2.0, 3.0, -4.0), Eigen::VectorXd::Constant(1, 0.25)};
@@ -53,7 +53,7 @@ TEST(OneContact, without_friction_has_no_tangential_reaction) {
 }
 
 TEST(Problem, without_friction_has_its_one_solution) {
-  // One of two coupled contacts opens: with both closed, one reaction would have to be tensile.
+  // Two coupled contacts, of which one opens: if both were closed, one reaction would be tensile.
   for (const int d : {2, 3}) {
     Problem problem{d, Eigen::MatrixXd::Identity(2 * d, 2 * d), Eigen::VectorXd::Zero(2 * d),
                     Eigen::VectorXd::Zero(2)};
@@ -119,7 +119,7 @@ TEST(Problem, refuses_what_does_not_fit) {
 }
 
 TEST(Problem, without_a_solution_is_said_to_be_not_converged) {
-  // The contact is pressed together at a point that no force moves (W = 0).
+  // q presses the contact together, but no force moves it (W = 0), so there is no solution.
   for (const int dimension : {2, 3}) {
     const Solution solution =
         solve({dimension, Eigen::MatrixXd(Eigen::MatrixXd::Zero(dimension, dimension)),

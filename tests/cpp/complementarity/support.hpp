@@ -18,8 +18,8 @@ inline Problem one_contact(const Eigen::Vector3d& q, double mu) {
   return {3, Eigen::MatrixXd(w), q, Eigen::VectorXd::Constant(1, mu)};
 }
 
-/// W = H H^T of bodies with `freedoms` degrees of freedom, u = H v. u = 0 is attainable, so a
-/// solution exists (Acary and Cadoux 2013).
+/// Random problem with W = H H^T for bodies with `freedoms` degrees of freedom, u = H v. Since u =
+/// 0 is attainable, a solution exists (Acary and Cadoux 2013).
 inline Problem random_problem(int dimension, int contacts, int freedoms, double most_friction,
                               std::mt19937& random) {
   std::normal_distribution<double> normal;

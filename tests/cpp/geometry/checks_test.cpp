@@ -88,8 +88,8 @@ TEST(BoreChecks, FaceWithoutArea) {
             "face_without_area face=1 corners=0, 13, 12 at_m=0.00487224,0.00085,0.00333333");
 }
 
-/// Divides the edge of a face along the bore in halves, on its own side only, and its first half
-/// once more if `twice`: facets without an area fill the gaps.
+/// Halves one edge of a face, along the bore, in this face only. With `twice`, its first half is
+/// halved again. Facets of zero area fill the gaps.
 void divide_on_one_side(Triangles& mesh, std::size_t face, bool twice) {
   auto corners = mesh.faces[face];
   const auto vertex = [&](int k) { return mesh.vertices[static_cast<std::size_t>(k)]; };
@@ -412,22 +412,23 @@ TEST(BoreChecks, EveryReasonHasANameOfItsOwn) {
 }
 
 TEST(BoreChecks, VertexWithManyNeighboursIsFittedToAllOfThem) {
-  // The bottom of a cup: 150 faces meet there. Its curvature is the cup's all around; fitted to 60
-  // of the neighbours it would be that of an arc.
+  // At the bottom of a cup 150 faces meet. The fitted curvature must be that of the cup in all
+  // directions. A fit to 60 neighbours would give that of an arc.
   BoreOptions socket;
   socket.kind = SurfaceKind::socket;
   constexpr double radius = 8e-3;
   const BoreMesh cup(socket_triangles(radius, 1.4, 150, 12), socket);
   const WallPoint bottom = cup.closest_point({0, 0, -0.99 * radius});
-  // Rings of 0.145 rad: a fit of fourth order leaves the fourth power of two rings, 7e-3, times
-  // the coefficient of the sphere's sixth power over that of its second, 1/8.
+  // Vertex rings are 0.145 rad apart. The error of a fourth-order fit is (two rings)^4 = 7e-3,
+  // times 1/8, the ratio of the sphere's sixth-order and second-order coefficients.
   EXPECT_NEAR(std::abs(bottom.curvature_1) * radius, 1.0, 1e-3);
   EXPECT_NEAR(std::abs(bottom.curvature_2) * radius, 1.0, 1e-3);
   EXPECT_NEAR(bottom.curvature_1, bottom.curvature_2, 1e-6 / radius);
 }
 
 TEST(BoreChecks, TooCoarse) {
-  // Three to six facets around leave the polynomials open: they once returned depths of 1e7 m.
+  // Three to six facets around the bore do not determine the fitted polynomials. They once gave
+  // depths of 1e7 m.
   for (const int around : {3, 4, 5, 6})
     for (const int along : {1, 2, 4, 20}) {
       const std::string failure = refusal(bore_triangles(round_bore(), around, along));
@@ -438,8 +439,8 @@ TEST(BoreChecks, TooCoarse) {
             "facets_too_coarse open_m=0.00765 allowed_m=0.000102");
   for (const int around : {7, 8, 9, 12, 16})
     EXPECT_NO_THROW(BoreMesh(bore_triangles(round_bore(), around, 3))) << around;
-  // All neighbours of a cup's bottom lie beyond a crease and are taken nevertheless, each of 150
-  // from both of its faces: more than the 64 equations that fit on the stack.
+  // All neighbours of a cup's bottom lie beyond a crease, but the fit uses them. Each of the 150
+  // counts from both of its faces, which exceeds the 64 equations on the stack.
   BoreOptions socket;
   socket.kind = SurfaceKind::socket;
   EXPECT_EQ(refusal(socket_triangles(8e-3, 0.4, 150, 2), socket).find("facets_too_coarse "), 0u);

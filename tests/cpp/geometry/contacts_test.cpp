@@ -23,7 +23,7 @@ BoreShape lobed(int harmonic, double amplitude, double phase) {
   return shape;
 }
 
-/// Local minima of the distance between a shape's section and a centre, by brute force.
+/// Local minima of the distance between a centre and the section of a shape, by brute force.
 std::vector<double> brute_minima(const BoreShape& shape, const Vector3d& centre) {
   const int count = 20000;
   const auto distance = [&](double theta) {
@@ -60,7 +60,7 @@ TEST(BoreContacts, RoundBoreIsTheAnalyticJoint) {
     EXPECT_NEAR(found[0].depth, exact.penetration_depth, 1e-12);
     EXPECT_NEAR((found[0].normal - exact.normal).norm(), 0, 1e-5);
     EXPECT_NEAR(found[0].section_curvature, -1 / bearing_radius, 1e-5 / bearing_radius);
-    // The radius is larger at both ends: the wall is convex along the axis.
+    // The radius is larger at both ends, so the wall is convex along the axis.
     EXPECT_NEAR(found[0].axial_curvature, 0, 1e-5 / bearing_radius);
     EXPECT_EQ(found[0].previous, -1);
     EXPECT_TRUE(mesh.contacts(centre, z_axis, journal_radius, 0).empty() ==
@@ -85,7 +85,8 @@ TEST(BoreContacts, ThreeLobesTouchThrice) {
     EXPECT_NEAR(contact.depth, 1e-7, 1e-11);
     const double angle = std::atan2(contact.point.y(), contact.point.x()) - 0.3;
     EXPECT_NEAR(std::cos(3 * angle), -1, 1e-9);
-    // r = R + a cos(3t): curvature (r - 9 a)/r^2 at the minimum of r; concave, so negative here.
+    // Wall r = R + a cos(3t): curvature (r - 9 a)/r^2 at the minimum of r; concave, so it is
+    // negative here.
     const double r = smallest;
     EXPECT_NEAR(contact.section_curvature, -(r - 9e-5) / (r * r), 1e-4 / r);
   }
@@ -103,7 +104,8 @@ TEST(BoreContacts, AllMinimaOfLobedBoresAreFound) {
       const auto expected = brute_minima(shape, centre);
       const double gap = 1e-3;
       auto found = mesh.contacts(centre, z_axis, journal_radius, gap);
-      // Two minima about to merge may count as one, because their rise is below the prominence.
+      // Two minima that are about to merge may count as one, because the rise between them is below
+      // the prominence.
       ASSERT_EQ(found.size(), expected.size()) << harmonic << " " << i;
       several += found.size() > 1;
       for (std::size_t k = 0; k < found.size(); ++k)
@@ -116,7 +118,7 @@ TEST(BoreContacts, AllMinimaOfLobedBoresAreFound) {
 TEST(BoreContacts, TwoContactsAndTheirContinuation) {
   const BoreShape shape = lobed(3, 1e-5, 0.3);
   const BoreMesh mesh(bore_triangles(shape, 240, 10));
-  // Pressed towards a lobe's widest point, the journal touches both flanks.
+  // A journal that is pressed towards the widest point of a lobe touches both flanks.
   const Vector3d way(std::cos(0.3), std::sin(0.3), 0);
   std::vector<BoreContact> last;
   for (int step = 0; step < 50; ++step) {
@@ -158,7 +160,7 @@ TEST(BoreContacts, TiltedJournalInATaperedBoreSeesItsSection) {
   }
   EXPECT_NEAR(journal_radius - found[0].depth, nearest, 1e-10);
   EXPECT_NEAR(found[0].normal.dot(axis), 0, 1e-15);
-  // The radius is larger at both ends: the wall is convex along the axis.
+  // The radius is larger at both ends, so the wall is convex along the axis.
   EXPECT_NEAR(found[0].axial_curvature, 2 * 5e-5 / 25e-6, 0.02 * 4);
 }
 
@@ -201,7 +203,8 @@ TEST(BallContacts, BallInALobedBore) {
 }
 
 TEST(BallContacts, BetweenTheSamplesOfAWall) {
-  // The grid samples are far apart in a long bore, and relative to a thin journal or small ball.
+  // The samples of the search grid are far apart in a long bore, also compared with a thin journal
+  // or a small ball.
   const BoreShape shapes[] = {round_bore(), {bearing_radius, 100e-3}};
   for (const BoreShape& shape : shapes) {
     const BoreMesh mesh(bore_triangles(shape, 120, 40));
@@ -236,7 +239,8 @@ TEST(BoreContacts, AtTheEndOfAWallThatNarrowsThere) {
 }
 
 TEST(BallContacts, OnePlaceIsOneContact) {
-  // If grid rows are much closer than columns, an oblique valley of the distance has two minima.
+  // If the rows of the search grid are much closer than its columns, an oblique valley of the
+  // distance shows two minima.
   BoreShape shape{bearing_radius, 5e-3};
   shape.lobes = {{8, 1e-4, 0.3}, {7, 6e-5, 1.1}};
   const BoreMesh mesh(bore_triangles(shape, 150, 5));

@@ -38,8 +38,8 @@ struct Walk {
   double tilt = 0;  ///< amplitude of the tilt of a journal [rad]
 };
 
-/// Moves at random speeds of 1e-9 to 1e-6 m per step, along the wall once the depth is 2 um, and
-/// compares the followed contacts with a search of the whole wall in every step.
+/// Moves the centre at random speeds of 1e-9 to 1e-6 m per step, along the wall once the depth is 2
+/// um. Compares the followed contacts in every step with a search of the whole wall.
 Seen compare(const BoreMesh& mesh, const Walk& walk) {
   Random random;
   Seen seen;
@@ -86,7 +86,7 @@ Seen compare(const BoreMesh& mesh, const Walk& walk) {
       seen.curvature =
           std::max(seen.curvature, std::abs(curvature - found[k].curvature) / curvature);
     }
-    // A contact whose depth is below the uncertainty of the wall may be missing.
+    // The follower may miss a contact whose depth is below the uncertainty of the wall.
     const auto sure = std::count_if(expected.begin(), expected.end(), [&](const BoreContact& one) {
       return one.depth > mesh.prominence();
     });
@@ -101,11 +101,11 @@ Seen compare(const BoreMesh& mesh, const Walk& walk) {
   EXPECT_EQ(seen.lost, 0);
   // Uncertainty of the smooth wall.
   EXPECT_LT(seen.depth, mesh.prominence());
-  // A patch is left at this angle, and its error is smaller.
+  // A contact leaves its patch when the normal has rotated by patch_angle, so the error is smaller.
   EXPECT_LT(seen.normal, patch_angle);
-  // Arc length on a patch, patch_angle / k, times the derivative of k. For the lobes used here the
-  // latter is at most a n^3 / R^3 = 2e4 /m^2, which gives 1e-4 of k; inclination to the axis adds
-  // less.
+  // Bound: arc length on a patch, patch_angle / k, times the derivative of the curvature k. For the
+  // lobes used here this derivative is at most a n^3 / R^3 = 2e4 /m^2, which gives 1e-4 of k. The
+  // tilt of the axis adds less.
   EXPECT_LT(seen.curvature, 2e-4);
   // Most steps are covered by a patch; few need a search.
   EXPECT_LT(seen.how[2], walk.steps / 10);
@@ -164,14 +164,14 @@ TEST(FollowedContacts, BallInALobedBore) {
 }
 
 TEST(FollowedContacts, AxialMotionInACrownedBoreFollowsTheSag) {
-  // r = R + b (2 z/L)^2. When a journal moves by s along the axis, the wall recedes by its slope
-  // and by 1/2 k s^2, k = 8 b/L^2; there is no third-order term.
+  // Wall r = R + b (2 z/L)^2. If a journal moves by s along the axis, the wall recedes by slope
+  // times s plus 1/2 k s^2, k = 8 b/L^2. A third-order term does not exist.
   BoreShape shape = round_bore();
   shape.crown = 1e-3;
   const BoreMesh mesh(bore_triangles(shape, 200, 40));
   const double k = 8 * shape.crown / (shape.length * shape.length);
   const Vector3d axis(0, 0, 1);
-  // journal radius with a play that allows a motion of 50 um on a patch
+  // journal radius with enough play for a motion of 50 um on one patch
   constexpr double small = 4e-3;
   for (const double z : {0.0, 1e-3}) {
     std::vector<double> track;
@@ -210,7 +210,8 @@ TEST(FollowedContacts, AJumpIsSearched) {
 }
 
 TEST(FollowedContacts, AWallThatIsNotFlatterThanTheJournalIsSearchedAnew) {
-  // Radius of curvature 4.8 mm at the middle of a lobe: a smaller journal touches there.
+  // In the middle of a lobe the wall's radius of curvature is 4.8 mm, so a smaller journal touches
+  // there.
   const BoreMesh mesh(bore_triangles(lobed({{3, 4e-5, 0}}), 240, 10));
   std::vector<double> track;
   std::vector<FollowedContact> found;
@@ -235,7 +236,8 @@ TEST(FollowedContacts, AWallThatIsNotFlatterThanTheJournalIsSearchedAnew) {
 }
 
 TEST(FollowedContacts, ALabelStaysWithItsPlaceWhenAnotherComesFirst) {
-  // Towards a lobe's widest point, the journal touches both flanks; the deeper contact is first.
+  // A journal that moves towards the widest point of a lobe touches both flanks. The deeper contact
+  // comes first.
   const BoreMesh mesh(bore_triangles(lobed({{3, 4e-5, 0}}), 240, 10));
   std::vector<double> track;
   std::vector<FollowedContact> found;

@@ -16,7 +16,7 @@
 namespace statejump::geometry {
 namespace {
 
-/// Reason and fields of a failure, without the format, which is checked here.
+/// Reason and fields of a failure. Its format is checked here and omitted from the result.
 std::string refusal(MeshFormat format, const std::string& content) {
   try {
     parse_triangles(format, content, "mesh");
@@ -41,7 +41,8 @@ void expect_refused(MeshFormat format, const std::vector<Refused>& cases) {
     EXPECT_EQ(refusal(format, each.content), each.failure) << each.content;
 }
 
-/// Binary STL of two triangles with a common edge. `moved` shifts its vertices in the second one.
+/// Binary STL of two triangles with a common edge, whose vertices are shifted by `moved` in the
+/// second triangle.
 std::string two_facets(float moved) {
   const float corners[2][4][3] = {{{0, 0, 1}, {0, 0, 0}, {5, 0, 0}, {0, 3, 0}},
                                   {{0, 0, 1}, {5 + moved, 0, 0}, {5, 3, 0}, {0, 3 + moved, 0}}};
@@ -56,7 +57,7 @@ std::string two_facets(float moved) {
 }
 
 TEST(MeshFormats, FloatsAreWeldedWithinTheirRounding) {
-  // Unit in the last place of a float: 4.8e-7 near 5, 2.4e-7 near 3.
+  // Spacing of floats: 4.8e-7 near 5, 2.4e-7 near 3.
   const float unit = 4.8e-7F;
   const Triangles welded = parse_triangles(MeshFormat::stl, two_facets(unit), "mesh");
   EXPECT_EQ(welded.vertices.size(), 4U);
@@ -170,7 +171,7 @@ std::string binary_stl(std::uint32_t declared, int facets, const std::string& he
 }
 
 TEST(MeshFormats, Stl) {
-  // A binary file is not read as text, even if it begins with the word "solid".
+  // A binary file that begins with the word "solid" must not be read as text.
   const Triangles mesh =
       parse_triangles(MeshFormat::stl, binary_stl(2, 2, "solid of a maker that does not care"), "");
   const std::vector<std::array<int, 3>> faces{{0, 1, 2}, {0, 1, 3}};
@@ -266,7 +267,7 @@ TEST(MeshFormats, Ply) {
   const std::vector<std::array<int, 3>> faces{{0, 1, 2}};
   EXPECT_EQ(parse_triangles(MeshFormat::ply, ply("ascii", elements("3", "1"), body), "").faces,
             faces);
-  // Faces first, an element and properties that are skipped, Windows line ends.
+  // PLY file with faces first, an element and properties to skip, and Windows line ends.
   std::string strange =
       ply("ascii",
           "element face 1\nproperty uchar red\nproperty list uint8 uint32 "

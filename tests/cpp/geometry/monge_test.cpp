@@ -25,7 +25,7 @@ Curvatures ours(const std::vector<Vector3d>& points, const Vector3d& normal) {
   const Jet jet =
       fit_jet(points[0], normal, Vector3d::UnitZ(), {points.begin() + 1, points.end()}, 4);
   const JetHit hit = jet.hit(points[0], normal, 0);
-  // The tensor has no component along the normal, so one eigenvalue is 0; skip it.
+  // The tensor has no component along the normal, so one eigenvalue is 0. The loop skips it.
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(hit.bend);
   Eigen::Index along = 0;
   (solver.eigenvectors().transpose() * hit.normal).cwiseAbs().maxCoeff(&along);
@@ -71,8 +71,8 @@ TEST(JetFit, AgreesWithCgalsMongeViaJetFitting) {
     }
     apart *= bearing_radius;
     std::printf("%d around: principal curvatures differ by %.2g / R\n", around, apart);
-    // The two fits weigh the neighbours differently, and ours passes through the vertex. They
-    // differ by the neglected terms of fifth order, which are h^3 in the curvature.
+    // The two fits weight the neighbours differently, and only ours passes through the vertex.
+    // Their curvatures differ by neglected fifth-order terms, i.e. by order h^3 for facet length h.
     if (last > 0) {
       EXPECT_LT(apart, last / 6);
     }

@@ -23,7 +23,7 @@ struct Errors {
   double distance = 0, normal = 0, curvature = 0;
 };
 
-/// Largest errors for queries on both sides of the wall of a round bore.
+/// Largest errors for query points on both sides of the wall of a round bore.
 Errors round_errors(const BoreMesh& mesh) {
   Errors errors;
   Random random;
@@ -107,7 +107,7 @@ TEST(SmoothWall, LowerDegreesConvergeSlower) {
   }
 }
 
-// Compares the contact force of a journal with Hertz's force at the true depth.
+// Compares the contact force of a journal on the mesh with Hertz's force at the exact depth.
 TEST(SmoothWall, ForceAgainstDepthAt200Facets) {
   const BoreMesh mesh(bore_triangles(round_bore(), 200, 10));
   const auto pair = kernel::elastic_pair(70e9, 0.3, 70e9, 0.3);
@@ -128,8 +128,8 @@ TEST(SmoothWall, ForceAgainstDepthAt200Facets) {
       worst = std::max(worst, std::abs(force / exact - 1));
     }
   std::printf("force at 200 facets around, depth 1e-8 to 1e-6 m: largest error %.2e\n", worst);
-  // The relative error of the curvature is 4e-7. The effective radius amplifies it by R2/c = 51 and
-  // its square root halves it. The depth error is 2e-13 of 1e-8 m.
+  // The relative error of the curvature is 4e-7. The effective radius amplifies it by R2/c = 51;
+  // the square root in Hertz's force halves it. The depth error is 2e-13 m of 1e-8 m.
   EXPECT_LT(worst, 1e-4);
 }
 
@@ -155,7 +155,7 @@ TEST(SmoothWall, TurnedAndShiftedMeshGivesTheSame) {
   }
 }
 
-// Nearest point on r = R + a cos(3 theta), compared with a fine search in this test.
+// Nearest point on the wall r = R + a cos(3 theta), compared with a fine search in this test.
 TEST(SmoothWall, ClosestPointOnALobedBore) {
   BoreShape shape = round_bore();
   shape.lobes = {{3, 1e-5, 0.3}};
@@ -169,7 +169,7 @@ TEST(SmoothWall, ClosestPointOnALobedBore) {
       const double r = bore_radius(shape, theta, 0);
       return std::hypot(r * std::cos(theta) - query.x(), r * std::sin(theta) - query.y());
     };
-    // only one minimum, because the query is 1 mm off the axis
+    // The query is 1 mm off the axis, so only one minimum exists.
     double low = at - 0.6, high = at + 0.6;
     for (int k = 0; k < 100; ++k) {
       const double third = (high - low) / 3;
@@ -199,7 +199,7 @@ TEST(SmoothWall, SectionRadii) {
   shape.wear_depth = 4e-6;
   shape.crown = 1e-5;
   const BoreMesh mesh(bore_triangles(shape, 240, 20));
-  // Wear shifts the fitted axis; radii are measured here from the true axis.
+  // Wear shifts the fitted axis, so this test measures radii from the true axis.
   for (const double z : {-4e-3, 0.0, 3.3e-3}) {
     const auto radii = mesh.section_radii(z, 64);
     for (int i = 0; i < 64; ++i) {
@@ -239,9 +239,9 @@ TEST(SmoothWall, QueriesFromTwoThreadsAgree) {
 }
 
 TEST(SmoothWall, SharpEdgesAlongTheBoreDoNotReachIntoItsSides) {
-  // Two arcs of radius R about (0, -d) and (0, d) meet in edges where the normal rotates by half a
-  // turn minus 2 acos(d/R), 74 degrees here. From the second row of facets on, the sides must be
-  // the cylinders that a mesh without edges would give.
+  // Two arcs of radius R about (0, -d) and (0, d) meet at sharp edges. There the normal rotates by
+  // pi - 2 acos(d/R), 74 degrees here. From the second row of facets on, the sides must be the same
+  // cylinders as on a mesh without edges.
   constexpr double radius = 5e-3;
   constexpr double shift = 0.6 * radius;
   const double edge = std::asin(shift / radius);  // half of that rotation
@@ -274,8 +274,9 @@ TEST(SmoothWall, SharpEdgesAlongTheBoreDoNotReachIntoItsSides) {
       const WallPoint found = bore.closest_point(on);
       worst = std::max(worst, std::abs(found.distance));
     }
-  // A round bore with facets of this angle has 2 pi / facet = 195 around and an error of 2e-13 m.
-  // Beside the edge the fit is one-sided: 1e-10 m is ample, a fit across the edge exceeds it.
+  // A round bore with this facet angle has 2 pi / facet = 195 facets around and an error of 2e-13
+  // m. Beside the edge the fit is one-sided, but accurate to 1e-10 m. A fit across the edge exceeds
+  // this limit.
   EXPECT_LT(worst, 1e-10);
 }
 

@@ -45,7 +45,7 @@ inline std::string shown(const MeshFailure& failure) {
   return text.str();
 }
 
-/// What is shown of the MeshFailure that `work` throws; empty if it throws none.
+/// Text of the MeshFailure that `work` throws; empty if `work` throws none.
 template <class Work>
 std::string mesh_failure(Work&& work) {
   try {
@@ -67,7 +67,7 @@ class Random {
   std::mt19937 generator_{20210110};
 };
 
-/// The same shape with vertices at irregular positions on the wall: rings shifted, spacing uneven.
+/// Mesh as by bore_triangles(), with irregular vertices on the wall: shifted rings, uneven spacing.
 inline Triangles uneven_bore(const BoreShape& shape, int around, int along, double unevenness) {
   Triangles mesh = bore_triangles(shape, around, along);
   Random random;

@@ -30,7 +30,8 @@ using Eigen::Vector2d;
 constexpr auto rigid = TangentialCompliance::rigid;
 constexpr auto mindlin = TangentialCompliance::mindlin;
 
-/// The torsion spring is stress-free off the ideal flare angle, so it always loads the joint.
+/// The torsion spring's stress-free angle is not the ideal flare angle, so the spring always loads
+/// the joint.
 linkage::Linkage biased(double mu, double bias = 0.05, double stiffer = 1.0) {
   linkage::Linkage model = umbrella();
   model.law.friction = kernel::laws::friction_law(mu > 0.0 ? "mindlin" : "none");
@@ -42,7 +43,8 @@ linkage::Linkage biased(double mu, double bias = 0.05, double stiffer = 1.0) {
   return model;
 }
 
-/// No default values that could hide errors: paper's radius, expanding radii, unequal links.
+/// A model without default values, which could hide errors: paper's radius, expanding radii,
+/// unequal links.
 linkage::Linkage expanding(double mu) {
   linkage::Linkage model = biased(mu, -0.05);
   model.law.normal = kernel::laws::normal_law("hertz_paper");
@@ -58,11 +60,12 @@ linkage::Linkage with_partial_slip(linkage::Linkage model) {
   return model;
 }
 
-// Angles of order 1 have rounding errors of 1e-16, the closure 1e-16 m over links of 0.05 m.
+// Rounding errors are 1e-16 for angles of order 1, and 1e-16 m for the closure of links of 0.05 m.
 constexpr double angle_rounding = 1e-14;
 
-/// Virtual work at a point: for each tip coordinate, the gradient of the potential energy() equals
-/// F_t times the gradient of the material slide at the contact. Returns the largest difference [N].
+/// Equilibrium at a point by virtual work: for each coordinate of the link tips, the gradient of
+/// energy() equals F_t times the gradient of the material slide at the contact. Returns the largest
+/// difference [N].
 double out_of_balance(const linkage::Linkage& model, const ElasticJointPoint& point) {
   linkage::State at;
   at.bearing_centre = point.bearing_centre;
@@ -91,9 +94,9 @@ double out_of_balance(const linkage::Linkage& model, const ElasticJointPoint& po
       t + (r1 - half) * turn(at.journal_centre - Vector2d(model.frame_length, 0.0));
   double largest = 0.0;
   for (int i = 0; i < 4; ++i) {
-    // Central differences with h and 2h, δ = 1e-7 m. Truncation error h^4/30 V'''''(δ^-2.5): 1e-8
-    // N. Rounding errors of positions, 1e-17 m, in forces of 1 N and of the spring energy, 1e-19 J,
-    // over h.
+    // Central differences with h and 2h at δ = 1e-7 m. The truncation error h^4/30 V''''', with
+    // V''''' ~ δ^-2.5, is 1e-8 N. Rounding adds errors over h: of positions, 1e-17 m times 1 N, and
+    // of the spring energy, 1e-19 J.
     const double h = 1e-9;
     const double gradient = (8.0 * (potential(i, h) - potential(i, -h)) -
                              (potential(i, 2.0 * h) - potential(i, -2.0 * h))) /
@@ -110,7 +113,7 @@ TEST(ElasticLoop, PointsAreEquilibriaByVirtualWork) {
       for (const ElasticJointPoint& point : loop.points) {
         EXPECT_GT(point.normal_force, 0.5);
         EXPECT_LT(out_of_balance(model, point), 1e-7);
-        // With a single contact point the joint force is parallel to AC, also for elastic links.
+        // A single contact point makes the joint force parallel to AC, also for elastic links.
         EXPECT_NEAR(std::atan2(point.tangential_force, point.normal_force), point.contact_angle,
                     1e-12);
         EXPECT_LE(std::abs(point.tangential_force),
@@ -118,7 +121,7 @@ TEST(ElasticLoop, PointsAreEquilibriaByVirtualWork) {
       }
       EXPECT_LT(loop.largest_force_residual, 1e-12);
       EXPECT_LT(loop.largest_closure_residual, 2.4e-16);
-      // At 12 K per step. With a wrong Jacobian, Newton's method would only converge linearly.
+      // Limit for steps of 12 K. With a wrong Jacobian, Newton's method converges only linearly.
       EXPECT_LE(loop.most_iterations, 6);
     }
   }
@@ -134,9 +137,9 @@ TEST(ElasticLoop, LoadedStateIsAtRestForTheDynamics) {
       model.axial_damping_ratio = 0.1;
       const thermal::Program hold = heating(0.02, 0.0);
       const linkage::State end = simulate(model, hold, state, {2000, 0}).samples.back().state;
-      // Rounding of positions, 1e-17 m times k_T, leaves an unbalanced force of 1e-10 N. It
-      // displaces the softest mode, rotation of the contact angle with about F/c = 1e4 N/m, by
-      // 1e-14 m.
+      // Positions are rounded to 1e-17 m. Times k_T, this leaves an unbalanced force of 1e-10 N. In
+      // the softest mode, a rotation of the contact angle with about F/c = 1e4 N/m, it causes 1e-14
+      // m.
       EXPECT_LT((end.bearing_centre - state.bearing_centre).norm(), 1e-13);
       EXPECT_LT((end.journal_centre - state.journal_centre).norm(), 1e-13);
       EXPECT_NEAR(end.contact.tangential_force.x(), state.contact.tangential_force.x(), 1e-6);
@@ -145,9 +148,9 @@ TEST(ElasticLoop, LoadedStateIsAtRestForTheDynamics) {
 }
 
 TEST(ElasticLoop, TendsToTheRigidLoop) {
-  // δ ~ E^(-2/3), elongation e ~ E^(-1), comparable at E. The distance D to the rigid loop is then
-  // A s^(-2/3) (1 + B s^(-1/3)), with |B| of order 1; 1.5 is allowed. A tenfold stiffness s divides
-  // D by 10^(2/3) (1 + B s^(-1/3))/(1 + B (10 s)^(-1/3)).
+  // Depth δ ~ E^(-2/3) and elongation e ~ E^(-1) are comparable at E. With stiffness factor s, the
+  // distance to the rigid loop is D = A s^(-2/3) (1 + B s^(-1/3)), |B| of order 1; 1.5 is allowed.
+  // A tenfold s divides D by 10^(2/3) (1 + B s^(-1/3))/(1 + B (10 s)^(-1/3)).
   for (const double mu : {0.15, 0.3}) {
     const RigidLoop limit = rigid_loop(biased(mu), heating());
     const auto distance = [&](double stiffer) -> Eigen::Array3d {
@@ -183,9 +186,10 @@ TEST(ElasticLoop, EnoughFrictionLeavesNoJump) {
     EXPECT_NEAR(loop.theta4_jump(), 0.0, angle_rounding);
     EXPECT_EQ(loop.events.size(), 3u);
   }
-  // No drift: the rolled arc is measured from the start of rolling, not accumulated step by step.
+  // The angle must not drift: the rolled arc is measured from the start of rolling, not
+  // accumulated.
   EXPECT_NEAR(elastic_loop(biased(0.6), heating(), {100000, rigid}).theta2_jump(), 0.0, 1e-15);
-  // The spring leaves a small jump: it keeps its force on loading, its slide on unloading.
+  // Mindlin's spring leaves a small jump: loading keeps its force, unloading keeps its slide.
   const ElasticLoop loop = elastic_loop(biased(0.6), heating(), {2000, mindlin});
   EXPECT_GT(std::abs(loop.theta2_jump()), 1e-10);
   EXPECT_LT(std::abs(loop.theta2_jump()), 1e-8);
@@ -206,7 +210,7 @@ double theta2_of(const linkage::State& state) {
 }
 
 TEST(ElasticLoop, JumpThatEndsInSlipIsThatBetweenTwoEquilibria) {
-  // During slip the state depends on ΔT alone, not on the history or the number of steps.
+  // During slip the state depends only on ΔT, not on the history or the number of steps.
   const linkage::Linkage model = biased(0.15);
   const double expected =
       theta2_of(loaded_state(model, -std::atan(0.15))) - theta2_of(loaded_state(model));
@@ -237,8 +241,8 @@ TEST(ElasticLoop, JumpThatEndsInSlipIsThatBetweenTwoEquilibria) {
 }
 
 TEST(ElasticLoop, StepsMayBeLongerThanTheRollBetweenTwoLimits) {
-  // At a corner the tangential force is at one limit, after one step beyond the other. Cycles after
-  // the first repeat roll, slip, roll, slip, each event at the same temperature.
+  // At the turning point the tangential force is at one limit, one step later beyond the other.
+  // After the first cycle, the events roll, slip, roll, slip repeat at the same temperatures.
   constexpr int cycles = 20;
   for (const double mu : {0.002, 0.005, 0.01, 0.02, 0.05}) {
     for (const TangentialCompliance compliance : {rigid, mindlin}) {
@@ -250,7 +254,8 @@ TEST(ElasticLoop, StepsMayBeLongerThanTheRollBetweenTwoLimits) {
         const ElasticJointPoint& event = loop.events[i];
         EXPECT_EQ(event.slipping(), i % 2 == 1 || i == 4u * cycles);
         if (i < 8) continue;
-        // φ is accurate to 1e-14. φ and F_t/F_N change by 4e-3 per kelvin, so ΔT to 1e-11 K.
+        // φ is accurate to 1e-14. φ and F_t/F_N change by 4e-3 per kelvin, so ΔT is accurate to
+        // 1e-11 K.
         EXPECT_NEAR(event.temperature_change, loop.events[i - 4].temperature_change, 1e-10);
       }
     }
@@ -258,8 +263,9 @@ TEST(ElasticLoop, StepsMayBeLongerThanTheRollBetweenTwoLimits) {
 }
 
 TEST(ElasticLoop, IncrementsAreOfSecondOrder) {
-  // The cycle ends in a roll, so its whole path matters. Each halving of the step divides the error
-  // by 4. The shortened step before slip changes this ratio by 1/N for N steps up to slip.
+  // The cycle ends in a roll, so all of its path affects the result. Halving the step divides the
+  // error by 4. The shortened step before slip changes this ratio by 1/N, N = number of steps up to
+  // slip.
   for (const TangentialCompliance compliance : {rigid, mindlin}) {
     Eigen::Array2d values[4];
     for (int i = 0; i < 4; ++i) {
@@ -288,7 +294,7 @@ linkage::Linkage with_radii_at(const linkage::Linkage& model, double temperature
   return now;
 }
 
-/// Mindlin's k_t [N/m] with 1/G* = sum of (2 - nu)/G over both bodies, G = E/2.6.
+/// Mindlin's k_t [N/m] with 1/G* = sum of (2 - nu)/G over both bodies, G = E/2.6 (nu = 0.3).
 double contact_stiffness(const linkage::Linkage& model, const ElasticJointPoint& point) {
   const linkage::Linkage now = with_radii_at(model, point.temperature_change);
   const bool internal = has(model.law.normal, kernel::laws::Trait::accepts_bulging_wall);
@@ -339,7 +345,8 @@ TEST(ElasticLoop, PartialSlipIsItsLawAlongThePath) {
 }
 
 TEST(ElasticLoop, IncrementsOfPartialSlipAreOfSecondOrder) {
-  // The onset of slip is not located: the increment that contains it is a chord like any other.
+  // With partial slip the onset of gross slip is not located. Its increment is a chord like any
+  // other increment.
   for (const double mu : {0.3, 0.45}) {
     const auto jump = [&](int samples) {
       return elastic_loop(with_partial_slip(biased(mu)), heating(), {samples, mindlin})
@@ -357,7 +364,7 @@ TEST(ElasticLoop, IncrementsOfPartialSlipAreOfSecondOrder) {
 }
 
 TEST(ElasticLoop, PartialSlipLeavesAJumpThoughNothingSlips) {
-  // The rigid bodies roll forth and back without loss; annuli at the rim of the contact slip.
+  // Rigid bodies roll forth and back without loss, but here annuli at the rim of the contact slip.
   const linkage::Linkage model = with_partial_slip(biased(0.45));
   EXPECT_LT(std::abs(elastic_loop(biased(0.45), heating(), {400, rigid}).theta2_jump()), 1e-15);
   const ElasticLoop loop = elastic_loop(model, heating(), {400, mindlin});
@@ -365,8 +372,8 @@ TEST(ElasticLoop, PartialSlipLeavesAJumpThoughNothingSlips) {
   EXPECT_GT(std::abs(loop.theta2_jump()), 4e-8);
 }
 
-/// `model` with the expansion of BC for which slip at φ reverses at 50 K, in the rigid limit. The
-/// slip rate is R1 dθ4/dΔT − R2 dθ2/dΔT.
+/// `model` with an expansion of BC for which slip at contact angle φ reverses at 50 K if all bodies
+/// are rigid. The slip rate is R1 dθ4/dΔT − R2 dθ2/dΔT.
 linkage::Linkage turning_at_50_kelvin(linkage::Linkage model, double phi) {
   const linkage::Linkage middle = with_radii_at(model, 50.0);
   const auto turns = [&](double heat) {
@@ -405,8 +412,9 @@ TEST(ElasticLoop, SlipMayEndWithinABranch) {
       const double end = loop.events[1].temperature_change;
       const int last = static_cast<int>(end) - 1;
       ASSERT_EQ(loop.points[last].temperature_change, last);
-      // Extrapolates ΔT at zero rate of plastic slide, by a parabola through three steps. The
-      // changing radii change its slope by α ΔT R/c, 1e-3 per kelvin: third-order error 1e-4 K.
+      // Extrapolates ΔT to zero rate of plastic slide with a parabola through three steps. The
+      // changing radii change the slope of the rate by α ΔT R/c, 1e-3 per kelvin; the third-order
+      // error is 1e-4 K.
       Eigen::Matrix3d powers;
       Eigen::Vector3d heats;
       for (int i = 0; i < 3; ++i) {
@@ -420,10 +428,12 @@ TEST(ElasticLoop, SlipMayEndWithinABranch) {
       const double expected = powers.partialPivLu().solve(heats)[0];
       std::printf("slip ends at %.9f K, from the slide %.9f K\n", end, expected);
       EXPECT_NEAR(end, expected, 2e-4);
-      // A root of the rate, not of increments: only rounding, 1e-18 m/K by 1e-12 m/K².
+      // The event is a root of the rate, so its only error is rounding: 1e-18 m/K divided by 1e-12
+      // m/K².
       EXPECT_NEAR(run(model, 7, compliance).events[1].temperature_change, end, 1e-5);
     }
-    // δ/c = 1e-7 relative to a slope change of α ΔT = 1e-3 over 50 K: 5e-3 K if nothing cancels.
+    // Deviation: δ/c = 1e-7 while the slope changes by α ΔT = 1e-3 over 50 K, i.e. 5e-3 K if no
+    // errors cancel.
     linkage::Linkage stiff = model;
     stiff.link_ab.young_modulus *= 1e6;
     stiff.link_bc.young_modulus *= 1e6;
@@ -432,9 +442,9 @@ TEST(ElasticLoop, SlipMayEndWithinABranch) {
 }
 
 TEST(ElasticLoop, SeparatesWhereTheForceVanishes) {
-  // Without force nothing is deformed, so the rigid closed form holds. F_N decreases by
-  // K_M d(α)/dΔT / height, about 5e-3 N/K. The smallest resolved force, 7e-12 N, is thus reached
-  // 2e-9 K early; twice that is allowed, plus 1e-10 K for rounding.
+  // Without force nothing is deformed, so the rigid closed form holds. F_N decreases by K_M
+  // d(α)/dΔT / height, about 5e-3 N/K. The solver therefore reaches its smallest force, 7e-12 N,
+  // 2e-9 K early. The test allows twice that plus 1e-10 K for rounding.
   const double bias = 4e-3;
   const RigidLoop limit = rigid_loop(biased(0.0, bias), heating(1.0, -100.0));
   const ElasticLoop loop = elastic_loop(biased(0.0, bias), heating(1.0, -100.0));
@@ -445,8 +455,8 @@ TEST(ElasticLoop, SeparatesWhereTheForceVanishes) {
   EXPECT_NEAR(loop.points.back().temperature_change, limit.points.back().temperature_change,
               2.0 * loop.points.back().normal_force / slope + 1e-10);
   EXPECT_LT(loop.points.back().normal_force, 1e-11);
-  // The same during slip: no spurious end of slip where the force vanishes, for any step size.
-  // There Newton's method may fail somewhat before the smallest force: a factor of ten is allowed.
+  // Separation during slip: where the force vanishes, no spurious end of slip may appear, for any
+  // step size. Newton's method may fail slightly earlier, so a factor of ten is allowed.
   for (const double mu : {0.005, 0.05}) {
     const RigidLoop slips = rigid_loop(biased(mu, bias), heating(1.0, -100.0));
     for (const int samples : {3, 200}) {
@@ -457,7 +467,8 @@ TEST(ElasticLoop, SeparatesWhereTheForceVanishes) {
                   2e-8);
     }
   }
-  // With more friction the joint rolls there. Depth causes a difference δ/c = 2.5e-4 of the angle.
+  // With more friction the joint rolls until it separates. The depth changes the angle by the
+  // fraction δ/c = 2.5e-4.
   for (const TangentialCompliance compliance : {rigid, mindlin}) {
     const RigidLoop rolls = rigid_loop(biased(0.6, bias), heating(1.0, -100.0));
     const ElasticLoop rolling =
@@ -470,9 +481,10 @@ TEST(ElasticLoop, SeparatesWhereTheForceVanishes) {
 }
 
 TEST(ElasticLoop, SlowDampedDynamicsTendsToIt) {
-  // Velocities vanish as 1/T, so the error is A/T + B/T^2 + ... The test assumes that B/T relative
-  // to A is at most A/T relative to the jump, i.e. a lag of second order. (This fails if the static
-  // path comes close to the friction limit without slipping: the dynamics may slip there.)
+  // Velocities vanish as 1/T for duration T, so the error is A/T + B/T^2 + ... The test assumes
+  // that B/T relative to A is at most A/T relative to the jump, i.e. that the lag is of second
+  // order. (This fails if the static path nearly reaches the friction limit, because the dynamics
+  // may then slip.)
   for (linkage::Linkage model :
        {biased(0.15), biased(0.3), expanding(0.2), with_partial_slip(biased(0.3))}) {
     model.axial_damping_ratio = 0.1;
@@ -496,7 +508,8 @@ TEST(ElasticLoop, SlowDampedDynamicsTendsToIt) {
         2.0 * error[2] - error[1]);
     EXPECT_NEAR(error[0] / error[1], 2.0, 2.0 * std::abs(error[0] / jump));
     EXPECT_NEAR(error[1] / error[2], 2.0, 2.0 * std::abs(error[1] / jump));
-    // Error without the leading term. After a final roll it distinguishes the compliances.
+    // Allowed error without the A/T term. After a final roll it is small enough to distinguish the
+    // two compliances.
     const double rest = error[1] * error[1] / std::abs(jump);
     EXPECT_LT(std::abs(2.0 * error[2] - error[1]), rest);
     if (loop.events.back().motion == JointMotion::roll) {
@@ -508,8 +521,9 @@ TEST(ElasticLoop, SlowDampedDynamicsTendsToIt) {
 }
 
 TEST(ElasticLoop, SlowDampedDynamicsCreepsAsMuchWithPartialSlip) {
-  // Without gross slip nothing lags behind the friction limit: the error is A/T^2 + B/T^3 + ...
-  // Richardson extrapolation leaves less than a quarter of the last error, the B term.
+  // Without gross slip the motion does not lag behind a friction limit, so the error is A/T^2 +
+  // B/T^3 + ... for duration T. Richardson extrapolation leaves the B term, below a quarter of the
+  // last error.
   linkage::Linkage model = with_partial_slip(biased(0.4));
   model.axial_damping_ratio = 0.1;
   model.pin_damping = 0.1;
@@ -526,7 +540,7 @@ TEST(ElasticLoop, SlowDampedDynamicsCreepsAsMuchWithPartialSlip) {
   EXPECT_LT(std::abs(4.0 * error[1] - error[0]) / 3.0, 0.25 * std::abs(error[1]));
 }
 
-/// The argument that a loop refuses.
+/// The argument that elastic_loop() rejects.
 Argument refused(const linkage::Linkage& model, double contact_angle,
                  const ElasticLoopOptions& options = {}) {
   return refused_argument([&] { elastic_loop(model, heating(), options, contact_angle); });
@@ -548,7 +562,7 @@ TEST(ElasticLoop, RefusesWhatItCannotAnswer) {
   const Argument closed = refused(model, 0.0);
   EXPECT_EQ(closed.name, "radial clearance");
   EXPECT_LT(closed.value, 0.0);
-  // A spring that would crush the links must be rejected, not give a wrong number.
+  // The loop must reject a spring that would crush the links, instead of reporting a wrong number.
   model = biased(0.1);
   model.torsion_stiffness = 1e9;
   try {

@@ -18,7 +18,7 @@ using linkage::frame;
 using linkage::heating;
 using linkage::umbrella;
 
-/// Umbrella whose torsion spring is stress-free 0.05 rad above the ideal flare angle: it always
+/// Umbrella whose torsion spring is stress-free 0.05 rad above the ideal flare angle, so it always
 /// loads the joint.
 linkage::Linkage biased(double mu, double bias = 0.05) {
   linkage::Linkage model = umbrella();
@@ -29,7 +29,7 @@ linkage::Linkage biased(double mu, double bias = 0.05) {
   return model;
 }
 
-// Angles of order 1 have rounding errors of about 1e-16, φ that times R/c = 50.
+// Angles of order 1 have rounding errors of about 1e-16. φ amplifies them by R/c = 50.
 constexpr double angle_rounding = 1e-14;
 
 TEST(RigidLoop, PointsAreEquilibria) {
@@ -40,7 +40,8 @@ TEST(RigidLoop, PointsAreEquilibria) {
     EXPECT_NEAR((point.journal_centre - Eigen::Vector2d(frame, 0.0)).norm(), 0.1 * growth, 1e-16);
     EXPECT_NEAR(point.eccentricity.norm(), 1e-4, 1e-16);
     EXPECT_LE(std::abs(point.contact_angle), std::atan(0.3));
-    // Moments of both links about their pins; force (f, 0) at the bearing's contact point.
+    // Moments of both links about their pins balance, with a force (f, 0) at the bearing's contact
+    // point.
     const double height =
         point.bearing_centre.y() + model.bearing_radius * point.eccentricity.y() / 1e-4;
     const double f = point.spring_moment / height;
@@ -55,9 +56,10 @@ TEST(RigidLoop, EnoughFrictionRollsAndLeavesNoJump) {
   double largest = 0.0;
   for (const JointPoint& point : loop.points) {
     EXPECT_EQ(point.motion, JointMotion::roll);
-    // s is a difference of terms of 1e-2 m; φ is accurate to rounding.
+    // The arc s is a difference of terms of 1e-2 m, and φ is accurate to rounding.
     EXPECT_NEAR(rolling_arc(model, point), arc, 2e-17);
-    // Arcs on journal (5 mm) and bearing (5.1 mm) since the start, from the angle of n.
+    // Arcs on journal (5 mm) and bearing (5.1 mm) since the start, from the rotation of the normal
+    // n.
     const JointPoint& start = loop.points.front();
     const double turn = point.contact_angle - start.contact_angle;
     EXPECT_NEAR(0.005 * (turn - (point.theta4 - start.theta4)),
@@ -87,13 +89,14 @@ TEST(RigidLoop, SlipLeavesAJumpThatIsIndependentOfSampling) {
   }
   std::printf("jump theta2 %.9g theta4 %.9g rad\n", loop.theta2_jump(), loop.theta4_jump());
   ASSERT_EQ(loop.events.size(), 5u);  // roll, slip; at the corner roll, slip; end
-  // Onset of slip: the arc of the start, at |φ| = atan μ.
+  // At the onset of slip, |φ| = atan μ, the arc is still that of the start.
   const JointPoint& onset = loop.events[1];
   EXPECT_EQ(onset.motion, JointMotion::slip);
   EXPECT_EQ(std::abs(onset.contact_angle), std::atan(0.15));
   EXPECT_NEAR(rolling_arc(model, onset), rolling_arc(model, loop.points.front()), 2e-17);
   EXPECT_EQ(loop.events[2].temperature_change, 100.0);
-  // The cycle ends slipping in the other direction: that end point does not depend on the history.
+  // The cycle ends in slip in the opposite direction, so its end point does not depend on the
+  // history.
   const JointPoint end = joint_point(model, 0.0, -1, -onset.contact_angle);
   EXPECT_EQ(loop.theta2_jump(), end.theta2 - loop.points.front().theta2);
   EXPECT_GT(std::abs(loop.theta2_jump()), 1e-6);
@@ -103,8 +106,8 @@ TEST(RigidLoop, SlipLeavesAJumpThatIsIndependentOfSampling) {
 }
 
 TEST(RigidLoop, SeparatesAtItsClosedForm) {
-  // The joint holds |w| = a + c, the spring alone would hold its free |w|, which shrinks on
-  // cooling. The force vanishes where both are equal.
+  // Contact keeps |w| = a + c. Without contact the spring determines |w|, which shrinks on cooling.
+  // The contact force vanishes where both are equal.
   const double bias = 4e-3;
   const linkage::Linkage model = biased(0.0, bias);
   const RigidLoop loop = rigid_loop(model, heating(1.0, -100.0));
@@ -113,7 +116,7 @@ TEST(RigidLoop, SeparatesAtItsClosedForm) {
   const double free_frame = std::sqrt(0.05 * 0.05 + 0.1 * 0.1 - 2 * 0.05 * 0.1 * cosine);
   const double expected = ((frame + 1e-4) / free_frame - 1.0) / alpha;
   ASSERT_LT(expected, 0.0);
-  // Rounding of 1e-16 in 1 + α ΔT corresponds to 1e-11 K.
+  // A rounding error of 1e-16 in 1 + α ΔT corresponds to 1e-11 K.
   EXPECT_NEAR(loop.points.back().temperature_change, expected, 1e-10);
   EXPECT_EQ(loop.events.back().motion, JointMotion::separated);
 }

@@ -16,11 +16,11 @@ constexpr double ball_radius = 5e-3;
 constexpr double socket_radius = 5.1e-3;
 
 TEST(Ball, DepthNormalAndOnePoint) {
-  // (2, 3, 6) has length 7: |d| = 0.14 mm, so delta = 0.04 mm
+  // The vector (2, 3, 6) has length 7, so |d| = 0.14 mm and delta = 0.04 mm.
   const BodyMotion ball{Vector3(1.04, 2.06, 3.12) * 1e-3, Vector3::Zero(), Vector3::Zero()};
   const BodyMotion socket{Vector3(1.0, 2.0, 3.0) * 1e-3, Vector3::Zero(), Vector3::Zero()};
   const BallContact contact = ball_contact(ball, ball_radius, socket, socket_radius);
-  // rounding of positions of some mm: 4e-19 m
+  // positions of a few mm are rounded to 4e-19 m
   EXPECT_NEAR(contact.eccentricity, 0.14e-3, 2e-18);
   EXPECT_NEAR(contact.penetration_depth, 0.04e-3, 4e-18);
   expect_vector_near(contact.normal, Vector3(2, 3, 6) / 7, 2e-14, "normal");
@@ -43,7 +43,7 @@ TEST(Ball, IsTheRevoluteContactInItsPlane) {
     const BodyMotion ball{offset, random.vector(1.0), random.vector(10.0)};
     const BallContact a = ball_contact(ball, ball_radius, socket, socket_radius);
     const RevoluteContact b = revolute_contact(ball, ball_radius, socket, socket_radius, axis);
-    // The axial component of the offset is only rounding: 1e-16 of the offset.
+    // The axial component of the offset is 0 except for rounding, 1e-16 of the offset.
     EXPECT_NEAR(a.penetration_depth, b.penetration_depth, 1e-18);
     EXPECT_EQ(a.effective_radius, b.effective_radius);
     expect_vector_near(a.normal, b.normal, 1e-15 * 2e-4 / offset.norm(), "normal");
@@ -115,13 +115,13 @@ TEST(Ball, RefusesASocketThatDoesNotHoldTheBall) {
 constexpr double other_radius = 3e-3;
 
 TEST(OuterBalls, DepthNormalAndOnePoint) {
-  // (2, 3, 6) has length 7: the centres are 7 mm apart, so delta = 1 mm
+  // The vector (2, 3, 6) has length 7, so the centres are 7 mm apart and delta = 1 mm.
   const BodyMotion one{Vector3(1.0, 2.0, 3.0) * 1e-3, Vector3::Zero(), Vector3::Zero()};
   const BodyMotion two{Vector3(3.0, 5.0, 9.0) * 1e-3, Vector3::Zero(), Vector3::Zero()};
   const BallContact contact = outer_ball_contact(one, ball_radius, two, other_radius);
   EXPECT_NEAR(contact.penetration_depth, 1e-3, 4e-18);
   EXPECT_NEAR(contact.eccentricity, -7e-3, 2e-18);
-  // depth = eccentricity - clearance, with the other ball as a socket of negative radius
+  // depth = eccentricity - clearance, where the second ball is a socket of negative radius
   EXPECT_NEAR(contact.eccentricity + ball_radius + other_radius, contact.penetration_depth, 1e-18);
   expect_vector_near(contact.normal, Vector3(2, 3, 6) / 7, 1e-15, "from 1 into 2");
   expect_vector_near(one.position + contact.arm_1, two.position + contact.arm_2, 2e-18, "point");
@@ -140,7 +140,7 @@ TEST(OuterBalls, SeenFromTheOtherBallItIsTheSameContact) {
     const BallContact b = outer_ball_contact(two, other_radius, one, ball_radius);
     EXPECT_EQ(a.penetration_depth, b.penetration_depth);
     EXPECT_NEAR(a.effective_radius, b.effective_radius, 1e-18);
-    // rounding of positions of 0.1 m, 1e-17 m, relative to 8 mm
+    // positions of 0.1 m are rounded to 1e-17 m, relative to 8 mm
     expect_vector_near(a.normal, -b.normal, 1e-15, "normal");
     expect_vector_near(a.arm_1, b.arm_2, 1e-16, "arm");
     expect_vector_near(a.relative_velocity, -b.relative_velocity, 1e-14, "velocity");

@@ -33,7 +33,7 @@ TEST(ContactLaw, PressesTheBodiesApart) {
   ContactHistory history;
   const ContactResponse response =
       hertz_mindlin(aluminium(0.3), kinematics(1e-6, Vector3::Zero()), history);
-  // K delta^1.5 with K = 25896166508.62 N/m^1.5; tolerance for two roundings in R
+  // F = K delta^1.5 with K = 25896166508.62 N/m^1.5. The tolerance covers two roundings in R.
   EXPECT_NEAR(response.normal_force, 25.89616650862071, 1e-13 * 26);
   EXPECT_EQ(response.elastic_normal_force, response.normal_force);
   EXPECT_NEAR(response.normal_stiffness, 1.5 * response.normal_force / 1e-6, 1e-7);
@@ -75,7 +75,7 @@ TEST(ContactLaw, NoFrictionIsExactlyZero) {
   }
 }
 
-// Friction opposes the tangential velocity, never exceeds mu F_N, ignores the normal velocity.
+// Friction opposes the tangential velocity, never exceeds mu F_N, and ignores the normal velocity.
 TEST(ContactLaw, FrictionOpposesTangentialVelocity) {
   ContactHistory history;
   const Vector3 velocity(0.5, 0.03, -0.04);
@@ -131,7 +131,8 @@ TEST(ContactLaw, TangentialDamping) {
   EXPECT_NEAR(response.damping_dissipation, damping * speed * speed * 1e-6, 1e-20);
   // The history stores only the spring force.
   EXPECT_EQ(history.tangential_force, undamped_history.tangential_force);
-  // Fast but sticking: the sum is limited to the Coulomb limit; the rest still dissipates.
+  // Fast stick: the sum of spring and damper force is limited to Coulomb's limit; the remaining
+  // damper force dissipates.
   response = hertz_mindlin(parameters, kinematics(1e-6, Vector3(0, 0.2, 0.1)), history);
   EXPECT_FALSE(history.slipping);
   EXPECT_NEAR(response.tangential_force.norm(), 0.3 * response.normal_force, 1e-13);
@@ -148,7 +149,7 @@ TEST(ContactLaw, TangentialDamping) {
   EXPECT_EQ(response.damping_dissipation, 0.0);
 }
 
-// Random loading with all features active: limits and signs hold in every step.
+// Random loading with all features active: limits and signs must hold in every step.
 TEST(ContactLaw, InvariantsUnderRandomLoading) {
   Random random;
   ContactParameters parameters = aluminium(0.3);
@@ -200,7 +201,7 @@ TEST(ContactLaw, RotationInvariance) {
   }
 }
 
-// Action and reaction at one point: no net force, no net moment about any origin.
+// Action and reaction at one point leave no net force and no net moment about any origin.
 TEST(ContactLaw, WrenchBalances) {
   Random random;
   for (int i = 0; i < 100; ++i) {
@@ -218,8 +219,8 @@ TEST(ContactLaw, WrenchBalances) {
   }
 }
 
-// Leapfrog of a mass under a constant load on this contact, slightly off balance. The small
-// oscillation must decay by exp(-2 pi zeta/sqrt(1 - zeta^2)) per period.
+// Leapfrog integration of a mass under constant load on this contact, starting slightly off
+// equilibrium. The small oscillation must decay by exp(-2 pi zeta/sqrt(1 - zeta^2)) per period.
 TEST(ContactLaw, DampingRatioOfASmallOscillation) {
   ContactParameters parameters = aluminium(0.0);
   parameters.normal_damping_ratio = 0.05;
@@ -242,7 +243,8 @@ TEST(ContactLaw, DampingRatioOfASmallOscillation) {
     if (previous > before && previous >= depth) {
       const double peak = previous - 1e-6;
       const double expected = std::exp(-2 * testing::pi * 0.05 / std::sqrt(1 - 0.0025));
-      // the lagged velocity changes zeta by the fraction omega dt/2 = 0.005; 1 % is allowed
+      // the lagged velocity changes the damping ratio by the fraction omega dt/2 = 0.005; 1 % is
+      // allowed
       EXPECT_NEAR(peak / last_peak, expected, 0.01 * expected);
       last_peak = peak;
       ++peaks;
@@ -251,7 +253,7 @@ TEST(ContactLaw, DampingRatioOfASmallOscillation) {
   EXPECT_GE(peaks, 5);
 }
 
-// Leapfrog with a lagged damping force is bounded below the critical step, diverges above it.
+// Leapfrog with a lagged damping force stays bounded below the critical step and diverges above it.
 TEST(ContactLaw, CriticalTimeStepIsTheStabilityLimit) {
   const double mass = 0.3;
   for (const double stiffness : {0.0, 2e5, 4e7}) {
@@ -261,8 +263,8 @@ TEST(ContactLaw, CriticalTimeStepIsTheStabilityLimit) {
         EXPECT_EQ(critical, std::numeric_limits<double>::infinity());
         continue;
       }
-      // Slowest divergence: the dashpot alone, 1.02^1000 = 4e8. Below the critical step the
-      // oscillation has an amplitude of at most 1/sqrt(1 - 0.99^2) = 7.
+      // The dashpot alone diverges most slowly: 1.02^1000 = 4e8. Below the critical step the
+      // oscillation grows to at most 1/sqrt(1 - 0.99^2) = 7 times its initial amplitude.
       for (const double factor : {0.99, 1.01}) {
         const double dt = factor * critical;
         double x = 1.0;

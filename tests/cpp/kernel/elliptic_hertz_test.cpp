@@ -17,7 +17,7 @@ using statejump::testing::refused_argument;
 using testing::pi;
 
 /// Complete elliptic integrals of modulus k, b/a = k', by the arithmetic-geometric mean (Abramowitz
-/// and Stegun 17.6) in long double: independent of Boost's algorithm.
+/// and Stegun 17.6) in long double. This algorithm is independent of Boost's.
 struct Agm {
   long double k, e;
   explicit Agm(long double complement) {
@@ -62,16 +62,17 @@ TEST(EllipticHertz, AgreesWithJohnsonByArithmeticGeometricMean) {
     const double larger = 3.9;
     const EllipticShape shape = elliptic_shape({larger, larger / ratio, 0});
     const Reference expected = reference(larger, static_cast<long double>(larger / ratio));
-    // Near the circle the reference loses digits: K - E is 1e-2 of K at ratio 1.01: 1e-16.
+    // Near the circle the reference loses digits: at ratio 1.01, K - E is 1e-2 of K and has an
+    // error of 1e-16.
     EXPECT_NEAR(shape.short_axis / shape.long_axis, expected.axes, 1e-12 * expected.axes);
     EXPECT_NEAR(shape.long_axis, expected.long_axis, 1e-12 * expected.long_axis);
     EXPECT_NEAR(shape.stiffness, expected.stiffness, 1e-12 * expected.stiffness);
   }
 }
 
-// Timoshenko and Goodier, Theory of Elasticity, section 140: a = m (3F/(4 E* (A + B)))^(1/3), b
-// with n, cos(theta) = (B - A)/(A + B), A + B = (larger + smaller)/2. The printed third decimal is
-// off by up to 2: at 70 degrees n is printed as 0.802, but is 0.7999, which the
+// Timoshenko and Goodier, Theory of Elasticity, section 140: a = m (3F/(4 E* (A + B)))^(1/3), b the
+// same with n instead of m, cos(theta) = (B - A)/(A + B), A + B = (larger + smaller)/2. The printed
+// third decimal is off by up to 2: at 70 degrees n is printed as 0.802, but is 0.7999, which the
 // arithmetic-geometric mean confirms.
 TEST(EllipticHertz, TableOfTimoshenkoAndGoodier) {
   const double table[][3] = {{30, 2.731, 0.493}, {40, 2.136, 0.567}, {50, 1.754, 0.641},
@@ -96,7 +97,8 @@ TEST(EllipticHertz, CircleIsHertz) {
       for (const double depth : {1e-9, 1e-6, 1e-4}) {
         const EllipticHertzState state = elliptic_hertz(3.8e10, shape, depth);
         const HertzState circle = hertz(3.8e10, radius, depth);
-        // Circle of the mean curvature: to first order the difference is a quarter of the ratio.
+        // Reference: circle of the mean curvature. To first order the ellipse differs by a quarter
+        // of the axis ratio's deviation from 1.
         const double tolerance = 1e-12 + off;
         EXPECT_NEAR(state.force, circle.force, tolerance * circle.force);
         EXPECT_NEAR(state.stiffness, circle.stiffness, tolerance * circle.stiffness);
@@ -148,7 +150,8 @@ TEST(EllipticHertz, MonotonicInTheRatio) {
 }
 
 TEST(EllipticHertz, RelativeCurvatures) {
-  // Journal in a bore, parallel axes: line contact. At a right angle: 1/R1 and -1/R2.
+  // Journal in a bore: parallel axes give a line contact, perpendicular axes the curvatures 1/R1
+  // and -1/R2.
   const RelativeCurvature line = relative_curvature(200, 0, -196, 0, 0);
   EXPECT_DOUBLE_EQ(line.larger, 4);
   EXPECT_DOUBLE_EQ(line.smaller, 0);

@@ -18,24 +18,25 @@ using testing::pi;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-// Two ways to evaluate one product formula differ by about ten roundings of 1.1e-16.
+// Two ways to evaluate the same product differ by about ten roundings of 1.1e-16.
 constexpr double rounding = 2e-15;
 
-// Paper, Table 2 with R1 = 5 mm and c = 0.1 mm. Expected values in 40-digit arithmetic.
+// Table 2 of the paper with R1 = 5 mm and c = 0.1 mm. Expected values are computed in 40-digit
+// arithmetic.
 TEST(Hertz, PaperTable2Stiffness) {
   const ElasticPair pair = elastic_pair(70e9, 0.3, 70e9, 0.3);
   EXPECT_NEAR(pair.effective_young_modulus, 38461538461.538461538, rounding * 3.9e10);
   EXPECT_NEAR(pair.effective_shear_modulus, 7918552036.1990950226, rounding * 8e9);
-  // R2 - R1 is the difference of two rounded radii: 4e-19 m in 5.1e-3, 4e-15 relative to c = 1e-4
-  // m. K has half of this error.
+  // Rounding of radii of 5.1e-3 m causes an error of R2 - R1 of 4e-19 m, 4e-15 of c = 1e-4 m. The
+  // relative error of K is half of this.
   EXPECT_NEAR(internal_effective_radius(5e-3, 5.1e-3), 0.255, 1e-14 * 0.255);
   EXPECT_NEAR(
       hertz_stiffness(pair.effective_young_modulus, internal_effective_radius(5e-3, 5.1e-3)),
       25896166508.620712701, 1e-14 * 2.6e10);
 }
 
-// Different materials, R = 12.3 mm, delta = 3.7 um. Expected values: 40-digit arithmetic; stiffness
-// as the derivative, energy as the integral of K delta^1.5.
+// Different materials, R = 12.3 mm, delta = 3.7 um. Expected values are computed in 40-digit
+// arithmetic, the stiffness as derivative and the energy as integral of K delta^1.5.
 TEST(Hertz, UnlikeMaterialsAgainstHighPrecision) {
   const ElasticPair pair = elastic_pair(70e9, 0.3, 210e9, 0.28);
   const HertzState state = hertz(pair.effective_young_modulus, 0.0123, 3.7e-6);
@@ -52,9 +53,9 @@ TEST(Hertz, UnlikeMaterialsAgainstHighPrecision) {
 }
 
 // Independent derivation from Hertz's pressure p0 sqrt(1 - r^2/a^2). Its integral is the force.
-// Boussinesq's point load, 1/(pi E*) 1/r, integrated over it gives the surface displacements at the
-// centre and at the edge. Their difference is the flattened parabola a^2/(2R); the displacement at
-// the centre is delta.
+// Boussinesq's point load, 1/(pi E*) 1/r, integrated over this pressure, gives the surface
+// displacements at the centre and at the edge. The difference of both displacements is the
+// flattened parabola a^2/(2R); the displacement at the centre is delta.
 TEST(Hertz, FollowsFromPressureAndBoussinesq) {
   const double young = 5.7e10;
   const double p0 = 8.3e8;
@@ -83,8 +84,8 @@ TEST(Hertz, FollowsFromPressureAndBoussinesq) {
   }
   const double radius = a * a / (2.0 * (centre - edge));
   const HertzState state = hertz(young, radius, centre);
-  // The midpoint rule is exact for the periodic integrands (centre, edge). The error of the force
-  // is (pi/2/n)^2/24 * [f'] / integral = 6.4e-7 * 3.
+  // The midpoint rule is exact for the periodic integrands (centre, edge). The relative error of
+  // the force is (pi/2/n)^2/24 * [f'] / integral = 6.4e-7 * 3.
   EXPECT_NEAR(state.force, force, 3e-6 * force);
   EXPECT_NEAR(state.contact_radius, a, 1e-12 * a);
 }
@@ -104,13 +105,14 @@ TEST(Hertz, MindlinStiffnessFollowsFromCerruti) {
       const double phi = (i + 0.5) * 2.0 * pi / n;
       const double kernel =
           ((1.0 - nu[body]) + nu[body] * std::cos(phi) * std::cos(phi)) / (2.0 * pi * shear);
-      // r = a sin(psi): q dr = q0 a d(psi), the integral over psi is q0 a pi/2
+      // With r = a sin(psi), q dr = q0 a d(psi), whose integral over psi is q0 a pi/2.
       displacement += kernel * q0 * a * 0.5 * pi * 2.0 * pi / n;
     }
   }
   const double force = 2.0 * pi * a * a * q0;
   const double shear_modulus = elastic_pair(e[0], nu[0], e[1], nu[1]).effective_shear_modulus;
-  // The periodic midpoint rule integrates cos^2 exactly; tolerance for rounding of 64 additions.
+  // The periodic midpoint rule integrates cos^2 exactly. The tolerance covers rounding of 64
+  // additions.
   EXPECT_NEAR(mindlin_stiffness(shear_modulus, a), force / displacement,
               1e-13 * force / displacement);
 }
@@ -151,7 +153,8 @@ TEST(Hertz, GrowsWithDepthAndIsZeroInAGap) {
 TEST(Hertz, LimitsOfTheEffectiveRadius) {
   EXPECT_EQ(internal_effective_radius(5e-3, infinity), 5e-3);
   EXPECT_NEAR(internal_effective_radius(5e-3, 5e6), 5e-3, 2e-9 * 5e-3);  // 1 + R1/R2
-  // A wall that bulges towards the journal is the external contact of two balls, R1 R2/(R1 + R2).
+  // A wall that bulges towards the journal acts as a second ball in external contact: R = R1 R2/(R1
+  // + R2).
   EXPECT_NEAR(internal_effective_radius(1e-3, -3e-3), 0.75e-3, 1e-14 * 0.75e-3);
   EXPECT_THROW(internal_effective_radius(5e-3, 5e-3), std::invalid_argument);
   EXPECT_THROW(internal_effective_radius(5e-3, 4e-3), std::invalid_argument);
@@ -172,7 +175,7 @@ TEST(Hertz, ElasticPairRefusesBadMaterials) {
   EXPECT_THROW(elastic_pair(70e9, nan, 70e9, 0.3), std::invalid_argument);
   const auto refused = [] { elastic_pair(70e9, 0.3, -1.5, 0.3); };
   EXPECT_EQ(refused_argument(refused), Argument("young_modulus_2", -1.5));
-  // Against a rigid body only the elastic one yields: E* = E/(1 - nu^2), twice that of a pair.
+  // A rigid body does not yield, so E* = E/(1 - nu^2), twice that of two equal bodies.
   EXPECT_NEAR(elastic_pair(70e9, 0.3, infinity, 0.3).effective_young_modulus, 70e9 / 0.91,
               rounding * 77e9);
 }

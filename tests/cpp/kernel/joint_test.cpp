@@ -25,16 +25,16 @@ BodyMotion at(const Vector3& position, const Vector3& velocity = Vector3::Zero()
 }
 
 TEST(Revolute, DepthNormalAndOnePoint) {
-  // (3, 4) has length 5: |d| = 0.11 mm, so delta = 0.01 mm; axial offset 2 mm
+  // The vector (3, 4) has length 5, so |d| = 0.11 mm and delta = 0.01 mm. The axial offset is 2 mm.
   const BodyMotion journal = at(Vector3(1.066, 2.088, 5.0) * 1e-3);
   const BodyMotion bearing = at(Vector3(1.0, 2.0, 3.0) * 1e-3);
   const RevoluteContact contact =
       revolute_contact(journal, journal_radius, bearing, bearing_radius, Vector3::UnitZ());
-  // rounding of positions of some mm: 4e-19 m
+  // positions of a few mm are rounded to 4e-19 m
   EXPECT_NEAR(contact.eccentricity, 0.11e-3, 2e-18);
   EXPECT_NEAR(contact.penetration_depth, 0.01e-3, 4e-18);
   expect_vector_near(contact.normal, Vector3(0.6, 0.8, 0.0), 2e-14, "normal");  // 2e-18/0.11e-3
-  // Both arms end at one point, in the journal's mid-plane half-way between the two surfaces.
+  // Both arms end at the same point, in the journal's mid-plane, half-way between the two surfaces.
   const Vector3 point = journal.position + contact.arm_1;
   expect_vector_near(bearing.position + contact.arm_2, point, 2e-18, "point");
   EXPECT_NEAR(point.z(), 5e-3, 1e-18);
@@ -69,7 +69,7 @@ TEST(Revolute, MaterialVelocity) {
                        journal_radius, at(Vector3::Zero()), bearing_radius, Vector3::UnitZ());
   // omega x arm, arm = R1 - delta/2
   expect_vector_near(spinning.relative_velocity, Vector3(0, 7.0 * 4.995e-3, 0), 1e-16, "spin");
-  // Rolling: omega_1 arm_1 = omega_2 arm_2 with fixed centres gives no sliding velocity.
+  // Rolling with fixed centres, omega_1 arm_1 = omega_2 arm_2, gives no sliding velocity.
   const RevoluteContact rolling = revolute_contact(
       at(Vector3(0.11e-3, 0, 0), Vector3::Zero(), Vector3(0, 0, 5.105)), journal_radius,
       at(Vector3::Zero(), Vector3::Zero(), Vector3(0, 0, 4.995)), bearing_radius, Vector3::UnitZ());
@@ -81,8 +81,8 @@ TEST(Revolute, MaterialVelocity) {
   EXPECT_NEAR(approach.relative_velocity.dot(approach.normal), 1.5, 1e-15);
 }
 
-// If both bodies move as one rigid body about any point, nothing slides. Detects an arm that is
-// missing or starts at the wrong centre.
+// If both bodies move as one rigid body about any point, nothing slides. The test detects a missing
+// arm or an arm from the wrong centre.
 TEST(Joint, RigidMotionOfBothBodiesLeavesNoRelativeVelocity) {
   Random random;
   for (int i = 0; i < 100; ++i) {
@@ -98,7 +98,7 @@ TEST(Joint, RigidMotionOfBothBodiesLeavesNoRelativeVelocity) {
   }
 }
 
-// v . n is the rate of delta: compared with a finite difference for rotating, translating bodies.
+// v . n is the rate of delta. A finite difference confirms it for bodies that rotate and translate.
 TEST(Revolute, NormalVelocityIsTheRateOfDepth) {
   Random random;
   for (int i = 0; i < 20; ++i) {
@@ -138,8 +138,8 @@ TEST(Revolute, TouchesAgreesWithDepth) {
   EXPECT_LT(touching, 1800);
 }
 
-// NaN in the input must reach the force, where it is detected. No branch may treat it as an open,
-// concentric, frictionless or stable case.
+// NaN in the input must appear in the force, where it is detected. No branch may treat NaN as an
+// open, concentric, frictionless or stable case.
 TEST(Kinematics, KeepsWhatIsNoNumber) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const BodyMotion body = at(Vector3::Zero());
@@ -162,7 +162,8 @@ TEST(Revolute, RefusesABearingThatDoesNotHoldTheJournal) {
   const BodyMotion body = at(Vector3::Zero());
   EXPECT_THROW(revolute_contact(body, 5e-3, body, 5e-3, Vector3::UnitZ()), std::invalid_argument);
   EXPECT_THROW(revolute_contact(body, 5e-3, body, 4e-3, Vector3::UnitZ()), std::invalid_argument);
-  // The fast check accepts such a pair, so that revolute_contact() reports the error.
+  // The fast check must accept a bearing smaller than its journal, which revolute_contact()
+  // reports.
   EXPECT_TRUE(revolute_touches(body.position, 5e-3, body.position, 4.9e-3, Vector3::UnitZ()));
   EXPECT_TRUE(revolute_touches(body.position, 5e-3, body.position, 5e-3, Vector3::UnitZ()));
   const double infinity = std::numeric_limits<double>::infinity();
@@ -170,7 +171,8 @@ TEST(Revolute, RefusesABearingThatDoesNotHoldTheJournal) {
 }
 
 TEST(Plane, DepthPointAndVelocity) {
-  // slot centre at x = 1; wall 10 mm beyond it; pad radius 2 mm; slider centre 8.003 mm beyond
+  // The slot centre is at x = 1, the wall 10 mm beyond it, the slider centre 8.003 mm beyond it.
+  // The pad radius is 2 mm.
   const BodyMotion slot = at(Vector3(1.0, 0, 0));
   const BodyMotion slider =
       at(Vector3(1.008003, 0.001, 0), Vector3(0.2, 0.3, 0), Vector3(0, 0, 5.0));
@@ -200,7 +202,7 @@ TEST(Joint, ContactKinematicsCarriesEveryField) {
   EXPECT_EQ(kinematics.time_step, 1e-5);
 }
 
-// Joint kinematics and law together: no net force, no net moment about the world's origin.
+// Kinematics and law of a joint together: no net force, no net moment about the world's origin.
 TEST(Joint, WrenchOfAJointBalances) {
   Random random;
   ContactParameters parameters;
@@ -242,7 +244,7 @@ TEST(Joint, RotationInvariance) {
                                                bearing_radius, q * axis);
     const PlaneContact c = plane_contact(journal, 2e-3, bearing, axis, 2.1e-3);
     const PlaneContact d = plane_contact(turned(journal), 2e-3, turned(bearing), q * axis, 2.1e-3);
-    // rounding of positions of 1e-2 m after a rotation: about 1e-17 m
+    // positions of 1e-2 m are rounded to about 1e-17 m after a rotation
     EXPECT_NEAR(b.penetration_depth, a.penetration_depth, 1e-16);
     EXPECT_NEAR(d.penetration_depth, c.penetration_depth, 1e-16);
     expect_vector_near(b.normal, q * a.normal, 1e-16 / a.eccentricity, "normal");
@@ -265,7 +267,7 @@ TEST(Transport, IsTheSmallestRotation) {
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
     const Vector3 new_normal = (turn * old_normal).normalized();
     const Vector3 moved = transport(tangential, old_normal, new_normal);
-    // close to 180 degrees the rounding of n_new is amplified by 1/|h| = 1/0.04
+    // close to 180 degrees, 1/|h| = 1/0.04 amplifies the rounding of n_new
     expect_vector_near(moved, turn * tangential, 1e-13 * tangential.norm(), "transport");
     EXPECT_NEAR(moved.norm(), tangential.norm(), 1e-15 * tangential.norm());
     EXPECT_NEAR(moved.dot(new_normal), 0.0, 1e-14 * tangential.norm());
@@ -281,9 +283,11 @@ TEST(Transport, SpecialCases) {
   const Vector3 y = Vector3::UnitY();
   EXPECT_EQ(transport(Vector3::Zero(), x, y), Vector3(Vector3::Zero()));
   EXPECT_EQ(transport(Vector3(0, 2, 3), x, x), Vector3(0, 2, 3));
-  // Half a turn is not unique: the result must be finite, in the plane, with the same magnitude.
+  // A half turn has no unique axis. The result must be finite, in the tangent plane, with the same
+  // magnitude.
   EXPECT_EQ(transport(Vector3(0, 2, 3), x, -x), Vector3(0, 2, 3));
-  // A normal component is removed, the magnitude kept; a vector along the normal gives zero.
+  // A normal component is removed and the magnitude is kept. A vector along the normal becomes
+  // zero.
   expect_vector_near(transport(Vector3(3, 4, 0), x, x), Vector3(0, 5, 0), 1e-14, "projected");
   EXPECT_EQ(transport(Vector3(3, 0, 0), x, x), Vector3(Vector3::Zero()));
   // Twist is right-handed about n_new.
@@ -291,7 +295,7 @@ TEST(Transport, SpecialCases) {
 }
 
 // A journal rolls around its bearing a hundred times in small steps. All normals lie in one plane
-// (no holonomy), so the force must return to its initial value, with full magnitude.
+// (no holonomy), so the tangential force must return to its initial value.
 TEST(Transport, DoesNotDriftOverManySteps) {
   Vector3 force(0, 3, 4);
   Vector3 normal = Vector3::UnitX();

@@ -10,7 +10,7 @@ namespace {
 
 using testing::Random;
 
-/// Work done on the contact in one step by the mean of the two end forces.
+/// Work done on the contact in one step, by the mean of both end forces.
 double work(const Vector3& old_force, const Vector3& new_force, const Vector3& slide) {
   return -0.5 * (old_force + new_force).dot(slide);
 }
@@ -38,20 +38,22 @@ TEST(Mindlin, SlipHoldsTheCoulombLimitAgainstTheSlide) {
   EXPECT_NEAR(history.tangential_force.x(), -1.8, 1e-15);
   EXPECT_NEAR(history.tangential_force.y(), 2.4, 1e-15);
   EXPECT_NEAR(energy.elastic, 4.5e-6, 1e-20);  // 1/2 3^2/1e6
-  // 1/2 * 3 N * 5 um - 4.5 uJ: the force rises from 0
+  // work minus energy: 1/2 * 3 N * 5 um - 4.5 uJ; the force rises from 0
   EXPECT_NEAR(energy.dissipation, 3e-6, 1e-20);
   const MindlinEnergy steady = mindlin_step(1e6, 3.0, Vector3(3e-6, -4e-6, 0), history);
   EXPECT_NEAR(steady.dissipation, 15e-6, 1e-19);  // limit times the whole slide
 }
 
-// Triangle wave of amplitude X under constant load. Closed form of a spring in series with a
-// Coulomb slider: the loop is a parallelogram and dissipates 4 L (X - L/k) once X > L/k.
+// Triangle wave of slide with amplitude X under constant load. A spring in series with a Coulomb
+// slider has a parallelogram as loop, which dissipates 4 L (X - L/k) if X > L/k, L = friction
+// limit.
 TEST(Mindlin, LoopDissipation) {
   const double k = 2e7;
   const double limit = 30.0;
   const double amplitude = 6e-6;  // L/k = 1.5e-6
   const double exact = 4.0 * limit * (amplitude - limit / k);
-  // steps per quarter wave; the corners are on steps for 400, within steps for 397
+  // steps per quarter wave; the wave's corners coincide with steps for 400 and lie within steps for
+  // 397
   for (const int steps : {400, 397}) {
     ContactHistory history;
     const double u = amplitude / steps;
@@ -67,18 +69,19 @@ TEST(Mindlin, LoopDissipation) {
       if (quarter < 5) continue;  // skips the transient: the first loop and a quarter
       dissipation += energy.dissipation;
       external += work(old, history.tangential_force, slide);
-      // Closed form after a reversal: the force changes by k times the slide, up to the limit.
+      // Closed form after a reversal: the force changes by k times the slide, until it reaches the
+      // limit.
     }
-    // A corner inside a step removes at most a triangle k u^2/8 from the loop, twice per loop. With
-    // corners on steps, only rounding of 1600 additions remains.
+    // A corner within a step cuts at most a triangle k u^2/8 off the loop, twice per loop. If
+    // corners coincide with steps, only rounding of 1600 additions remains.
     const double tolerance = steps == 400 ? 1e-12 * exact : 2 * k * u * u / 8;
     EXPECT_NEAR(dissipation, exact, tolerance) << steps;
     EXPECT_NEAR(external, dissipation, 1e-12 * exact) << steps;  // closed loop: no energy is stored
   }
 }
 
-// Closed form of this spring-slider at every point of a path with loading, reversal and reloading:
-// F = clamp(F_turn - k (x - x_turn)).
+// Closed form of this spring-slider on a path with loading, reversal and reloading, checked at
+// every point: F = clamp(F_turn - k (x - x_turn)).
 TEST(Mindlin, ForceFollowsTheClosedForm) {
   const double k = 2e7;
   const double limit = 30.0;
@@ -100,8 +103,9 @@ TEST(Mindlin, ForceFollowsTheClosedForm) {
   }
 }
 
-// Energy balance of every single step, with loading, unloading, stick, slip and loss of contact:
-// work of the mean force = change of spring energy + dissipation, to rounding; dissipation >= 0.
+// Energy balance of every single step, with loading, unloading, stick, slip and loss of contact.
+// The work of the mean force equals change of spring energy plus dissipation, to rounding;
+// dissipation >= 0.
 TEST(Mindlin, EnergyIdentityClosesInEveryStep) {
   Random random;
   ContactHistory history;
@@ -124,11 +128,11 @@ TEST(Mindlin, EnergyIdentityClosesInEveryStep) {
     const bool turns = (k < old.tangential_stiffness || history.slipping || gap) &&
                        energy.dissipation == 0.0 && residue < 0.0;
     if (turns) {
-      // Documented exception: the identity would need a negative loss, because the force reverses
-      // within the step.
+      // Documented exception: the force reverses within the step, so the energy identity would need
+      // a negative loss.
       ++reversals;
     } else {
-      // about ten roundings of terms as large as the energies (1e-5 J) and F u
+      // about ten roundings of terms as large as the energies (1e-5 J) and as F u
       const double scale = elastic + energy.elastic + old.tangential_force.norm() * slide.norm();
       EXPECT_NEAR(residue, 0.0, 4e-15 * scale) << i;
     }
@@ -141,7 +145,7 @@ TEST(Mindlin, EnergyIdentityClosesInEveryStep) {
   EXPECT_LT(reversals, 1000);  // rare even with these large steps
 }
 
-// Stuck contact with a cyclic normal load: unloading keeps the slide, loading keeps the force.
+// Stuck contact under a cyclic normal load: unloading keeps the slide, loading keeps the force.
 TEST(Mindlin, StiffnessChangeKeepsSlideOrForce) {
   ContactHistory history;
   mindlin_step(2e7, 1e3, Vector3(1e-6, 0, 0), history);
@@ -154,8 +158,8 @@ TEST(Mindlin, StiffnessChangeKeepsSlideOrForce) {
   EXPECT_NEAR(energy.dissipation, 5e-6 - 1.25e-6, 1e-20);  // 5 uJ - 1/2 10^2/4e7
 }
 
-// A closed loop of slide and normal load without slip never returns more energy than it received.
-// Slide out at high load, back at low load: the fraction k_low/k_high returns.
+// A closed loop of slide and normal load without slip must not return more energy than it received.
+// After sliding out at high load and back at low load, the fraction k_low/k_high returns.
 TEST(Mindlin, UnloadingCreatesNoEnergy) {
   const double high = 2e7;
   const double low = 5e6;
@@ -177,7 +181,8 @@ TEST(Mindlin, UnloadingCreatesNoEnergy) {
   EXPECT_NEAR(in, 0.5 * high * 1e-12, 1e-12 * in);
   EXPECT_NEAR(out, in * low / high, 1e-12 * in);  // 600 roundings
   EXPECT_LE(out, in);
-  // Ten cycles of both with a phase shift: the net work on the contact must not be negative.
+  // Ten cycles of slide and load with a phase shift between them. The net work on the contact must
+  // not be negative.
   for (const double phase : {0.0, 0.7, 1.6, 2.5, 3.1, 4.0, 5.2}) {
     ContactHistory cyclic;
     double net = 0.0;
@@ -195,7 +200,7 @@ TEST(Mindlin, UnloadingCreatesNoEnergy) {
   }
 }
 
-// While sliding, friction does no positive work under decreasing, constant or rising load.
+// During sliding, friction does no positive work, whether the load decreases, is constant or rises.
 TEST(Mindlin, FrictionPowerIsNotPositiveInSliding) {
   ContactHistory history;
   const Vector3 slide(1e-6, 2e-6, 0);
@@ -230,9 +235,9 @@ TEST(Mindlin, LostContactReleasesTheSpringAndForgets) {
   EXPECT_FALSE(history.slipping);
 }
 
-// Leapfrog of a mass on the spring-slider while it slides, sticks and oscillates: the lost kinetic
-// energy must equal elastic energy plus dissipation. Boundary term of the summation by parts: half
-// the last force times the next slide.
+// Leapfrog integration of a mass on the spring-slider that slides, sticks and oscillates. The lost
+// kinetic energy must equal elastic energy plus dissipation. Summation by parts adds a boundary
+// term: half the last force times the next slide.
 TEST(Mindlin, LeapfrogEnergyBalanceCloses) {
   const auto residue = [](double swing, double dt) {
     const double mass = 0.3;
@@ -260,9 +265,9 @@ TEST(Mindlin, LeapfrogEnergyBalanceCloses) {
     return (end - boundary + elastic + dissipation - start) / start;
   };
   EXPECT_NEAR(residue(0.0, 1e-5), 0.0, 1e-13);  // constant load: rounding of 3000 steps
-  // Oscillating load. If the force reverses within a step while the load decreases, the loss of the
-  // step is set to zero. This happens in two steps per period. Each error is the square of the step
-  // times the decrease of stiffness in the step, i.e. of third order; their sum is of second order.
+  // Oscillating load. If the force reverses within a step of decreasing load, the loss of this step
+  // is set to zero; this happens twice per period. Each error is the square of the step times its
+  // decrease of stiffness, i.e. of third order. Their sum is of second order.
   const double coarse = residue(0.3, 1e-5);
   EXPECT_NEAR(coarse, 0.0, 1e-5);
   EXPECT_LT(std::abs(residue(0.3, 1e-6)), 0.05 * std::abs(coarse));

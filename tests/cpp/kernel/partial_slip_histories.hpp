@@ -9,7 +9,7 @@
 
 namespace statejump::kernel::testing {
 
-/// Stiffness and normal force of a sphere on a plane as functions of the depth [m].
+/// Factors in the tangential stiffness and the normal force of a sphere on a plane.
 inline constexpr double shear_root = 8.0 * 7.9e9 * 0.1, hertz_root = 4.0 / 3.0 * 38.5e9 * 0.1,
                         mu = 0.3;
 inline double stiffness(double depth) {
@@ -23,7 +23,7 @@ inline double gross(double depth) {
 }
 
 /// Memory of a contact after `steps` random steps, including loss and return of contact.
-/// @param way converts a signed slide [m] into a slide in the plane
+/// @param way converts a signed slide [m] into a vector in the tangent plane
 template <class Way>
 PartialSlipMemory random_history(Random& random, int steps, Way&& way) {
   PartialSlipMemory memory;

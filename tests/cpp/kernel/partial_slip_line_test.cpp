@@ -36,14 +36,14 @@ TEST(PartialSlipLine, IsForceAndDerivativesOfTheStep) {
     const PartialSlipLine line = partial_slip_line(k, most, slide, memory);
     PartialSlipMemory after = memory;
     const PartialSlipResponse step = partial_slip_step(k, most, {slide, 0.0}, after);
-    // A bound is distinguished from sticking to 1e-15 of it, in each of at most 50 pieces.
+    // The law detects slip with a tolerance of 1e-15 of the bound, in each of at most 50 pieces.
     ASSERT_NEAR(line.force, step.force.a, 1e-13 * most) << trial;
     EXPECT_EQ(std::abs(line.centre) > line.bound * (1.0 + 1e-12), step.slipping) << trial;
     slipping += step.slipping;
     grown += k > memory.edge();
-    // Central differences with h. Pieces meet where U is continuous, so the second derivative is
-    // bounded, except for square roots at the contact's centre (error sqrt(h)); plus rounding of
-    // the force over h.
+    // Central differences with h. The displacement U is continuous between pieces, so the second
+    // derivative is bounded, except for square roots at the contact's centre (error sqrt(h)).
+    // Rounding of the force, over h, is added.
     const double h = 1e-5;
     const double rounding = 4e-15 * most;
     const auto near = [&](double exact, double plus, double minus, double span, double scale,
@@ -65,7 +65,7 @@ TEST(PartialSlipLine, IsForceAndDerivativesOfTheStep) {
 }
 
 TEST(PartialSlipLine, AtABoundThatWasMetRingsStick) {
-  // After gross slip followed by a step without slide, all annuli stick first, in either direction.
+  // After gross slip and one step without slide, all annuli stick at first, in either direction.
   PartialSlipMemory memory;
   const double k = stiffness(1e-6);
   const double most = limit(1e-6);
@@ -79,7 +79,8 @@ TEST(PartialSlipLine, AtABoundThatWasMetRingsStick) {
 }
 
 TEST(PartialSlipLine, CountsPiecesThatStickAndSlip) {
-  // Contact without earlier slip: the rim slips in the direction of the slide, the centre sticks.
+  // A contact that never slipped: under a slide, the rim slips in its direction and the centre
+  // sticks.
   PartialSlipMemory memory;
   const double k = stiffness(1e-6);
   const double most = limit(1e-6);

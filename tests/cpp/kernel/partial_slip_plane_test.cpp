@@ -49,15 +49,15 @@ TEST(PartialSlipPlane, AlongOneDirectionItIsTheLine) {
     EXPECT_LT(apart(plane.by_stiffness, along(angle, line.by_stiffness)), 1e-10 * most / k);
     const Tangent with = along(angle, 1.0);
     const Tangent by_slide = with.a * plane.by_slide_a + with.b * plane.by_slide_b;
-    // The end of a piece moves by the square root of the rounding.
+    // Rounding by ε moves the end of a piece by √ε.
     EXPECT_LT(apart(by_slide, along(angle, line.by_slide)), 1e-6 * k) << trial;
     EXPECT_LT(apart(plane.centre, along(angle, line.centre)),
               1e-13 * std::abs(line.centre) + 1e-22);
   }
 }
 
-/// Force of a row of annuli that return radially to their bounds. Annuli that enter or leave the
-/// contact need no state other than the points of the memory.
+/// Reference force of `rings` annuli whose displacements return radially to their bounds. Annuli
+/// that enter or leave the contact need only the points of the memory as state.
 Tangent of_rings(double k, double most, const Tangent& slide, const PartialSlipMemory& memory,
                  int rings) {
   const double slope = 1.5 * most / (k * k * k);
@@ -93,8 +93,7 @@ TEST(PartialSlipPlane, IsARowOfRingsAndTheStepToItsChords) {
     const double most = limit(depth);
     const Tangent slide = along(random.uniform(-pi, pi), random.uniform(0.05, 2.0) * gross(depth));
     const PartialSlipPlane plane = partial_slip_plane(k, most, slide, memory);
-    // Error of the midpoint rule with 4000 annuli. An annulus with |U| near zero changes its
-    // direction within few quadrature points.
+    // Error of the midpoint rule. Where |U| is near zero, its direction changes within few annuli.
     const double off = apart(plane.force, of_rings(k, most, slide, memory, 4000)) / most;
     EXPECT_LT(off, 1e-4) << trial;
     square += off * off / trials;
@@ -119,8 +118,8 @@ TEST(PartialSlipPlane, DerivativesAreThoseOfTheForce) {
     const auto force = [&](double at_k, double at_limit, const Tangent& at_slide) {
       return partial_slip_plane(at_k, at_limit, at_slide, memory).force;
     };
-    // As along a line: second derivatives are bounded except for square roots; plus quadrature
-    // errors, whose points move with the pieces.
+    // Central differences: second derivatives are bounded except for square roots. Quadrature
+    // errors are added, because the quadrature points move with the pieces.
     const double h = 1e-5;
     const double rounding = 4e-15 * most;
     const auto near = [&](const Tangent& exact, const Tangent& plus, const Tangent& minus,

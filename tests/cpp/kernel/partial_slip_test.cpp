@@ -21,7 +21,7 @@ using testing::Random;
 constexpr double young = 38.5e9, shear = 7.9e9, radius = 0.01, mu = 0.3;
 constexpr double usual_depth = 1e-6;
 
-/// Contact driven along a path of depth and slide, with the work of its force.
+/// Contact that is driven along a path of depth and slide, and the work done by its force.
 struct Contact {
   PartialSlipMemory memory;
   double depth = 0.0;
@@ -64,13 +64,15 @@ Contact pressed(double depth = usual_depth) {
   return contact;
 }
 
-/// Johnson 1985, eqs 7.42: T/(mu F_N) = 1 - (1 - u/u_gross)^(3/2).
+/// Force ratio T/(mu F_N) = 1 - (1 - u/u_gross)^(3/2) of a sphere under a slide u (Johnson 1985,
+/// eq. 7.42).
 double cattaneo(double share) {
   return 1.0 - std::pow(1.0 - std::min(share, 1.0), 1.5);
 }
 
 TEST(PartialSlip, OneDirectionNeedsNoMorePointsThanItHasPieces) {
-  // Slipping annuli follow one bound, sticking ones another: pieces of many steps are merged.
+  // Slipping annuli follow one bound, sticking annuli another, so the pieces that many steps add
+  // are merged.
   for (const int steps : {1, 50}) {
     Contact contact = pressed();
     contact.in_steps(usual_depth, {0.6 * Contact::gross(usual_depth), 0.0}, steps);
@@ -89,8 +91,9 @@ TEST(PartialSlip, GrowthWithoutSlideLeavesNoPoint) {
 }
 
 TEST(PartialSlip, CornerWhereSlipBeginsToTurnStays) {
-  // The whole contact is on its bound, in direction x within half of the edge radius and rotated
-  // outside. After a little unloading all of it slips back to the smaller bound without a rotation.
+  // The traction of the whole contact is on its bound: in direction x up to half of the edge
+  // radius, rotated outside. After a little unloading all annuli slip back to the smaller bound; no
+  // direction changes.
   const double edge = Contact::stiffness(usual_depth);
   const double slope = 1.5 * mu * Contact::normal(usual_depth) / (edge * edge * edge);
   const double corner = 0.5 * edge;
@@ -111,8 +114,9 @@ TEST(PartialSlip, CornerWhereSlipBeginsToTurnStays) {
 }
 
 TEST(PartialSlip, PointsThatSayNothingGoFirst) {
-  // A memory filled with a zigzag over x^2. One point, at each position in turn, lies on the line
-  // between its neighbours. Growth of the contact adds one point too many; three quarters are kept.
+  // The memory is full, with a zigzag over x^2 in which one point lies on the line between its
+  // neighbours. Growth adds one point too many, so the law keeps three quarters of the points and
+  // must drop that one.
   constexpr int full = PartialSlipMemory::capacity;
   const double edge = Contact::stiffness(usual_depth);
   const double limit = mu * Contact::normal(usual_depth);
@@ -156,7 +160,8 @@ TEST(PartialSlip, AsManyPointsAsFitStay) {
 }
 
 TEST(PartialSlip, AtConstantLoadAPointThatSaysHardlyAnythingStays) {
-  // A corner of 1e-13 of the bound: above rounding, below the threshold of a growing contact.
+  // A point deviates from a line by 1e-13 of the bound: more than rounding, less than the merge
+  // threshold of a growing contact.
   const double edge = Contact::stiffness(usual_depth);
   const double limit = mu * Contact::normal(usual_depth);
   const double bound = 1.5 * limit / edge;
@@ -181,7 +186,8 @@ TEST(PartialSlip, LoadingUnloadingReloadingAtConstantLoad) {
     Contact contact = pressed();
     EXPECT_NEAR(contact.in_steps(usual_depth, {0.6 * gross, 0.0}, steps), limit * cattaneo(0.6),
                 tolerance);
-    // Masing's rule from the reversal: twice slide and force (Mindlin, Deresiewicz 1953)
+    // Masing's rule: after the reversal, slide and force of first loading are doubled (Mindlin,
+    // Deresiewicz 1953)
     for (const double back : {0.3, 0.7}) {
       EXPECT_NEAR(contact.in_steps(usual_depth, {(0.6 - back) * gross, 0.0}, steps),
                   limit * (cattaneo(0.6) - 2.0 * cattaneo(0.5 * back)), tolerance);
@@ -202,8 +208,9 @@ TEST(PartialSlip, LoadingUnloadingReloadingAtConstantLoad) {
 }
 
 TEST(PartialSlip, NestedReversalsFollowMasingHoweverManyPointsStick) {
-  // Each branch is twice the loading curve from its reversal point. Deep in the nest most points
-  // only move with the slide. Then back over all reversals: a closed loop is erased.
+  // By Masing's rule each branch is twice the first-loading curve, from its reversal point. After
+  // many nested reversals most annuli stick. The way back closes all loops, and the memory must
+  // erase each closed loop.
   const double limit = mu * Contact::normal(usual_depth);
   const double gross = Contact::gross(usual_depth);
   constexpr int turns = 14;
@@ -231,7 +238,8 @@ TEST(PartialSlip, NestedReversalsFollowMasingHoweverManyPointsStick) {
   }
 }
 
-/// A contact that oscillates after a slide and comes to rest in the middle: nested reversals.
+/// Drives a contact through a slide, then through decaying oscillations, which leave nested
+/// reversals in its memory.
 /// @param first, last range of half periods; @param visit is called after each step
 template <class Visit>
 void ring(Contact& contact, int first, int last, const Visit& visit) {
@@ -261,10 +269,11 @@ TEST(PartialSlip, PointsThatAreHeldChangeNothingButRounding) {
     worst = std::max(worst, std::abs(eager.response.elastic - other.elastic) / energy);
     worst = std::max(worst, std::abs(eager.response.dissipation - other.dissipation) / energy);
   });
-  // Rounding of every step, plus the points that either memory merged beyond its capacity.
+  // Allowed: rounding of every step, plus the force error of points that either memory merged when
+  // full.
   EXPECT_LE(worst, 3000 * 1e-16 + (lazy.memory.merged() + eager.memory.merged()) / limit);
   EXPECT_GT(lazy.memory.prefix().count, 8);
-  // A slide of various sizes and directions.
+  // The next slide has various sizes and directions.
   for (const double share : {-1.5, -0.6, -0.2, -0.05, 0.05, 0.2, 0.6, 1.5}) {
     Contact with_prefix = lazy;
     Contact flushed = lazy;
@@ -304,19 +313,21 @@ TEST(PartialSlip, InitialStiffnessIsMindlins) {
               3e-10 * Contact::stiffness(usual_depth) * slide);
 }
 
-/// Mindlin and Deresiewicz 1953: if dT/dN is less than mu, nothing slips and T follows N with that
-/// slope. Otherwise the whole contact slides. Also from a loaded contact.
+/// Mindlin and Deresiewicz 1953, oblique loading with constant dT/dN, from zero or from a given
+/// load. If dT/dN is less than mu, nothing slips and T grows by dT/dN times the increase of N.
+/// Otherwise the whole contact slides.
 TEST(PartialSlip, SimpleLoading) {
   for (const double begin : {0.0, 0.4e-6}) {
     for (const double slope : {0.1, 0.29, 0.31, 0.9}) {
       for (const int steps : {1, 300}) {
         Contact contact;
         contact.to(begin, 0.0);
-        // a line in N and T is a line in depth and slide: u = slope E*/(4 G*) change of depth
+        // straight line in N and T, hence in depth and slide: u = slope E*/(4 G*) change of depth
         const double slide = slope * young / (4.0 * shear) * (usual_depth - begin);
         contact.in_steps(usual_depth, {slide, 0.0}, steps);
         const double grown = Contact::normal(usual_depth) - Contact::normal(begin);
-        // above mu, T is smaller by mu times the normal force of the annuli that still stick
+        // for dT/dN above mu, T is smaller by mu times the normal force of the annuli that still
+        // stick
         const double stuck = usual_depth - slide / mu * 4.0 * shear / young;
         const double wanted = slope <= mu
                                   ? slope * grown
@@ -332,8 +343,8 @@ TEST(PartialSlip, SimpleLoading) {
   }
 }
 
-/// Fixed slide. Under decreasing load the force is that of first loading under the remaining load;
-/// under rising load it is constant, because new annuli carry no traction.
+/// Fixed slide, varying load. Under decreasing load the force is that of first loading under the
+/// remaining load. Under rising load it is constant, because new annuli carry no traction.
 TEST(PartialSlip, FallingAndRisingLoadAtFixedSlide) {
   const double gross = Contact::gross(usual_depth);
   for (const int steps : {1, 50}) {
@@ -349,10 +360,9 @@ TEST(PartialSlip, FallingAndRisingLoadAtFixedSlide) {
   }
 }
 
-/// Energy of a loop between -T and T (Mindlin and Deresiewicz 1953; Johnson 1985, section 7.4),
-/// with (2 - nu_1)/G_1 + (2 - nu_2)/G_2 = 1/G*:
-/// 9 mu^2 N^2/(10 G* a) {1 - (1 - t)^(5/3) - 5t/6 [1 + (1 - t)^(2/3)]}, t = T/(mu N); for small t
-/// T^3/(36 G* a mu N).
+/// Energy dissipated by a cycle between -T and T (Mindlin and Deresiewicz 1953; Johnson 1985,
+/// section 7.4), with (2 - nu_1)/G_1 + (2 - nu_2)/G_2 = 1/G*: 9 mu^2 N^2/(10 G* a) {1 - (1 -
+/// t)^(5/3) - 5t/6 [1 + (1 - t)^(2/3)]}, t = T/(mu N). For small t it tends to T^3/(36 G* a mu N).
 TEST(PartialSlip, EnergyOfACycle) {
   const double normal = Contact::normal(usual_depth);
   const double limit = mu * normal;
@@ -392,16 +402,17 @@ TEST(PartialSlip, StepsOfAStraightPathDoNotMatter) {
       one.to(depth, slide);
       many.in_steps(depth, {slide, 0.0}, 40);
       EXPECT_NEAR(many.response.force.a, one.response.force.a, 1e-11 * mu * Contact::normal(depth));
-      // three Gauss points integrate the loss within a step of varying load
+      // tolerance: the law integrates the loss within a step of varying load with three Gauss
+      // points
       EXPECT_NEAR(many.heat, one.heat, 2e-3 * one.heat + 1e-18);
     }
   }
 }
 
-/// Work of a step equals energy plus loss to second order; the work is computed with small steps.
+/// The work of a step equals the change of energy plus the loss, to second order in the step.
 TEST(PartialSlip, WorkIsEnergyAndLoss) {
   Random random;
-  // sums over all histories, because the residue of a single one may be zero
+  // residues are summed over all histories, because that of a single history may vanish by chance
   double residue[2] = {0.0, 0.0};
   double scale = 0.0;
   for (int history = 0; history < 20; ++history) {
@@ -433,8 +444,8 @@ TEST(PartialSlip, WorkIsEnergyAndLoss) {
   EXPECT_LE(residue[1], 0.3 * residue[0]);  // ideally 1/4: second order
 }
 
-/// Many flat punches in parallel, each a spring with its own Coulomb limit; every straight path is
-/// made in small steps. Independent of the law under test: no memory, no geometry of steps.
+/// Reference: many flat punches in parallel, each a spring with its own Coulomb limit. Small steps
+/// divide every straight path. The row shares no code with the law under test.
 class Punches {
  public:
   Punches(int count, double largest_depth)
@@ -486,7 +497,7 @@ Difference against_punches(int histories, int turns, int punches, int steps, boo
     Contact contact;
     Punches row(punches, 2e-6);
     for (int turn = 0; turn < turns; ++turn) {
-      // about one in twelve turns opens the contact, and the next one closes it
+      // about one target in twelve opens the contact; the next one closes it again
       const bool open = random.uniform(0.0, 1.0) < 1.0 / 12.0;
       const double depth = open ? -1e-7 : usual_depth * random.uniform(0.01, 2.0);
       const double scale = 1.5 * Contact::gross(usual_depth);
@@ -513,8 +524,8 @@ Difference against_punches(int histories, int turns, int punches, int steps, boo
   return found;
 }
 
-/// 1000 random histories with nested reversals, loss and return of contact. The discretization of
-/// the punches determines the difference: their rim converges with the power 3/2 of their width.
+/// 1000 random histories with nested reversals, loss and return of contact. The width of the
+/// punches determines the difference, by its power 3/2 (error at the rim).
 TEST(PartialSlip, RandomHistoriesAgainstManyPunches) {
   const Difference coarse = against_punches(1000, 30, 50, 8, false);
   const Difference fine = against_punches(1000, 30, 200, 8, false);
@@ -527,7 +538,8 @@ TEST(PartialSlip, RandomHistoriesAgainstManyPunches) {
 }
 
 TEST(PartialSlip, RandomHistoriesInThePlane) {
-  // one step per turn: a straight path in a new direction; chords of 1e-4 of the force per piece
+  // one step per target: a straight path in a new direction, with a chord error of 1e-4 of the
+  // force per piece
   const Difference one = against_punches(200, 30, 400, 1, true);
   EXPECT_LE(one.mean_square, 5e-4);
   EXPECT_LE(one.worst, 4e-3);
@@ -536,8 +548,8 @@ TEST(PartialSlip, RandomHistoriesInThePlane) {
   EXPECT_LE(eight.mean_square, 2e-3);
 }
 
-/// Two circles at constant load. The error of a chord is defined relative to the slide that erases
-/// the memory, so many small steps are as accurate as few.
+/// The slide follows a circle twice, at constant load. A chord's tolerance is relative to the slide
+/// that erases the memory, so many steps are as accurate as few.
 TEST(PartialSlip, ASlideThatTurnsIsFollowedWhateverTheNumberOfSteps) {
   struct Round {
     double share;  // fraction of the slide of gross slip
@@ -569,13 +581,14 @@ TEST(PartialSlip, ASlideThatTurnsIsFollowedWhateverTheNumberOfSteps) {
     // Work that appears neither as energy nor as loss.
     const double missing = (work - contact.response.elastic - contact.heat) / work;
     RecordProperty("missing" + which, std::to_string(missing));
-    // About ten chords of 1e-4 each with errors of the same sign; the row has 200 punches.
+    // Allowed: about ten chords with errors of 1e-4 and equal signs, plus the error of 200 punches.
     EXPECT_LE(std::abs(missing), 1e-3) << share << ", " << steps;
     EXPECT_LE(worst, 1e-3) << share << ", " << steps;
   }
 }
 
-/// The result along a straight path is independent of its direction: here rotated by 30 degrees.
+/// The law does not depend on the direction of a straight path: the rotated path (30 degrees) gives
+/// the rotated force.
 TEST(PartialSlip, DirectionDoesNotMatter) {
   Random random;
   Contact along;
@@ -592,8 +605,8 @@ TEST(PartialSlip, DirectionDoesNotMatter) {
   }
 }
 
-/// A load along a curve adds a point per step. Points are merged, and the resulting change of force
-/// is at most what merged() reports.
+/// Load and slide along a curve add a point per step, so points are merged. The resulting change of
+/// force is at most the value of merged().
 TEST(PartialSlip, MemoryIsBounded) {
   const double pi = testing::pi;
   double force[3], merged[3];
@@ -616,7 +629,7 @@ TEST(PartialSlip, MemoryIsBounded) {
   EXPECT_LE(merged[2], 1e-3 * limit);
 }
 
-/// Curved paths: second order in the step.
+/// On a curved path the error is of second order in the step.
 TEST(PartialSlip, OrderOnACurvedPath) {
   const auto led = [](int steps) {
     Contact contact = pressed();
@@ -656,7 +669,8 @@ TEST(PartialSlip, NoDriftOver10000Cycles) {
   }
 }
 
-/// Cyclic normal load at fixed slide: the force does not decay further after the first unloading.
+/// Cyclic normal load at fixed slide: only the first unloading reduces the force; later cycles do
+/// not.
 TEST(PartialSlip, HeldUnderACyclicLoad) {
   Contact contact = pressed();
   contact.to(usual_depth, 0.3 * Contact::gross(usual_depth));
@@ -677,7 +691,7 @@ TEST(PartialSlip, LossOfContact) {
   contact.to(-1e-9, contact.slide);
   EXPECT_EQ(contact.response.force.a, 0.0);
   EXPECT_EQ(contact.memory.size(), 0);
-  // three Gauss points over annuli that begin to slip late
+  // tolerance of three Gauss points, because annuli begin to slip late in the step
   EXPECT_NEAR(contact.heat, stored, 2e-3 * stored);
   contact.to(usual_depth, contact.slide);
   EXPECT_EQ(contact.response.force.a, 0.0);
@@ -704,7 +718,7 @@ void random_walk(long steps) {
   }
 }
 
-/// If energies are not requested, forces and memory are the same, bit for bit.
+/// Forces and memory must be equal to the last bit with and without energy tracking.
 TEST(PartialSlip, ForcesDoNotDependOnWhetherEnergiesAreAskedFor) {
   Random random;
   Contact with;

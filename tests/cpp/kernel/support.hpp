@@ -14,11 +14,12 @@ namespace statejump::kernel::testing {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// Random inputs with a fixed seed, equal for every run and every compiler.
+/// Random inputs with a fixed seed: the same numbers in every run and with every compiler.
 class Random {
  public:
   double uniform(double low, double high) {
-    // The standard specifies the raw output of mt19937, but not that of distributions.
+    // The standard specifies the raw output of mt19937, but not the algorithms of its
+    // distributions.
     return low + (high - low) * (static_cast<double>(generator_()) / 4294967296.0);
   }
   Eigen::Vector3d vector(double size) {
@@ -41,8 +42,8 @@ class Random {
   std::mt19937 generator_{20210110};
 };
 
-/// Random rigid motion about a random point, at up to 5 m/s: returns the motion of a body at a
-/// given position.
+/// Random rigid motion about a random point, with speeds up to 5 m/s. Returns a function that gives
+/// the motion of a body at a position.
 inline auto rigid_motion(Random& random) {
   const Eigen::Vector3d origin = random.vector(0.1);
   const Eigen::Vector3d drift = random.vector(1.0);

@@ -83,7 +83,8 @@ TEST(DrivenContact, ForcesAreTurnedIntoDepthAndSlide) {
   EXPECT_EQ(let_go.depth, 0.0);
 }
 
-/// The contact closes at depth 0: earlier slide does not count. Half of this path is in the air.
+/// Slide before the contact closes (at depth 0) does not count. The contact is open during half of
+/// each step of this path.
 TEST(DrivenContact, LossAndReturnOfContact) {
   const DrivenContact contact = stuck();
   const double depth = 1e-6;
@@ -95,7 +96,8 @@ TEST(DrivenContact, LossAndReturnOfContact) {
   EXPECT_EQ(state.normal_force, 0.0);
   EXPECT_EQ(state.tangential_force_x, 0.0);
   EXPECT_EQ(state.tangential_elastic_energy, 0.0);
-  // the spring energy, and the work until the contact opens at half of the step, are dissipated
+  // dissipated: the energy of the spring, plus the work until the contact opens in the middle of
+  // the step
   const double old = 0.5 * stiffness * 1e-16;
   EXPECT_NEAR(state.friction_dissipation, old + 0.5 * stiffness * 1e-8 * 1e-8, 1e-12 * old);
   state = drive(contact, state, at(depth, 3e-8));
@@ -105,7 +107,8 @@ TEST(DrivenContact, LossAndReturnOfContact) {
   EXPECT_NEAR(state.tangential_force_x, stiffness * 1e-8, 1e-12 * stiffness * 1e-8);
 }
 
-/// Every law of the catalogue along one path: forces within their bounds, no energy is created.
+/// Drives every law of the catalogue along one path. Forces stay within their bounds and no energy
+/// is created.
 template <class Law>
 void leads(Law JointLaw::*member) {
   for (const std::string& name : law_names<Law>()) {

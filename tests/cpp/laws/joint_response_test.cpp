@@ -13,7 +13,7 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-/// Journal in a bearing in a random state of contact; data of the paper's Table 2.
+/// Journal in a bearing with data of the paper's Table 2, in a random state of contact.
 struct RandomJoint {
   std::mt19937_64 generator{7};
   double uniform(double low, double high) {
@@ -54,7 +54,7 @@ JointLaw law_of(const char* normal, const char* dissipation, const char* frictio
   return law;
 }
 
-// k_t = 4 (G*/E*) 2 E* a compared with 8 G* a: a few roundings, propagated by the spring.
+// The default law uses k_t = 4 (G*/E*) 2 E* a, hertz_mindlin() 8 G* a, with different rounding.
 TEST(JointResponse, DefaultLawsAreHertzMindlin) {
   const JointLaw law = law_of("hertz_internal", "none", "mindlin", "material");
   RandomJoint joint;
@@ -100,8 +100,8 @@ TEST(JointResponse, DefaultLawsAreHertzMindlin) {
   EXPECT_GT(sticking_damped, 50);
 }
 
-// With a unit of force 2^40 times as large, every law gives the same result to the last bit. So no
-// law compares a force, stiffness or energy with a fixed threshold other than zero.
+// If the unit of force is 2^40 times as large, every law returns the same result to the last bit.
+// Hence no law compares a force, stiffness or energy with a fixed nonzero threshold.
 TEST(JointResponse, UnitOfForceDoesNotMatter) {
   const double unit = std::ldexp(1.0, -40);
   for (const std::string& normal : law_names<NormalLaw>()) {
@@ -141,8 +141,8 @@ TEST(JointResponse, UnitOfForceDoesNotMatter) {
   }
 }
 
-// For all laws the bodies lose the energy that the contact receives: power of the wrench on the
-// bodies = power of the contact force at the velocity used by friction.
+// For all laws, the bodies lose the energy that the contact receives: the wrench on the bodies has
+// the same power as the contact force at the velocity used by friction.
 TEST(JointResponse, VelocityAndWrenchBelongTogether) {
   RandomJoint joint;
   const ContactParameters parameters = aluminium(0.0, 0.0);
@@ -170,7 +170,8 @@ TEST(JointResponse, VelocityAndWrenchBelongTogether) {
   }
 }
 
-// F (1 + (chi/K) v) with the impact speed of the contact, not below smallest_impact_speed.
+// The force is F (1 + (chi/K) v); chi uses the impact speed of the contact, but at least
+// smallest_impact_speed.
 TEST(JointResponse, DissipationUsesTheImpactSpeed) {
   JointLaw law = law_of("hertz_internal", "hunt_crossley", "none", "material");
   law.smallest_impact_speed = 0.02;
@@ -193,7 +194,7 @@ TEST(JointResponse, DissipationUsesTheImpactSpeed) {
   }
 }
 
-// The viscous part belongs to a sticking spring; a law without a spring has none.
+// Tangential damping belongs to a sticking spring. Laws without a spring have no damping force.
 TEST(JointResponse, TangentialDampingNeedsTheSpring) {
   RandomJoint joint;
   JointKinematics at = joint.next();
@@ -213,7 +214,7 @@ TEST(JointResponse, TangentialDampingNeedsTheSpring) {
   EXPECT_DOUBLE_EQ(found.friction_slope, 0.3 * found.contact.normal_force / 1e-3);
 }
 
-// Hertz: V = 2/5 K delta^2.5, so dV/dR = V/(2 R) for the effective radius; R = R1 at a flat wall.
+// Hertz: V = 2/5 K delta^2.5, so dV/dR = V/(2 R) for the effective radius R. At a flat wall R = R1.
 TEST(RadiusEnergyChange, HertzInClosedForm) {
   const NormalMaterial material{38e9};
   const double depth = 2e-6;
@@ -221,10 +222,10 @@ TEST(RadiusEnergyChange, HertzInClosedForm) {
   const NormalGeometry before{5e-3, 5.1e-3, 0.01};
   const NormalGeometry after{5e-3 * (1 + 2e-9), 5.1e-3 * (1 + 1e-9), 0.01};
   const double energy = evaluate(law, depth, before, material).elastic_energy;
-  // d ln R_eff = dR1/R1 + dR2/R2 - d(R2 - R1)/(R2 - R1)
+  // relative change of the effective radius: dR1/R1 + dR2/R2 - d(R2 - R1)/(R2 - R1)
   const double relative = 2e-9 + 1e-9 - (5.1e-12 - 10e-12) / 1e-4;
   EXPECT_NEAR(radius_energy_change(law, material, depth, before, after), 0.5 * energy * relative,
-              // the radius change of 1e-9 is itself rounded, by 2e-7 of it
+              // the relative radius change of 1e-9 itself has a relative rounding error of 2e-7
               2e-7 * 0.5 * energy * relative);
   const double infinity = std::numeric_limits<double>::infinity();
   const NormalGeometry wall{0.05, infinity, 0.01};
@@ -236,7 +237,7 @@ TEST(RadiusEnergyChange, HertzInClosedForm) {
   EXPECT_EQ(radius_energy_change(law, material, -depth, wall, grown), 0.0);
 }
 
-// The change is evaluated at the mean radii, so it only changes its sign if the radii are swapped.
+// The change is evaluated at the mean radii, so swapping the radii changes only its sign.
 TEST(RadiusEnergyChange, TurnsItsSignWithTheChange) {
   const NormalMaterial material{38e9};
   const double infinity = std::numeric_limits<double>::infinity();
@@ -246,7 +247,7 @@ TEST(RadiusEnergyChange, TurnsItsSignWithTheChange) {
         NormalGeometry{5.001e-3, 5.103e-3, 0.01}}) {
     const double there = radius_energy_change(HertzInternal{}, material, 2e-6, one, other);
     const double back = radius_energy_change(HertzInternal{}, material, 2e-6, other, one);
-    // Both are the same difference, except for rounding of V over the step of 1e-5.
+    // Both directions evaluate the same difference. V is rounded, relative to a step of 1e-5.
     EXPECT_NEAR(there, -back, 1e-10 * std::abs(there));
     EXPECT_NE(there, 0.0);
   }
@@ -257,7 +258,8 @@ TEST(RadiusEnergyChange, TurnsItsSignWithTheChange) {
               1e-10 * there);
 }
 
-// Together with -F dc it is the whole change of V at fixed eccentricity, for any law.
+// For any law, radius_energy_change() minus F times the change of clearance is the total change of
+// V at fixed eccentricity.
 TEST(RadiusEnergyChange, ClosesAFiniteChangeForEveryLaw) {
   const NormalMaterial material{38e9};
   for (const std::string& name : law_names<NormalLaw>()) {
@@ -284,12 +286,14 @@ TEST(RadiusEnergyChange, ClosesAFiniteChangeForEveryLaw) {
     }
     const double expected = state(steps).elastic_energy - state(0).elastic_energy;
     EXPECT_GT(expected, 0.1 * state(0).elastic_energy);
-    // Trapezoidal rule: error V''' h^3/12 per step, h/delta = 0.3/200, (h/delta)^2/12 of all.
+    // Trapezoidal rule with h/delta = 0.3/200: the error V''' h^3/12 per step sums to
+    // (h/delta)^2/12 of the change.
     EXPECT_NEAR(work, expected, 1e-6 * expected) << name;
   }
 }
 
-// A hole that shrinks onto a pin at rest is an impact like any other: the depth grows at -dc/dt.
+// A bore that shrinks onto a pin at rest causes an impact like a moving pin: the depth grows at
+// -dc/dt.
 TEST(JointResponse, DissipationSeesTheRateOfTheDepth) {
   const JointLaw law = law_of("hertz_internal", "hunt_crossley", "none", "material");
   RandomJoint joint;

@@ -25,7 +25,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 const NormalGeometry joint{5e-3, 5.1e-3, 0.01};
 const NormalMaterial aluminium{70e9 / (2.0 * 0.91)};
 
-// R2 - R1 of rounded radii has an error of 4e-15 of c; the laws amplify it at most threefold.
+// R2 - R1 of rounded radii has an error of 4e-15 c, which the laws amplify at most threefold.
 constexpr double rounding = 3e-14;
 
 NormalState at(const std::string& name, double depth) {
@@ -36,15 +36,16 @@ void expect_relative(double value, double expected, double tolerance, const char
   EXPECT_NEAR(value, expected, tolerance * std::abs(expected)) << what;
 }
 
-// Expected values: 40-digit arithmetic for K; F at delta = 1 um is K 1e-9.
+// Expected K by 40-digit arithmetic. At delta = 1 um, F = K 1e-9.
 TEST(NormalLaws, HertzAtTable2) {
   expect_relative(at("hertz_paper", 1e-6).force, 2.576765e9 * 1e-9, 2e-7, "external K");
   expect_relative(at("hertz_internal", 1e-6).force, 25.896166508620712701, rounding, "internal K");
   expect_relative(at("hertz_internal", 1e-6).contact_width, std::sqrt(0.255 * 1e-6), rounding, "a");
 }
 
-// Expected values: 25-digit root of the printed relation delta(f) by bisection in ln f, stiffness
-// as derivative of that relation, energy F delta - integral of delta dF by quadrature.
+// Expected force: root (25 digits) of the printed relation delta(f) by bisection in ln f. Expected
+// stiffness: derivative of that relation. Expected energy: F delta minus the integral of delta dF
+// by quadrature.
 TEST(NormalLaws, LineContactsAgainstHighPrecision) {
   const NormalState johnson = at("johnson", 1e-5);
   expect_relative(johnson.force, 2947.2120306520961, rounding, "F");
@@ -52,7 +53,7 @@ TEST(NormalLaws, LineContactsAgainstHighPrecision) {
   expect_relative(johnson.elastic_energy, 0.0129389022106475615, rounding, "U");
   const NormalState deep = at("johnson", 5e-5);
   expect_relative(deep.force, 41573.0584663178223, rounding, "F");
-  // u - 1 = 0.26 there: the rounding error of dR is amplified 15-fold
+  // At this depth u - 1 = 0.26, so the rounding error of dR is amplified 15-fold
   expect_relative(deep.stiffness, 2665982167.80889568, 15 * rounding, "k");
   const NormalState esdu = at("esdu_78035", 1e-5);
   expect_relative(esdu.force, 1838.66469143979695, rounding, "F");
@@ -60,9 +61,9 @@ TEST(NormalLaws, LineContactsAgainstHighPrecision) {
   expect_relative(esdu.elastic_energy, 0.00849385432061475483, rounding, "U");
 }
 
-// Independent values: gap at phi = 0 from Persson's pressure, integrated with the logarithmic
-// Green's function of disc and hole to 25 digits; stiffness by a central difference, accurate to
-// 1e-11; energy by quadrature of delta dF. epsilon is the half angle of the arc.
+// Independent values. The depth follows from the gap at phi = 0: Persson's pressure, integrated to
+// 25 digits with the logarithmic Green's function. The stiffness is a central difference (1e-11),
+// the energy a quadrature of delta dF. epsilon is the half angle of the contact arc.
 TEST(NormalLaws, PerssonAgainstPressureIntegral) {
   const NormalState light = at("persson", 1e-6);
   expect_relative(light.force, 174.320828198019069, rounding, "F");
@@ -78,7 +79,8 @@ TEST(NormalLaws, PerssonAgainstPressureIntegral) {
   expect_relative(deep.elastic_energy, 2.6982981204902, rounding, "U");
 }
 
-// Persson's depth is defined to equal Johnson's at light load: the ratio tends to 1 with delta/dR.
+// Persson's depth is defined to equal Johnson's at light load, so the ratio of forces tends to 1 as
+// delta/dR -> 0.
 TEST(NormalLaws, PerssonTendsToJohnson) {
   for (const double depth : {1e-14, 1e-11, 1e-9, 1e-8}) {
     const double ratio = at("persson", depth).force / at("johnson", depth).force;
@@ -86,7 +88,7 @@ TEST(NormalLaws, PerssonTendsToJohnson) {
   }
 }
 
-// Over the range of each law: F is positive, F and a increase, and stiffness and energy agree with
+// Over the range of each law: F and a are positive and increase; stiffness and energy agree with
 // differences and quadrature of F.
 class EveryNormalLaw : public ::testing::TestWithParam<const char*> {};
 
@@ -102,11 +104,13 @@ TEST_P(EveryNormalLaw, IsMonotoneAndConsistent) {
     EXPECT_GT(state.contact_width, before.contact_width);
     EXPECT_GT(state.elastic_energy, before.elastic_energy);
     EXPECT_GT(state.stiffness, before.stiffness);
-    // central difference: h^2 F'''/(6 F') <= h^2 (a few)/(1 - part)^2, rounding 1e-14/h
+    // error of the central difference: h^2 F'''/(6 F') <= h^2 (a few)/(1 - part)^2, plus rounding
+    // 1e-14/h
     const double h = 1e-5;
     const double slope = (force(depth * (1 + h)) - force(depth * (1 - h))) / (2 * h * depth);
     expect_relative(slope, state.stiffness, 2e-8, "dF/d(delta)");
-    // x = depth s^2 removes Hertz's square root; a logarithm remains, 61 points suffice
+    // substituting x = depth s^2 removes Hertz's square root; the remaining logarithm needs 61
+    // points
     const double energy = boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
         [&](double s) { return 2.0 * s * depth * force(depth * s * s); }, 0.0, 1.0, 8, 1e-12);
     expect_relative(energy, state.elastic_energy, 1e-10, "energy");
@@ -152,8 +156,9 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, EveryNormalLaw,
                                            "persson"),
                          [](const auto& law) { return std::string(law.param); });
 
-// Turning points, u = 1: f = 4 pi E* dR/e^2 and 4 pi E* dR. F approaches them as a
-// square root: 1 - f/f_max = sqrt(2 (1 - delta/delta_max)), 1.4e-6 at 1e-12.
+// At u = 1, force over depth has a turning point, at f = 4 pi E* dR/e^2 (Johnson) and 4 pi E* dR
+// (ESDU). Near it 1 - f/f_max = sqrt(2 (1 - delta/delta_max)), i.e. 1.4e-6 in force for 1e-12 in
+// depth.
 TEST(NormalLaws, TurningPoints) {
   const double load =
       4.0 * std::acos(-1.0) * aluminium.effective_young_modulus * joint.clearance() * joint.length;
@@ -171,8 +176,8 @@ TEST(NormalLaws, BadInputIsNamed) {
   EXPECT_THROW(validate(joint, {nan}), std::invalid_argument);
 }
 
-// Impact m delta'' = -F by RK4 until the force vanishes, compared with the integral in
-// damped_force().
+// Restitution of an impact m delta'' = -F, by RK4 until the force vanishes. Compare with the
+// integral in damped_force().
 double impact_restitution(const NormalLaw& law, double ratio, double v0) {
   const double mass = 1.0;
   const auto acceleration = [&](double x, double v) {
@@ -212,7 +217,8 @@ TEST(Dissipation, ImpactReturnsTheRestitutionOfItsEnergyIntegral) {
       for (const double e : {0.3, 0.9}) {
         const double v0 = 0.2;
         const double ratio = damping_ratio(dissipation_law(name), {e, v0});
-        // at first contact F is like delta^1.5 or delta/ln delta, so RK4 loses order: 1e-5 remains
+        // F starts like delta^1.5 or delta/ln delta, so RK4 loses its order at first contact; an
+        // error of 1e-5 remains
         EXPECT_NEAR(impact_restitution(normal_law(normal), ratio, v0),
                     expected_restitution(ratio * v0), 1e-5)
             << normal << ", " << name << ", e = " << e;
@@ -248,11 +254,8 @@ TEST(Dissipation, PointValuesClipAndBadInput) {
   EXPECT_NO_THROW(validate(ImpactParameters{1.0, 1.0}));
 }
 
-/// A free impact in depth: v dv/(1 + lambda v) = -(F/m) d(delta) integrated from touch to parting,
-/// v as a function of the elastic energy w = V(delta)/(m v0^2), dv/dw = -(1 + a v)/v, v0 = 1. From
-/// the deepest point back the speed is found by the same equation.
-// Of the coefficient that was asked for, of another one, of the one that stands for none; and of
-// laws that have nothing to prepare.
+/// A prepared law returns the same damping as an unprepared one, for the prepared and for other
+/// coefficients of restitution. Some laws have nothing to prepare.
 TEST(Dissipation, WhatIsPreparedAnswersTheSame) {
   for (const std::string& name : law_names<DissipationLaw>()) {
     DissipationLaw prepared = dissipation_law(name);
@@ -269,11 +272,12 @@ TEST(Dissipation, WhatIsPreparedAnswersTheSame) {
 
 /// Free impact: v dv/(1 + lambda v) = -(F/m) d(delta), integrated from touch to separation. With
 /// the elastic energy w = V(delta)/(m v0^2) and v0 = 1, dw = -v dv/(1 + a v). Approach and rebound
-/// pass the same w.
+/// cover the same range of w.
 TEST(Dissipation, ExactRestitutionReturnsWhatIsAsked) {
   for (const double e : {1.0, 0.999, 0.9, 0.8, 0.6, 0.4, 0.2, 0.1}) {
     const double a = damping_ratio(dissipation_law("exact_restitution"), {e, 1.0});
-    // Simpson's rule with many steps; below e = 0.1 the limit is too close to the pole a e = 1
+    // Simpson's rule with many steps, for e >= 0.1: smaller e bring the limit too close to the pole
+    // a e = 1
     const auto depth = [a](double from, double to) {  // w(v): integral of v/(1 + a v) dv
       const int n = 200000;
       const double h = (to - from) / n;
@@ -287,7 +291,7 @@ TEST(Dissipation, ExactRestitutionReturnsWhatIsAsked) {
     EXPECT_NEAR(depth(0.0, 1.0), -depth(-e, 0.0), 1e-9) << e;
   }
   EXPECT_EQ(damping_ratio(dissipation_law("exact_restitution"), {1.0, 1.0}), 0.0);
-  // e = 0 is replaced by 1e-6, a very strong damper: a e -> 1 from below
+  // the law replaces e = 0 by 1e-6, a very strong damper for which a e -> 1 from below
   EXPECT_NEAR(damping_ratio(dissipation_law("exact_restitution"), {0.0, 1.0}), 1e6, 1.0);
   EXPECT_NEAR(damping_ratio(dissipation_law("exact_restitution"), {0.7, 0.5}),
               2.0 * ExactRestitution::coefficient(0.7), 1e-14);
@@ -315,8 +319,8 @@ TEST(Friction, AmbrosioRampAndCreep) {
   EXPECT_FALSE(has(law, Trait::holds_static_load));
 }
 
-// A mass pushed by half of the Coulomb limit: laws with a memory hold it, with ambrosio it creeps
-// at v0 + (v1 - v0)/2, with none it accelerates.
+// A mass under half of the Coulomb limit. Laws with memory hold it, `ambrosio` lets it creep at v0
+// + (v1 - v0)/2, and `none` lets it accelerate.
 TEST(Friction, StaticLoad) {
   const FrictionParameters parameters{0.3, 1e-4, 1e-3};
   for (const std::string& name : law_names<FrictionLaw>()) {
@@ -328,7 +332,7 @@ TEST(Friction, StaticLoad) {
     for (int i = 0; i < 100000; ++i) {
       const FrictionResponse response =
           evaluate(law, parameters, {100.0, 1e5, Vector3(v, 0, 0), dt, Vector3::UnitZ()}, history);
-      // a dashpot with critical damping for the oscillation of the stuck mass
+      // dashpot with critical damping of the oscillation of the sticking mass
       const double damping = has(law, Trait::has_memory) ? 2 * std::sqrt(1e5) : 0.0;
       v += dt * (15.0 + response.force_on_1.x() - damping * v);
       x += dt * v;
@@ -347,7 +351,8 @@ TEST(Friction, StaticLoad) {
   }
 }
 
-// An opened contact keeps neither spring nor axis: it is like a contact that never touched.
+// A contact that opened keeps neither spring nor axis; it behaves like a contact that never
+// touched.
 TEST(Friction, OpenContactForgets) {
   const FrictionParameters parameters{0.3, 0.0, 1e-3};
   for (const char* name : {"mindlin", "mindlin_deresiewicz"}) {
@@ -364,7 +369,8 @@ TEST(Friction, OpenContactForgets) {
   }
 }
 
-// Loaded at a constant ratio of both forces no annulus slips: the given force is kept.
+// An initial force at a constant ratio to the load causes no slip of annuli, so the law keeps the
+// given force.
 TEST(Friction, PartialSlipBeginsWithoutSlipWhereLoadedObliquely) {
   const FrictionParameters parameters{0.3, 0.0, 1e-3};
   const double stiffness = 1e6;
@@ -400,7 +406,7 @@ class JointMotion : public ::testing::Test {
   }
 };
 
-// Compares eq. (15) with a numerical derivative of the points of eq. (14).
+// Compares the velocity of eq. (15) with a numerical derivative of the points of eq. (14).
 TEST_F(JointMotion, PaperVelocityIsTheDerivativeOfThePoints) {
   const auto points = [&](double time) {
     const Vector3 c = journal.position + time * journal.velocity;
@@ -414,8 +420,8 @@ TEST_F(JointMotion, PaperVelocityIsTheDerivativeOfThePoints) {
   EXPECT_LT((v - difference).norm(), 1e-8);
 }
 
-// Concentric bodies without clearance touch all around: the normal is arbitrary, there is no
-// sliding direction, and nothing is divided by the eccentricity.
+// Concentric bodies without clearance touch all around. The normal is arbitrary and no sliding
+// direction exists. The law must not divide by the eccentricity.
 TEST_F(JointMotion, PaperVelocityOfConcentricPartsHasNoTangentialPart) {
   JointContact c = contact();
   c.eccentricity = 0.0;
@@ -433,7 +439,7 @@ TEST_F(JointMotion, PaperVelocityOfConcentricPartsHasNoTangentialPart) {
   }
 }
 
-// Power of the contact force with the relative velocity = power of the wrench on the bodies.
+// The contact force at the relative velocity has the same power as the wrench on the bodies.
 TEST_F(JointMotion, WrenchIsTheTransposeOfTheVelocity) {
   const Vector3 force(120.0, -45.0, 0.0);
   const auto check = [&](const auto& law, const char* name) {
@@ -448,7 +454,8 @@ TEST_F(JointMotion, WrenchIsTheTransposeOfTheVelocity) {
   check(PaperVelocity{}, "paper");
 }
 
-// The paper's forces leave the moment delta n x F_t unbalanced; those of `material` balance.
+// The paper's two forces leave the moment delta n x F_t unbalanced. The forces of `material`
+// balance.
 TEST_F(JointMotion, MomentBalance) {
   const JointContact c = contact();
   const Vector3 force(120.0, -45.0, 0.0);

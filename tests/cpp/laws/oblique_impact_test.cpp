@@ -27,7 +27,7 @@ struct Rebound {
   double dissipated, lost;    // loss by friction; loss of kinetic energy [J]
 };
 
-/// Leapfrog of the sphere on a rigid wall from first touch to separation.
+/// Leapfrog integration of a sphere that hits a rigid wall, from first touch to separation.
 Rebound rebound(const Sphere& sphere, const std::string& friction, double normal, double tangential,
                 int steps = 20000) {
   JointLaw law;
@@ -79,9 +79,9 @@ struct Reading {
   double at, value;
 };
 
-/// Measured by Kharaz, Gorham and Salman (Powder Technol. 120, 2001) against the angle of incidence
-/// [degrees]: tangential restitution; spin after the impact [rad/s]; rebound angle of the contact
-/// point [degrees].
+/// Readings of Kharaz, Gorham and Salman (Powder Technol. 120, 2001) over the angle of incidence
+/// [degrees]: tangential restitution here, then spin after the impact [rad/s], then rebound angle
+/// of the contact point [degrees].
 const std::vector<Reading> measured_restitution{
     {2.24, 0.797},  {4.22, 0.746},  {9.84, 0.675},  {20.22, 0.599}, {30.36, 0.690},
     {39.54, 0.774}, {49.60, 0.848}, {71.07, 0.937}, {79.23, 0.970}, {85.17, 0.979}};
@@ -92,7 +92,8 @@ const std::vector<Reading> measured_angle{
     {2.10, 0.77},   {3.94, 0.77},   {9.72, -1.06},  {20.31, -8.53}, {30.16, -2.55}, {39.12, 9.91},
     {49.51, 30.02}, {59.90, 49.95}, {70.46, 66.90}, {78.86, 78.87}, {84.78, 85.68}};
 
-/// 5 mm spheres of aluminium oxide at 3.9 m/s on a thick anvil (rigid in test 4).
+/// 5 mm spheres of aluminium oxide at 3.9 m/s on a thick anvil, which the test treats as rigid
+/// (test 4).
 const Sphere aluminium_oxide{380e9, 0.23, 4000.0, 2.5e-3, 0.092, 0.98};
 
 template <class Answer>
@@ -138,9 +139,9 @@ TEST(ObliqueImpact, MeasuredReboundOfAluminiumOxide) {
   EXPECT_LE(root_mean_square(measured_angle, law, 90.0, angle_of), 1.5);
 }
 
-/// Test 5: steel spheres with a normal speed of 5 m/s. Tangential velocity of the contact point
-/// after against before the impact, both over mu times the normal speed. Finite elements of Wu
-/// (quoted there).
+/// Finite elements of Wu, quoted for test 5: steel spheres with a normal speed of 5 m/s. Each
+/// reading is the tangential velocity of the contact point before and after the impact, both
+/// divided by mu times the normal speed.
 const std::vector<Reading> elements_contact_point{
     {0.272, -0.027}, {0.586, -0.027}, {0.876, -0.080}, {1.190, -0.213}, {1.553, -0.373},
     {1.915, -0.627}, {2.314, -0.947}, {2.785, -1.253}, {3.317, -1.520}, {3.970, -1.720},
@@ -175,15 +176,16 @@ TEST(ObliqueImpact, FiniteElementsOfASteelSphere) {
     std::printf("%-20s rms over mu v_n: contact point %.3f, spin %.3f\n", law, rms[i][0],
                 rms[i][1]);
   }
-  // tolerance of some hundredths for mesh and reading; the simple spring is four times worse
+  // tolerance of a few hundredths for mesh and reading errors; the simple spring has four times the
+  // error
   EXPECT_LE(rms[1][0], 0.08);
   EXPECT_LE(rms[1][1], 0.06);
   EXPECT_GE(rms[0][0], 4.0 * rms[1][0]);
 }
 
 /// Maw, Barber and Fawcett (Wear 38, 1976), with psi = v_t/(mu kappa v_n), kappa = E*/(4 G*) and
-/// chi = 7/(4 kappa) for a sphere. It slides throughout for psi_1 >= 4 chi - 1, then psi_2 = psi_1
-/// - 4 chi. For psi_1 < 1 it sticks at first touch.
+/// chi = 7/(4 kappa) for a sphere. For psi_1 >= 4 chi - 1 the sphere slides throughout and psi_2 =
+/// psi_1 - 4 chi. For psi_1 < 1 it sticks from first touch.
 TEST(ObliqueImpact, BoundsOfGrossSlip) {
   const double kappa = (2.0 - steel.poisson) / (2.0 * (1.0 - steel.poisson));
   const double chi = 7.0 / (4.0 * kappa);
@@ -195,9 +197,10 @@ TEST(ObliqueImpact, BoundsOfGrossSlip) {
   for (const double beyond : {0.02, 0.5, 3.0}) {
     EXPECT_NEAR(leaves_with(bound + beyond), bound + beyond - 4.0 * chi, 2e-3) << beyond;
   }
-  // below the bound, friction decreases before the end and takes less momentum
+  // below the bound, the friction force decreases before the end and removes less momentum
   EXPECT_GT(leaves_with(bound - 0.3), bound - 0.3 - 4.0 * chi + 5e-3);
-  // the lost kinetic energy equals the friction loss, which annuli at the rim cause here
+  // the lost kinetic energy equals the friction loss, which slip annuli at the rim cause in this
+  // impact
   const Rebound gentle = rebound(steel, "mindlin_deresiewicz", 5.0, 0.5 * scale, 40000);
   EXPECT_GT(gentle.dissipated, 0.0);
   EXPECT_NEAR(gentle.lost, gentle.dissipated, 2e-3 * gentle.dissipated + 1e-7 * 0.5 * 25.0);

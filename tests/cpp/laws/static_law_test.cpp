@@ -45,7 +45,8 @@ TEST(KnownLaw, HasTheParametersOfTheLaw) {
   });
 }
 
-// Open, sticking and slipping contacts during loading and unloading, with and without dashpots.
+// Static and dynamic laws must agree to the last bit for open, sticking and slipping contacts,
+// during loading and unloading, with and without dashpots.
 TEST(KnownLaw, AnswersWithTheBitsOfTheLaw) {
   const JointLaw law = joint_law({"hertz_internal", "none", "mindlin", "material"});
   std::mt19937_64 generator{7};

@@ -29,7 +29,7 @@ struct Moody {
   }
 };
 
-/// The catalogue with an additional law and an unusable one, as the loader would add them.
+/// The catalogue plus a usable and an unusable law, as the loader would register them.
 class UserLawTest : public ::testing::Test {
  protected:
   UserLawTest() {
@@ -176,9 +176,9 @@ TEST(UserLaws, EveryKindGoesThroughItsTable) {
             Vector3(-1.0, 0.0, 0.0));
 }
 
-// ---- laws that return one invalid number; an input selects which one
+// ---- laws that return one invalid number, selected by an input
 
-/// Replaces `entry` by a wrong number (NaN) if `at` is the selected index.
+/// Replaces `entry` by `wrong` (NaN) if `at` is the index that the input selects.
 void spoil(double wanted, int at, double& entry, double wrong = nan) {
   if (wanted == at) entry = wrong;
 }
@@ -312,7 +312,7 @@ TEST(UserLaws, TableSaysWhatItIs) {
   EXPECT_STREQ(table.name, "doubling");
   EXPECT_STREQ(table.kernel, "a hash");
   EXPECT_EQ(table.info, &Doubling::info);
-  // The number encodes the sizes as digits of base 31, modulo 2^32; here from the last digit.
+  // The number encodes sizes as digits of base 31, modulo 2^32. This loop starts at the last digit.
   std::uint32_t expected = 0;
   std::uint32_t weight = 1;
   for (const std::size_t size :

@@ -17,9 +17,9 @@ namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
 
-/// Matrix of a ring of nodes. The two unknowns of each node also depend on those of both
-/// neighbours, and a multiplier constrains a combination of them: zeros on the diagonal, entries of
-/// order 1e7 and 1.
+/// Matrix of a ring of nodes. The two unknowns of each node are coupled to those of both
+/// neighbours. A multiplier constrains a combination of them, which gives zeros on the diagonal and
+/// entries of order 1e7 and 1.
 Matrix ring(int nodes, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> entry(0.5, 1.5);
@@ -62,7 +62,7 @@ struct Klu {
   int size() const { return static_cast<int>(of.rows()); }
   int* columns() { return of.outerIndexPtr(); }
   int* rows() { return of.innerIndexPtr(); }
-  /// All entries of the factors, column by column, and KLU's row scaling.
+  /// All entries of the factors, column by column, followed by KLU's row scaling.
   std::vector<double> all() {
     const auto entries = static_cast<std::size_t>(numeric->lnz + numeric->unz);
     std::vector<int> begins(2 * index(size() + 1)), rows_of(entries);
@@ -88,13 +88,13 @@ TEST(KluHalves, ARingIsCutAtTwoPlaces) {
   ASSERT_EQ(made.symbolic->nblocks, 1);
   ASSERT_TRUE(made.order.is_cut());
   EXPECT_EQ(made.order.second, made.size() / 2);
-  // Rows of a node reach both neighbours. The separator has two nodes at each end of a half and a
-  // node that is cut.
+  // Each node is coupled to both neighbours. The separator therefore has two nodes at each cut of
+  // the ring, plus the node that is cut.
   EXPECT_LE(made.size() - made.order.separator, 2 * 3 * 3);
   HalvedFactors halves;
   halves.begin(*made.numeric, *made.symbolic, made.order);
   EXPECT_TRUE(halves.are_halved());
-  // A wrong order, whose pivots are not confined to the halves, is detected.
+  // If pivots are not confined to the halves, the order is wrong, and begin() must detect it.
   HalvedOrder wrong = made.order;
   wrong.second += 3;
   halves.begin(*made.numeric, *made.symbolic, wrong);
@@ -115,7 +115,7 @@ TEST(KluHalves, FactorsAreThoseOfKluToTheLastBit) {
                               *in_halves.numeric, *in_halves.symbolic));
   EXPECT_EQ(in_halves.all(), by_klu.all());
 
-  // The solutions differ only by the order in which the halves are added to the separator.
+  // Both solutions are equal except for the order in which the halves are added to the separator.
   const Eigen::VectorXd right = Eigen::VectorXd::LinSpaced(next.rows(), -1.0, 2.0);
   Eigen::VectorXd one = right, other = right;
   klu_solve(by_klu.symbolic, by_klu.numeric, by_klu.size(), 1, one.data(), &by_klu.common);
@@ -138,7 +138,7 @@ TEST(KluHalves, APivotOfZeroIsTold) {
 }
 
 TEST(KluHalves, WhatHangsTogetherEverywhereIsNotCut) {
-  // Every fortieth node also depends on a remote node: there is no narrow separator.
+  // Every fortieth node also depends on a remote node, so no narrow separator exists.
   Matrix matrix = ring(4000, 1);
   std::vector<Eigen::Triplet<double>> more;
   std::mt19937 random(3);
@@ -160,8 +160,8 @@ TEST(SparseFactor, LargeMatricesAreSolvedAsWell) {
     const Eigen::VectorXd solution = factor.solve(right);
     const Eigen::VectorXd left = matrix * solution - right;
     const Eigen::VectorXd added = matrix.cwiseAbs() * solution.cwiseAbs() + right.cwiseAbs();
-    // Backward error: rounding of the six to eight entries of a row, times the growth that reused
-    // pivots may cause.
+    // Allowed backward error: rounding of six to eight entries per row, times the growth that
+    // reused pivots may cause.
     const double rounding = 8.0 * SparseFactor::stable_growth * 1.1e-16;
     EXPECT_LT((left.array() / added.array()).abs().maxCoeff(), rounding);
   }

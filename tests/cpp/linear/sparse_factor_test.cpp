@@ -21,7 +21,7 @@ TEST(SparseFactor, SolvesWhatItFactors) {
   SparseFactor factor;
   ASSERT_TRUE(factor.factorize(sparse(dense)));
   const Eigen::Vector3d right(1.0, -2.0, 0.25);
-  // Condition number 4: rounding of a few ulps.
+  // The condition number is 4, so the errors are a few ulps.
   EXPECT_LT((dense * factor.solve(right) - right).norm(), 1e-14);
 }
 
@@ -35,12 +35,12 @@ TEST(SparseFactor, FactorsAnEmptyMatrix) {
 
 TEST(SparseFactor, NamesAMatrixThatIsSingularToRounding) {
   // The third row is twice the second minus the first. No entry is a binary fraction, so
-  // elimination leaves a pivot of 1e-17 instead of zero.
+  // elimination gives a pivot of 1e-17 instead of zero.
   Eigen::Matrix3d dense;
   dense << 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9;
   SparseFactor factor;
   EXPECT_FALSE(factor.factorize(sparse(dense)));
-  // Chain of springs without a support; one stiffness is a sum of rounded thirds.
+  // Chain of springs without a support, hence singular. One stiffness is a sum of rounded thirds.
   const double k = 1.0 / 3.0;
   dense << k, -k, 0.0, -k, k + 0.7, -0.7, 0.0, -0.7, 0.7;
   SparseFactor chain;
@@ -48,7 +48,8 @@ TEST(SparseFactor, NamesAMatrixThatIsSingularToRounding) {
 }
 
 TEST(SparseFactor, TellsTheSignOfTheDeterminant) {
-  // Block structure, for which KLU finds a block triangular form; all permutations of the rows.
+  // A matrix of blocks for which KLU finds a block triangular form, tested with all permutations of
+  // its rows.
   Eigen::Matrix4d dense;
   dense << 2.0, 1.0, 0.3, 0.0, 1.0, -3.0, 0.0, 0.2, 0.0, 0.0, 0.5, 4.0, 0.0, 0.0, 1.0, 0.25;
   std::array<int, 4> order{0, 1, 2, 3};
@@ -62,9 +63,9 @@ TEST(SparseFactor, TellsTheSignOfTheDeterminant) {
 }
 
 TEST(SparseFactor, ChoosesOtherPivotsWhereThoseOfTheLastMatrixDoNotServe) {
-  // All matrices have the same pattern. The pivots of the first one are on the diagonal. In the
-  // second, the diagonal is 1e-14 of the other entries, so these pivots would leave two digits; in
-  // the third it is zero.
+  // All three matrices have the same pattern. The first one has its pivots on the diagonal. In the
+  // second, the diagonal is 1e-14 of the other entries and would leave two correct digits. In the
+  // third, the diagonal is zero.
   Eigen::Matrix3d dense;
   dense << 4.0, 1.0, 0.5, 1.0, 5.0, 1.0, 0.25, 1.0, 3.0;
   SparseFactor factor;
@@ -98,21 +99,22 @@ TEST(SparseFactor, KeepsPivotsThatLeaveHalfOfTheDigitsForWhoRefines) {
   dense << 4.0, 1.0, 0.5, 1.0, 5.0, 1.0, 0.25, 1.0, 3.0;
   SparseFactor factor;
   ASSERT_TRUE(factor.factorize(sparse(dense)));
-  // In the next matrix the first pivot is 1/30,000 of the other entries.
+  // In the next matrix the reused first pivot is only 1/30,000 of the other entries.
   Eigen::SparseMatrix<double> next = sparse(dense);
   next.coeffRef(0, 0) = 1.0 / 30000.0;
   const Eigen::Vector3d right(1.0, -2.0, 0.25);
   ASSERT_TRUE(factor.factorize(next, SparseFactor::refined_growth));
   Eigen::Vector3d found = factor.solve(right);
   if (std::string(SparseFactor::library()) == "KLU") {
-    // Rounding times 30,000 is 7e-12; new pivots would leave 1e-16.
+    // Rounding errors grow by 30,000 to 7e-12; with new pivots they would be 1e-16.
     EXPECT_GT((next * found - right).norm(), 1e-14);
   }
   EXPECT_LT((next * found - right).norm(), 1e-11);
   EXPECT_EQ(factor.determinant_sign(), Eigen::Matrix3d(next).determinant() < 0.0 ? -1 : 1);
   found -= factor.solve(next * found - right);
   EXPECT_LT((next * found - right).norm(), 1e-15);
-  // A matrix that is singular within the accuracy of such pivots is reported as singular.
+  // With such pivots this matrix is singular to working accuracy, so it must be reported as
+  // singular.
   Eigen::SparseMatrix<double> singular = next;
   for (int column = 0; column < 3; ++column) {
     singular.coeffRef(2, column) = 0.7 * next.coeff(0, column) + 0.3 * next.coeff(1, column);
@@ -140,14 +142,16 @@ TEST(SparseFactor, SharesItsOrderAndLetsGoOfItsFactors) {
 }
 
 TEST(SparseFactor, TakesColumnsOfDifferentUnits) {
-  // Rows in newtons and metres, for a stiff element: the smallest pivot is 1e-18 of the largest.
+  // Rows of a stiff element in newtons and in metres: the smallest pivot is 1e-18 of the largest,
+  // but regular.
   Eigen::Matrix2d dense;
   dense << 1e9, 1.0, 1.0, -1e-9;
   SparseFactor factor;
   ASSERT_TRUE(factor.factorize(sparse(dense)));
   const Eigen::Vector2d right(1.0, 1e-9);
   EXPECT_LT((dense * factor.solve(right) - right).norm(), 1e-15);
-  // A soft mode of relative stiffness 1e-12, as in a long ring: rounding leaves four digits.
+  // A soft mode of relative stiffness 1e-12, as in a long ring. Rounding leaves four correct
+  // digits.
   dense << 1.0, 1.0, 1.0, 1.0 + 1e-12;
   SparseFactor soft;
   EXPECT_TRUE(soft.factorize(sparse(dense)));

@@ -41,8 +41,8 @@ TEST(LinkageLaws, AccountClosesForEveryCombination) {
           }
           const linkage::Run fine = run(model, 40000);
           ASSERT_GT(fine.contacts, 0) << which;
-          // Impact speed and slip limit are located only to a step: energy balance of second order
-          // in ω h = 0.0125. ω = 1e4 rad/s is the frequency of journal and links in contact.
+          // Impact speed and slip limit are located to one step, so the energy balance is of second
+          // order in ω h = 0.0125. ω = 1e4 rad/s is the contact frequency of journal and links.
           const double scale = fine.samples.back().account.dissipation();
           EXPECT_LT(std::abs(fine.energy_residue), 1.6e-4 * scale) << which;
           EXPECT_EQ(fine.samples.back().account.impact_dissipation > 0.0, dissipation != "none")
@@ -56,8 +56,8 @@ TEST(LinkageLaws, AccountClosesForEveryCombination) {
 }
 
 TEST(LinkageLaws, PaperVelocityDoesNotSeeTheSpins) {
-  // Without relative motion of the centres, journal and bearing rotate against each other: only
-  // `material` has friction.
+  // The centres have no relative motion, but journal and bearing rotate against each other. Only
+  // `material` then has friction.
   Linkage model = with_laws({"hertz_internal", "none", "ambrosio", "paper"});
   State state = initial_state(model, Start::rest, 0.0, {1e-4, 0.0});
   const Eigen::Vector2d ab = state.bearing_centre;
@@ -83,7 +83,7 @@ TEST(LinkageLaws, StateSaysWhatTheJointDoes) {
     EXPECT_EQ(joint.tangential_force, 0.5);
     EXPECT_NEAR(joint.penetration_depth, 1e-8, 1e-15);
   }
-  // During a run the impact speed is set in contact and only then.
+  // A run sets the impact speed at first contact and at no other time.
   const linkage::Run done =
       simulate(model, heating(0.05), initial_state(model, Start::rest, 0.0), {20000, 1});
   int touching = 0;
@@ -96,8 +96,8 @@ TEST(LinkageLaws, StateSaysWhatTheJointDoes) {
 }
 
 TEST(LinkageLaws, FrictionSeesTheMaterialAtTheContactPoint) {
-  // Each link rotates about its pin. The friction of `ambrosio` rises from 0 at 1e-5 m/s to
-  // Coulomb's at 1e-4 m/s, so it indicates the sliding velocity.
+  // Each link rotates about its pin. The friction of `ambrosio` grows from 0 at 1e-5 m/s to
+  // Coulomb's at 1e-4 m/s, so its value reveals the sliding velocity.
   const Linkage model = with_laws({"hertz_internal", "none", "ambrosio", "material"});
   State state = initial_state(model, Start::rest, 0.0, {1e-4, 0.0});
   state.journal_centre.x() += 1e-8;
@@ -107,8 +107,8 @@ TEST(LinkageLaws, FrictionSeesTheMaterialAtTheContactPoint) {
     for (const double turn_bc : {7e-4, -9e-4}) {
       state.bearing_velocity = turn_ab * Eigen::Vector2d(-ab.y(), ab.x());
       state.journal_velocity = turn_bc * Eigen::Vector2d(-bc.y(), bc.x());
-      // Velocity along (0, 1) at the point half-way between the surfaces, 5.1 mm + 5 nm from the
-      // bearing's centre.
+      // Velocity along (0, 1) at the contact point half-way between the surfaces, 5.1 mm + 5 nm
+      // from the bearing's centre.
       const double speed = turn_bc * (bc.x() + 5e-3 - 5e-9) - turn_ab * (ab.x() + 5.1e-3 + 5e-9);
       const double share = (std::abs(speed) - 1e-5) / 9e-5;
       ASSERT_TRUE(share > 0.1 && share < 0.99) << share;
@@ -133,7 +133,8 @@ TEST(LinkageLaws, RunThatStartsInContactSaysSo) {
 }
 
 TEST(LinkageLaws, DepthOutsideTheRangeStopsWithTheInstant) {
-  // Johnson's formula is valid up to 4 e^-2 ΔR = 0.54 ΔR; the fast journal exceeds it.
+  // Johnson's formula is valid up to a depth of 4 e^-2 ΔR = 0.54 ΔR, which the fast journal
+  // exceeds.
   const Linkage model = with_laws({"johnson", "none", "none", "material"});
   State state = initial_state(model, Start::rest, 0.0);
   state.journal_velocity = {200.0, 0.0};
@@ -168,7 +169,7 @@ TEST(LinkageLaws, StateThatCeasesToBeFiniteStopsWithTheInstant) {
 }
 
 TEST(LinkageAdaptive, AgreesWithFixedStepsUntilTheLargestTemperature) {
-  // With damping, so that errors do not grow and both methods converge to the same solution.
+  // Damping limits the growth of errors, so both methods converge to the same solution.
   for (const char* friction : {"none", "ambrosio"}) {
     const Linkage model = with_laws({"hertz_internal", "hunt_crossley", friction, "material"});
     const State start = initial_state(model, Start::rest, 0.0);
@@ -186,7 +187,8 @@ TEST(LinkageAdaptive, AgreesWithFixedStepsUntilTheLargestTemperature) {
     std::printf("%s: %g m apart, %ld steps, %d and %d contacts, residue %g J\n", friction, largest,
                 adaptive.steps, adaptive.contacts, fixed.contacts, adaptive.energy_residue);
     EXPECT_EQ(fixed.contacts, adaptive.contacts);
-    // Fixed steps scale the dissipation by an impact speed with an error O(h): 1e-7 s of 1e-3 s.
+    // Fixed steps locate the impact speed, and thus the dissipation, with an error of order h: 1e-7
+    // s of 1e-3 s.
     EXPECT_LT(largest, 1e-4 * model.radial_clearance());
   }
 }
@@ -200,8 +202,8 @@ TEST(LinkageAdaptive, FirstContactAndEnergy) {
     EXPECT_NEAR(result.first_contact->temperature_change, c / (alpha * frame), 1e-6) << c;
     EXPECT_EQ(result.samples.size(), 2u);
   }
-  // The error per step is proportional to the tolerance, and the step length to its power -1/5.
-  // Over three decades the residue decreases by 250, less an effect of random phases.
+  // The error per step is proportional to the tolerance, the step length to its power -1/5. Over
+  // three decades of the tolerance the residue decreases by 250, less an effect of random phases.
   double coarse = 0.0;
   for (const double tolerance : {1e-7, 1e-10}) {
     const Linkage model = umbrella();

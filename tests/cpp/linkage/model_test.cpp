@@ -171,7 +171,7 @@ TEST(Linkage, MatchedStartGrowsWithTheLinks) {
   Linkage model = umbrella();
   model.link_bc.thermal_expansion = 2.0 * alpha;
   const State state = initial_state(model, Start::matched, 200.0);
-  // The velocity is along each link: expansion coefficient times length times heating rate.
+  // Thermal velocity along each link: expansion coefficient times length times heating rate.
   EXPECT_NEAR(state.bearing_velocity.norm(), alpha * 200.0 * 0.05, 1e-18);
   EXPECT_NEAR(state.bearing_velocity.dot(state.bearing_centre), alpha * 200.0 * 0.0025, 1e-19);
   const Eigen::Vector2d bc = state.journal_centre - Eigen::Vector2d(frame, 0.0);
@@ -229,7 +229,7 @@ TEST(Linkage, EnergyByHand) {
   EXPECT_NEAR(found.axial, 0.5 * 6.3e5 / 0.1 * std::pow(bc - 0.1, 2), 1e-13);
   const double flare = std::atan2(0.04, -0.09) - std::atan2(0.04, 0.03);
   EXPECT_NEAR(found.torsion, std::pow(flare - 1.5, 2), 1e-14);
-  // After heating by 50 K, AB is compressed by its own expansion.
+  // Heated by 50 K at fixed ends, AB is compressed by its own thermal expansion.
   found = energy(model, state, 50.0);
   const double ab = 0.05 * (1.0 + alpha * 50.0), other = 0.1 * (1.0 + alpha * 50.0);
   EXPECT_NEAR(found.axial,

@@ -15,7 +15,7 @@ namespace {
 
 using detail::AllTerms;
 
-/// States with gap and with contact on several sides, with strained and moving links.
+/// States with open contact and with contact on several sides, with strained and moving links.
 std::vector<State> states(const Linkage& model) {
   std::vector<State> found;
   for (const double angle : {0.3, 2.0, 4.5}) {
@@ -59,12 +59,13 @@ TEST(LinkageRates, ForcesAreTheSlopesOfTheEnergy) {
         const Energy e = energy(model, there, change);
         return e.axial + e.contact + e.torsion;
       };
-      // Central differences of fourth order; Hertz's force is smooth 30 steps from the edge.
+      // Central differences of fourth order. Hertz's force is smooth: the edge of contact is 30
+      // steps away.
       const double h = 1e-8;
       const double slope =
           (8.0 * (moved(h) - moved(-h)) - (moved(2.0 * h) - moved(-2.0 * h))) / (12.0 * h);
       const double mass = (i < 2 ? model.link_ab.mass : model.link_bc.mass) / 3.0;
-      // Rounding of energies of at most 1 J, 1e-16 J, over the step: 1e-8 N.
+      // Rounding of energies of at most 1 J (1e-16 J) divided by the step gives 1e-8 N.
       EXPECT_NEAR(mass * rate[static_cast<std::size_t>(4 + i)], -slope,
                   1e-7 + 1e-5 * std::abs(slope))
           << i;
@@ -75,7 +76,7 @@ TEST(LinkageRates, ForcesAreTheSlopesOfTheEnergy) {
 }
 
 TEST(LinkageRates, PowersCloseTheAccountAtEveryInstant) {
-  // Compares the rate of change of the energy, by motion and heating, with the powers.
+  // Compares the rate of change of the energy, due to motion and heating, with the powers.
   for (const char* friction : {"none", "ambrosio"}) {
     Linkage model = sprung();
     model.law = kernel::laws::joint_law({"hertz_internal", "hunt_crossley", friction, "material"});
@@ -101,7 +102,8 @@ TEST(LinkageRates, PowersCloseTheAccountAtEveryInstant) {
       const double lost = rate[detail::axial_heat] + rate[detail::pin_heat] +
                           rate[detail::friction_heat] + rate[detail::impact_heat];
       const double scale = std::abs(rate[detail::thermal_work]) + lost;
-      // Rounding of energies of 1 J, 1e-16 J, over the step; and second-order error.
+      // Allowed: rounding of energies of 1 J (1e-16 J) divided by the step, plus the second-order
+      // error.
       EXPECT_NEAR(power, rate[detail::thermal_work] - lost, 1e-7 + 1e-6 * scale) << friction;
       EXPECT_GT(rate[detail::axial_heat], 0.0);
       EXPECT_GT(rate[detail::pin_heat], 0.0);

@@ -42,7 +42,7 @@ TEST(Run, ExpandingRadiiMoveFirstContact) {
 
 TEST(Run, StartFromRestRingsAsTheClosedFormSays) {
   // x'' = −ω² (x − v t) from rest gives x = v t − v/ω sin ω t along each link. So the distance of
-  // the centres along AC differs from the thermal part by at most a few v/ω.
+  // the centres along AC differs from its thermal part by a few v/ω at most.
   const Linkage model = umbrella();
   const linkage::Run run = simulate(model, heating(), initial_state(model, Start::rest, 0.0));
   ASSERT_TRUE(run.first_contact);
@@ -59,7 +59,7 @@ double residue(const Linkage& model, double peak, int steps) {
 
 TEST(Run, EnergyResidueOutOfContactIsOfFifthOrder) {
   // One RK4 step of a linear oscillator has a phase error of order (ω h)^5 and an amplitude error
-  // of order (ω h)^6. The energy thus drifts as h^5, one order better than the position.
+  // of order (ω h)^6. The energy therefore drifts as h^5, one order better than the position.
   const double coarse = residue(umbrella(), 20.0, 1000);
   const double fine = residue(umbrella(), 20.0, 2000);
   const double order = std::log2(coarse / fine);
@@ -69,8 +69,8 @@ TEST(Run, EnergyResidueOutOfContactIsOfFifthOrder) {
 }
 
 TEST(Run, EnergyResidueThroughContact) {
-  // A step across the edge of contact has an error h^2.5 with a random factor, the position of the
-  // edge in the step. Over a factor of 4 in h the order must be at least two.
+  // A step across the edge of contact has an error of order h^2.5 times a random factor, the edge's
+  // position in the step. Over a factor of 4 in h, the observed order must be at least two.
   const double coarse = residue(umbrella(), 60.0, 8000);
   const double fine = residue(umbrella(), 60.0, 32000);
   const double order = 0.5 * std::log2(coarse / fine);
@@ -99,7 +99,7 @@ TEST(Run, AccountClosesWithEveryTerm) {
     EXPECT_GT(account.pin_dissipation, 0.0);
     EXPECT_GT(account.friction_dissipation, 0.0);
     EXPECT_GT(run.contacts, 0);
-    // At least first order: with four times the steps, at most half of the residue remains.
+    // At least first order: with four times the steps, at most half of the energy residue remains.
     if (previous > 0.0) {
       EXPECT_LT(std::abs(run.energy_residue), 0.5 * previous);
     }
@@ -108,9 +108,9 @@ TEST(Run, AccountClosesWithEveryTerm) {
 }
 
 TEST(Run, FewestStepsAreThoseOfTheMethodsStability) {
-  // Link AB is the stiffer one: x'' + 2 ζ ω x' + ω² x = 0 with a third of its mass. One RK4 step
+  // Link AB is the stiffer one. With a third of its mass, x'' + 2 ζ ω x' + ω² x = 0. One RK4 step
   // multiplies its modes by 1 + z + z²/2 + z³/6 + z⁴/24, z = λ h. With the fewest accepted steps no
-  // mode may grow; with about 3 % fewer steps one must.
+  // mode may grow. With slightly longer steps, a mode must grow.
   const double omega = std::sqrt(70e9 * 9e-6 / 0.05 / (0.5 / 3));
   const auto growth = [&](double zeta, double h) {
     const std::complex<double> root = std::sqrt(std::complex<double>(zeta * zeta - 1.0, 0.0));
@@ -139,7 +139,8 @@ TEST(Run, FewestStepsAreThoseOfTheMethodsStability) {
     ASSERT_TRUE(is_taken(many));
     while (many - few > 1) (is_taken((few + many) / 2) ? many : few) = (few + many) / 2;
     EXPECT_LE(growth(zeta, 0.01 / many), 1.0) << zeta;
-    // At ζ = 0.3, between the axes of the stability region, the bound is more conservative.
+    // At ζ = 0.3, far from both axes of the stability region, the bound on the step is more
+    // conservative.
     EXPECT_GT(growth(zeta, 0.01 / (0.85 * few)), 1.0) << zeta;
   }
 }
@@ -149,7 +150,7 @@ TEST(Run, RepeatsBitForBitAndStopsWhenUnstable) {
   const linkage::Run second = matched(umbrella(), heating(), 20000, 100);
   ASSERT_EQ(first.samples.size(), 201u);
   EXPECT_EQ(first.samples.back().state.journal_centre, second.samples.back().state.journal_centre);
-  // ω = 8695 rad/s for AB: limit 2.78/ω = 0.32 ms. A longer step is rejected.
+  // For AB, ω = 8695 rad/s, so steps above 2.78/ω = 0.32 ms are rejected.
   const State rest = initial_state(umbrella(), Start::rest, 0.0);
   EXPECT_THROW(simulate(umbrella(), heating(), rest, {3120, 0}), std::invalid_argument);
   EXPECT_NO_THROW(simulate(umbrella(0.3e-3), heating(), rest, {3135, 0}));

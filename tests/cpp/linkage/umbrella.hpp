@@ -8,7 +8,7 @@ namespace statejump::linkage {
 inline constexpr double frame = 0.120;
 inline constexpr double alpha = 23.75e-6;
 
-/// Tables 2 and 3 of the paper; the cross-section of the links is that of its Table 1.
+/// Umbrella of Tables 2 and 3 of the paper, with the link cross-section of its Table 1.
 inline Linkage umbrella(double clearance = 1e-4) {
   Linkage model;
   model.frame_length = frame;

@@ -104,7 +104,8 @@ Configuration drawn(Random& random) {
   at.geometry.bearing_radius = at.geometry.journal_radius + clearance;
   at.geometry.length = c.law.contact_length;
   const double gap = at.geometry.clearance();  // as rounded
-  // Depth from far below the clearance to just below the limit of the law; sometimes a gap or zero.
+  // Random depth from far below the clearance to just below the limit of the law; sometimes
+  // negative or zero.
   const double limit =
       std::visit([&](const auto& l) { return l.largest_depth(at.geometry); }, c.law.normal);
   const double deepest = std::min(limit, at.geometry.journal_radius);
@@ -130,8 +131,8 @@ Configuration drawn(Random& random) {
   at.clearance_rate = random.below(2) ? 0.1 * random.uniform(-speed, speed) : 0.0;
   at.time_step = random.log_uniform(1e-9, 1e-2);
 
-  // History: empty, or a force within, at and beyond the present limit, stored at a smaller, equal
-  // or larger stiffness.
+  // Random history: empty, or a tangential force within, at or beyond the present limit, stored
+  // with a smaller, equal or larger stiffness.
   if (random.below(3)) {
     const NormalState state = evaluate(c.law.normal, depth, at.geometry,
                                        NormalMaterial{p.elastic.effective_young_modulus});
@@ -148,7 +149,8 @@ Configuration drawn(Random& random) {
 
 struct BigNormal {
   Big force, stiffness, energy;
-  /// condition number: relative change of the force per relative change of the depth, at least 1
+  /// condition number of the force: its relative change per relative change of the depth, at least
+  /// 1
   Big condition{1};
 };
 
@@ -156,7 +158,7 @@ struct BigNormal {
 BigNormal line_contact(const Big& depth, const Big& clearance, const Big& modulus,
                        const Big& length, int s) {
   const Big m = pi() * modulus;
-  // u = ln(4 m dR/f) + s from ln u - u = ln(delta e^-s/(4 dR)), u > 1
+  // unknown u = ln(4 m dR/f) + s > 1, from ln u - u = ln(delta e^-s/(4 dR))
   const Big right = log(depth / (4 * clearance)) - s;
   Big u = 1 + (right < -1 ? sqrt(-2 * (right + 1)) - (right + 1) : Big(0));
   for (int i = 0; i < 200; ++i) {
@@ -168,14 +170,14 @@ BigNormal line_contact(const Big& depth, const Big& clearance, const Big& modulu
   BigNormal found;
   found.force = f * length;
   found.stiffness = m * length / (u - 1);
-  // integral of F d(delta) = F delta - integral of delta dF
+  // energy: integral of F d(delta) = F delta - integral of delta dF
   const Big l = u - s;
   found.energy = length * (f * depth - f * f / m * (l / 2 + Big(1) / 4 + Big(s) / 2));
   found.condition = u / (u - 1);
   return found;
 }
 
-/// Persson's contact: load and depth as functions of t, in units of E* dR and dR.
+/// Persson's contact: load in units of E* dR and depth in units of dR, as functions of t.
 Big persson_load(const Big& t) {
   return 2 * pi() * t * (1 + t) / (2 - log(1 + t) - 2 * t * t);
 }
@@ -250,7 +252,7 @@ Reference reference(const Configuration& c, const NormalState& kernel) {
   const Big depth = contact.penetration_depth;
   // velocity used by friction
   BigVector v = big(contact.relative_velocity);
-  // its normal and tangential components are differences of terms of this size
+  // normal and tangential components are differences of terms as large as this speed
   const Big whole_speed = norm(v);
   if (c.names.tangential_velocity == "paper") {
     const BigVector axis = big(c.at.axis);
@@ -291,7 +293,8 @@ Reference reference(const Configuration& c, const NormalState& kernel) {
     if (speed > v0) {
       const Big share = std::min(Big(1), Big((speed - v0) / (v1 - v0)));
       r.tangential = sum(-limit * share / speed, slide_rate, 0, slide_rate);
-      // near v0 the difference cancels; before that, the normal component was subtracted from v
+      // near v0 the difference speed - v0 cancels digits; so did the subtraction of the normal
+      // component from v
       r.tangential_scale *= 1 + speed / (v1 - v0) + whole_speed / speed;
     }
   } else if (c.names.friction == "mindlin") {
@@ -358,7 +361,8 @@ TEST(Reference, EveryLawInFiftyDigits) {
     };
     const Big condition = r.normal.condition;
     note(c.names.normal + " force", state.force - r.normal.force, condition * r.normal.force);
-    // At the turning point of F, k is infinite: the error of k and of damping is the square.
+    // At the turning point of F, k is infinite, so errors of k and damping grow as the square of
+    // the condition number.
     note(c.names.normal + " stiffness", state.stiffness - r.normal.stiffness,
          condition * condition * r.normal.stiffness);
     note(c.names.normal + " energy", state.elastic_energy - r.normal.energy,
@@ -391,8 +395,8 @@ Configuration turned(Configuration c, const Eigen::Matrix3d& rotation) {
 }
 
 TEST(Reference, AxesDoNotMatter) {
-  // Quarter rotations about the axes of the frame, and reflections of two axes. Components only
-  // change sign and position; rounding differs only by the order of sums of three terms.
+  // Quarter rotations about the axes of the frame, and reflections of two axes, only permute
+  // components and change signs. Results may differ only by the order of sums of three terms.
   Random random;
   const int count = std::min(configurations(), 100000);
   for (int i = 0; i < count; ++i) {
@@ -415,8 +419,8 @@ TEST(Reference, AxesDoNotMatter) {
 }
 
 TEST(Reference, OrderOfTheBodiesDoesNotMatter) {
-  // Bodies 1 and 2 swapped: normal, velocity and stored force change sign, and the response must do
-  // so, to the last bit.
+  // If bodies 1 and 2 are swapped, normal, velocity and stored force change sign. So must the
+  // response, to the last bit.
   Random random;
   for (int i = 0; i < std::min(configurations(), 100000); ++i) {
     Configuration c = drawn(random);
@@ -436,8 +440,8 @@ TEST(Reference, OrderOfTheBodiesDoesNotMatter) {
 }
 
 TEST(Reference, UnitsDoNotMatter) {
-  // Other units of length, mass and time, each by a power of 4, so that rounding of numbers and
-  // square roots is unchanged: the same response in the new units, to the last bit.
+  // In other units of length, mass and time the response must be the same to the last bit. Each
+  // unit changes by a power of 4, which keeps the rounding of numbers and square roots.
   Random random;
   for (int i = 0; i < std::min(configurations(), 100000); ++i) {
     Configuration c = drawn(random);

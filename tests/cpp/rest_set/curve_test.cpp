@@ -77,7 +77,7 @@ TEST(RestOnCurve, WithoutFrictionIsolatedPoints) {
 }
 
 TEST(RestOnCurve, ThreeNodes) {
-  // N rotates by 2 pi / 3 between nodes, also across the angle pi.
+  // The normal N rotates by 2 pi / 3 between nodes, also across the angle pi.
   Curve coarse;
   coarse.closed = true;
   coarse.at = [](double t) {
@@ -108,7 +108,7 @@ TEST(RestOnCurve, TwoForces) {
   }
 }
 
-/// Number of parts and length of the rest set of a lobed bore under F, counted in fine steps.
+/// Number of parts and length of the rest set of a lobed bore under `force`, counted in fine steps.
 std::pair<int, double> counted(double eps, const Vector2d& force, double mu) {
   const int n = 200000;
   const Curve curve = lobed_curve(c, eps, 3);
@@ -129,14 +129,14 @@ std::pair<int, double> counted(double eps, const Vector2d& force, double mu) {
 }
 
 TEST(RestOnCurve, LobedBore) {
-  // 1 + 9 eps cos 3 theta: convex up to eps = 0.1, where the crests are just flat.
+  // Bore 1 + 9 eps cos 3 theta: convex up to eps = 0.1, where the crests are just flat.
   const Vector2d to_crest(-1.0, 0.0);
   for (const double eps : {0.05, 0.1, 0.2, 0.3}) {
     for (const double mu : {0.02, 0.1, 0.5}) {
       const RestSet set = rest_on_curves({lobed_curve(c, eps, 3)}, {to_crest}, mu).any;
       const auto [parts, length] = counted(eps, to_crest, mu);
       EXPECT_EQ(static_cast<int>(set.parts.size()), parts) << eps << " " << mu;
-      // Both ends of a part are counted to one step of about 4e-9 m.
+      // Counting locates both ends of a part to one step of about 4e-9 m.
       EXPECT_NEAR(set.length, length, 8e-9 * parts) << eps << " " << mu;
       std::printf("eps %.2f mu %.2f: %zu parts, length %.4f um, diameter %.4f um\n", eps, mu,
                   set.parts.size(), 1e6 * set.length, 1e6 * set.diameter);
@@ -148,7 +148,8 @@ TEST(RestOnCurve, LobedBore) {
 }
 
 TEST(RestOnCurve, LobedCurveIsClosed) {
-  // Without lobes the curve is a closed circle; the force points to its first and last node.
+  // Without lobes the curve is a closed circle. Its first and last node is the point that the force
+  // presses on.
   const Curve curve = lobed_curve(c, 0.0, 1);
   EXPECT_TRUE(curve.closed);
   const RestSet set = rest_on_curves({curve}, {Vector2d(1.0, 0.0)}, 0.3).any;
@@ -157,7 +158,7 @@ TEST(RestOnCurve, LobedCurveIsClosed) {
 }
 
 TEST(RestOnCurve, FarthestPairOfOppositeArcsIsADiameter) {
-  // The farthest pair lies between nodes, where the search along both arcs has to find it.
+  // The farthest pair of points lies between nodes, so the search along both arcs has to find it.
   const auto curves = circle(11);
   for (const double direction : {0.1, 0.7, 1.3}) {
     const Vector2d force(std::cos(direction), std::sin(direction));
@@ -187,7 +188,8 @@ TEST(RestOnCurve, LobedCurveAsImplicitFunction) {
 }
 
 TEST(RestOnCurve, CurveThatLeavesTheBox) {
-  // Floor y = 0 with the free side above: under a downward force every point is a rest position.
+  // The domain is y > 0 above a floor. Under a downward force every point of the floor is a rest
+  // position.
   const auto floor = implicit_curves([](const Vector2d& p) { return -p.y(); },
                                      [](const Vector2d&) -> Vector2d {
                                        return {0.0, -1.0};
@@ -201,8 +203,8 @@ TEST(RestOnCurve, CurveThatLeavesTheBox) {
 }
 
 TEST(RestOnCurve, CurveThatComesBackToTheSideItEntersByIsOnePiece) {
-  // x = y², free side to the right: the curve enters and leaves at x = 1 and is farthest from there
-  // in the middle.
+  // Parabola x = y² with the free side to the right. The curve enters and leaves the box at x = 1;
+  // its middle is farthest from that side.
   const auto curves = implicit_curves([](const Vector2d& p) { return p.y() * p.y() - p.x(); },
                                       [](const Vector2d& p) -> Vector2d {
                                         return {-1.0, 2.0 * p.y()};
@@ -217,7 +219,8 @@ TEST(RestOnCurve, CurveThatComesBackToTheSideItEntersByIsOnePiece) {
 }
 
 TEST(RestOnCurve, PointsOfTheGridOnTheCurveAreOneNodeEach) {
-  // A diagonal through grid points: the roots on both grid lines there are the same point.
+  // The line is a diagonal through grid points. There the roots on both grid lines are the same
+  // point.
   const auto curves = implicit_curves([](const Vector2d& p) { return p.x() - p.y(); },
                                       [](const Vector2d&) -> Vector2d {
                                         return {1.0, -1.0};
@@ -238,7 +241,8 @@ TEST(JournalInProfile, RoundBoreGivesTheClearanceCircle) {
 }
 
 TEST(JournalInProfile, LobesOfTheWall) {
-  // Lobes small compared with the radius: to first order the centre's curve has the wall's profile.
+  // If lobes are small compared with the radius, the centre's curve has the profile of the wall, to
+  // first order.
   const double lobe = 1e-5;
   const auto rho = [lobe](double theta) { return 5.1e-3 + lobe * std::cos(3.0 * theta); };
   const Curve curve = journal_in_profile(rho, 5e-3);
@@ -256,7 +260,7 @@ TEST(JournalInProfile, LobesOfTheWall) {
 }
 
 TEST(JournalInProfile, ShiftedRoundBore) {
-  // A circle about (d, 0): the centre's curve is the clearance circle about (d, 0).
+  // For a circular bore about (d, 0), the centre's curve is the clearance circle about (d, 0).
   const double R = 5.1e-3, d = 3e-5;
   const auto rho = [=](double theta) {
     return d * std::cos(theta) + std::sqrt(R * R - std::pow(d * std::sin(theta), 2));
@@ -290,7 +294,7 @@ TEST(RestOnCurve, Refusals) {
     EXPECT_EQ(refused_argument([&] { journal_in_profile([&](double) { return radius; }, 5e-3); }),
               Argument("rho(0.000000)", radius));
   }
-  // The message names the angle at which it does not hold: a quarter turn.
+  // The message names the angle at which the condition fails: a quarter turn.
   const auto dented = [](double theta) { return theta < 1.57 ? 5.1e-3 : 4e-3; };
   EXPECT_EQ(refused_argument([&] { journal_in_profile(dented, 5e-3); }),
             Argument("rho(1.570796)", 4e-3));

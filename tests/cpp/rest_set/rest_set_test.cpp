@@ -45,7 +45,7 @@ TEST(RestInSlot, SegmentOrStop) {
   EXPECT_EQ(ends.any.parts.size(), 2u);
   EXPECT_DOUBLE_EQ(ends.any.diameter, 2.0 * c);
   EXPECT_EQ(ends.any.length, 0.0);
-  // Pressed at a right angle, every position is a rest position, even without friction.
+  // A force perpendicular to the slot makes every position a rest position, even without friction.
   EXPECT_DOUBLE_EQ(rest_in_slot(c, {{0, 0, -1}}, 0.0).any.diameter, 2.0 * c);
 }
 
@@ -94,7 +94,7 @@ TEST(RestInBearing, TwoForcesAtBeta) {
 }
 
 TEST(RestInBearing, FarthestOfThreeArcs) {
-  // 2.5 rad between the second and the third arc, less between the others.
+  // The second and third arc are 2.5 rad apart, all other pairs less.
   const RestStudy study = rest_in_bearing(c, {at(1.0), at(3.0), at(5.5)}, 0.05);
   EXPECT_EQ(study.any.parts.size(), 3u);
   EXPECT_NEAR(study.any.diameter, 2.0 * c * std::sin(1.25 + std::atan(0.05)), 1e-18);
@@ -107,7 +107,8 @@ TEST(RestInBearing, ForcesAllAround) {
   ASSERT_EQ(study.any.parts.size(), 1u);
   EXPECT_NEAR(study.any.length, 2.0 * pi * c, 1e-15);
   EXPECT_NEAR(study.any.diameter, 2.0 * c, 1e-18);
-  // Its farthest points are half a turn apart; they are not the ends of an arc of a full turn.
+  // The farthest points of this closed circle are half a turn apart, not at the ends of an arc of a
+  // full turn.
   EXPECT_NEAR(study.any.parts[0].diameter, 2.0 * c, 1e-18);
   EXPECT_TRUE(study.all.parts.empty());
   // With this friction a single arc exceeds half a turn.
@@ -137,9 +138,10 @@ TEST(RestInSocket, Cap) {
   EXPECT_EQ(rest_in_socket(c, {{0, 0, 1}, {0, 1, 3}}, 0.0).any.parts.size(), 2u);
 }
 
-/// Area of the intersection of two caps of angular radius a at angular distance g, unit sphere.
+/// Area of the intersection of two caps on the unit sphere, with angular radius a and angular
+/// distance g.
 double two_caps(double a, double g) {
-  // Two sectors minus the kite between axes and corners, by spherical excess.
+  // Area by spherical excess: two sectors minus the kite between cap axes and corners of the lens.
   const double half = std::acos(std::tan(0.5 * g) / std::tan(a));          // at the axis
   const double corner = 2.0 * std::asin(std::sin(0.5 * g) / std::sin(a));  // at the corner
   const double sectors = 2.0 * half * 2.0 * (1.0 - std::cos(a));
@@ -155,7 +157,7 @@ TEST(RestInSocket, TwoForcesAtBeta) {
     const double cap = study.each[0].area;
     EXPECT_NEAR(study.all.area, common, 1e-13 * cap);
     EXPECT_NEAR(study.any.area, 2.0 * cap - common, 1e-13 * cap);
-    // The corners of the lens are farthest apart; their distance follows in closed form.
+    // The corners of the lens are its farthest points. Their distance has a closed form.
     const double corner = std::acos(std::cos(phi) / std::cos(0.5 * beta));
     EXPECT_NEAR(study.all.diameter, 2.0 * c * std::sin(corner), 1e-17);
     EXPECT_NEAR(study.any.diameter, 2.0 * c * std::sin(0.5 * beta + phi), 1e-17);
@@ -165,7 +167,7 @@ TEST(RestInSocket, TwoForcesAtBeta) {
   EXPECT_TRUE(apart.all.parts.empty());
   EXPECT_EQ(apart.any.parts.size(), 2u);
   EXPECT_NEAR(apart.any.area, 2.0 * apart.each[0].area, 1e-20);
-  // Each part is a cap of its own, independent of the distance to the other one.
+  // Each part is a separate cap, whose size does not depend on the other one.
   for (const RestComponent& part : apart.any.parts) {
     EXPECT_NEAR(part.angle, 2.0 * phi, 1e-15);
     EXPECT_NEAR(part.diameter, 2.0 * c * std::sin(phi), 1e-18);
@@ -173,7 +175,7 @@ TEST(RestInSocket, TwoForcesAtBeta) {
 }
 
 TEST(RestInSocket, ManyForcesAgainstCounting) {
-  // A ring of caps, whose union has a hole; three caps near each other, which all intersect.
+  // Two cases: a ring of caps, whose union has a hole, and three close caps that all intersect.
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   std::vector<Vector3d> ring, near = {{0.1, 0, 1}, {-0.1, 0.12, 1}, {0.02, -0.15, 1}};
@@ -206,7 +208,8 @@ TEST(RestInBore, Band) {
     const double half = std::acos(std::sqrt((1.0 + t * t) / (1.0 + mu * mu)));
     EXPECT_NEAR(set.area, 2.0 * b * c * 2.0 * half, 1e-20);
   }
-  // Force perpendicular to the axis: the rims extend the arc only by their own friction.
+  // For a force perpendicular to the axis, the friction of the rims themselves extends the arcs on
+  // the rims.
   const RestSet across = rest_in_bore(c, b, {{1.0, 0.0, 0.0}}, mu).any;
   EXPECT_NEAR(across.parts[0].area, 4.0 * b * c * std::atan(mu), 1e-20);
   EXPECT_GE(across.diameter, std::hypot(2.0 * c * std::sin(std::atan(mu)), 2.0 * b));
@@ -214,7 +217,8 @@ TEST(RestInBore, Band) {
   double beyond = 0.0;
   for (const auto& rim : across.parts[0].rims) {
     ASSERT_GE(rim.size(), 2u);
-    // The points follow the arc: chords of a sixtieth of a radian deviate by 2e-5.
+    // The points lie on the arc. Chords of 1/60 rad are shorter than the arc by a factor of 2e-5 at
+    // most.
     double along = 0.0;
     for (std::size_t i = 1; i < rim.size(); ++i) along += (rim[i] - rim[i - 1]).norm();
     const double turned = 2.0 * std::asin(0.5 * (rim.back() - rim.front()).norm() / c);
@@ -233,7 +237,8 @@ TEST(RestInBore, Band) {
   EXPECT_EQ(across.parts[0].rims[0][0].z(), -across.parts[0].rims[1][0].z());
 }
 
-/// Whether F is a sum of forces from two friction cones, by trial of many combinations.
+/// Returns whether F is the sum of two forces within two friction cones, found by trying many
+/// combinations.
 bool by_trial(const Vector3d& f, const Vector3d& a, const Vector3d& b, double mu) {
   const Vector3d w = a.cross(b);
   for (int i = 0; i <= 60; ++i) {
@@ -255,7 +260,7 @@ TEST(RestInBore, RimByTrial) {
     const Vector3d force(1.0, 0.0, fz);
     const RestSet set = rest_in_bore(c, b, {force}, mu).any;
     ASSERT_EQ(set.parts.size(), 1u);
-    // The angle of a part is that of its widest arc, here on the rim that F points to.
+    // The angle of a part is that of its widest arc, which lies on the rim that F points to.
     const double half = 0.5 * set.parts[0].angle;
     const double sign = fz > 0 ? 1.0 : -1.0;
     const auto held = [&](double phi) {
@@ -273,12 +278,13 @@ TEST(RestInBore, Shoulder) {
   ASSERT_EQ(pushed.parts.size(), 1u);
   EXPECT_NEAR(pushed.area, pi * c * c, 1e-22);
   EXPECT_NEAR(pushed.diameter, 2.0 * c, 1e-18);
-  // Without friction a force with both components has a single rest position, a corner.
+  // Without friction, a force with radial and axial components has one rest position, the corner.
   const RestSet corner = rest_in_bore(c, b, {{1.0, 0.0, 1.0}}, 0.0).any;
   ASSERT_EQ(corner.parts.size(), 1u);
   EXPECT_EQ(corner.area + corner.length + corner.diameter, 0.0);
   EXPECT_NEAR((corner.parts[0].representative - Vector3d(c, 0, b)).norm(), 0.0, 1e-18);
-  // Without friction and perpendicular to the axis: a line over the whole height.
+  // Without friction, a force perpendicular to the axis has a line of rest positions, as long as
+  // the bore.
   const RestSet line = rest_in_bore(c, b, {{1.0, 0.0, 0.0}}, 0.0).any;
   ASSERT_EQ(line.parts.size(), 1u);
   EXPECT_NEAR(line.length, 2.0 * b, 1e-18);

@@ -62,8 +62,8 @@ TEST(RestOnMesh, ImplicitSphere) {
     const Mesh mesh = implicit_sphere(cells);
     const RestSet set = rest_on_mesh(mesh, {force}, mu).study.any;
     ASSERT_EQ(set.parts.size(), 1u);
-    // Measured between points of the sphere. (There linear normals are exact, too, so this does not
-    // test the roots on edges.)
+    // The diameter is measured between points of the sphere. (On a sphere linear normals are exact,
+    // so this does not test the roots on edges.)
     EXPECT_NEAR(set.diameter / exact.diameter, 1.0, 1e-8);
     const double area = std::abs(set.area / exact.area - 1.0);
     std::printf("%5d  %9zu  %.3e  %.3e\n", cells, mesh.triangles.size(), area,
@@ -77,7 +77,7 @@ TEST(RestOnMesh, ImplicitSphere) {
 }
 
 TEST(RestOnMesh, BorderOnAnImplicitSurfaceIsWhereTheConeEnds) {
-  // An ellipsoid, because on it the normal is not linear along an edge, unlike on a sphere.
+  // On an ellipsoid the normal is not linear along an edge, unlike on a sphere.
   const Vector3d axes(1.0e-4, 0.7e-4, 0.5e-4), force(0.3, -0.5, 1.0);
   const double mu = 0.5;
   const Mesh mesh = implicit_surface(
@@ -117,16 +117,17 @@ TEST(RestOnMesh, BorderOnAnImplicitSurfaceIsWhereTheConeEnds) {
     }
   }
   EXPECT_GT(borders, 50);
-  // The others are points where the border of linear normals, drawn between the roots, crosses an
-  // edge beside them.
+  // Roots of the true normal are exact. At the remaining points, the border of linear normals
+  // crosses an edge beside such a root.
   EXPECT_GT(exact, 0.8 * borders);
   std::printf("%d of %d places on edges are exact\n", exact, borders);
-  // The roots of the true normal do differ from those of linear normals.
+  // The test is meaningful only if linear normals have different roots than the true normal.
   EXPECT_GT(linear, 1e-5);
 }
 
 TEST(RestOnMesh, CapInsideOneTriangle) {
-  // The cone is far smaller than a triangle: no corner and no side of the triangle is in the set.
+  // The friction cone is far smaller than a triangle, so no corner and no side of the triangle is
+  // in the rest set.
   const Mesh mesh = clearance_sphere(c, 2);
   const Vector3d force(0.31, -0.52, 1.0);
   const double mu = 1e-3;
@@ -173,7 +174,7 @@ TEST(RestOnMesh, TwoForces) {
 }
 
 Mesh box_of_soup() {
-  // A closed box whose faces share no vertices; right-hand normals point inwards.
+  // A closed box whose faces share no vertices. By the right-hand rule, normals point inwards.
   Mesh mesh;
   for (int axis = 0; axis < 3; ++axis) {
     for (const double side : {-1.0, 1.0}) {
@@ -191,7 +192,8 @@ Mesh box_of_soup() {
 }
 
 TEST(RestOnMesh, FlatFaces) {
-  // Faces are not welded, so every face has its own normal and the set consists of whole faces.
+  // The faces are not welded, so every face has its own normal and the rest set consists of whole
+  // faces.
   const RestSet one = rest_on_mesh(box_of_soup(), {Vector3d(0.1, 0.1, 1.0)}, 0.2).study.any;
   ASSERT_EQ(one.parts.size(), 1u);
   EXPECT_NEAR(one.area, 4.0 * c * c, 1e-20);
@@ -205,13 +207,13 @@ TEST(RestOnMesh, FlatFaces) {
   EXPECT_EQ(two.any.parts.size(), 2u);
   EXPECT_TRUE(two.all.parts.empty());
   EXPECT_NEAR(two.any.diameter, std::sqrt(12.0) * c, 1e-18);
-  // Without friction a face perpendicular to the force belongs to the set as a whole.
+  // Without friction, a face perpendicular to the force is in the rest set as a whole.
   EXPECT_NEAR(rest_on_mesh(box_of_soup(), {Vector3d(0, 0, 1)}, 0.0).study.any.area, 4.0 * c * c,
               1e-20);
 }
 
 TEST(RestOnMesh, TorusHasTwoParts) {
-  // Torus about z, free inside the tube: a force along z presses on a whole ring.
+  // Torus about z with the free side inside its tube. A force along z has a ring of rest positions.
   const auto rho = [](const Vector3d& p) { return std::hypot(p.x(), p.y()); };
   const Mesh mesh = implicit_surface(
       [rho](const Vector3d& p) { return std::pow(rho(p) - 3.0, 2) + p.z() * p.z() - 1.0; },
@@ -225,13 +227,15 @@ TEST(RestOnMesh, TorusHasTwoParts) {
   ASSERT_EQ(ring.parts.size(), 1u);
   EXPECT_NEAR(ring.area / (2.0 * pi * 3.0 * 2.0 * phi), 1.0, 0.02);
   EXPECT_NEAR(ring.diameter, 2.0 * (3.0 + std::sin(phi)), 0.01);
-  // Along x: at the outermost and at the innermost point the normal opposes the force.
+  // For a force along x, the normal opposes it at the outermost and at the innermost point of the
+  // tube.
   const RestSet two = rest_on_mesh(mesh, {Vector3d(1, 0, 0)}, 0.3).study.any;
   EXPECT_EQ(two.parts.size(), 2u);
 }
 
 TEST(RestOnMesh, ErrorOfTheDiameterIsTwiceASagitta) {
-  // Sagitta of the longest edge L on a sphere with half the box diagonal D as radius: 2 L²/(8 D/2).
+  // Expected error: twice the sagitta L²/(8 D/2) of the longest edge L, on a sphere whose radius is
+  // half the box diagonal D.
   const Mesh mesh = clearance_sphere(c, 1);
   double longest = 0.0;
   Eigen::AlignedBox3d box;

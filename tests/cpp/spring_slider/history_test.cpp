@@ -51,8 +51,8 @@ TEST(SpringSliderHistory, ForcesBalanceWithinTheirLimits) {
       ASSERT_LE(std::abs(h.friction_force[i]), model.friction_force + 1e-10);
       ASSERT_LE(h.displacement[i], model.clearance_plus);
       ASSERT_GE(h.displacement[i], -model.clearance_minus);
-      // A stop only pushes, and only if the block touches it. Tolerance 1e-10 N: k = 1.3e6 N/m
-      // times the rounding of ΔT at an event, 1e-13 K or 1e-18 m, and more near a flat crest.
+      // A stop only pushes, and only if the block touches it. The tolerance 1e-10 N is k = 1.3e6
+      // N/m times the rounding of the event's ΔT, 1e-13 K or 1e-18 m, and more near a flat crest.
       if (h.stop_force[i] < -1e-10) {
         ASSERT_EQ(h.displacement[i], model.clearance_plus);
       }
@@ -71,9 +71,9 @@ TEST(SpringSliderHistory, EnergyBalances) {
     const History h = sample(path, grid(path, 5000));
     const Eigen::VectorXd residue =
         h.thermal_work - h.elastic_energy - h.preload_energy - h.friction_dissipation;
-    // All terms are sums of a few dozen products of relative accuracy 1e-15. The largest is the
-    // elastic energy at the stop or the friction work. 1e-13 of it is a safe tolerance, far below
-    // the smallest possibly missing term, ½ (E A/l_T²)(x − x_T)² l̇_T: 1e-5 of it.
+    // All terms are sums of a few dozen products with relative accuracy 1e-15. The largest term is
+    // the elastic energy at the stop or the friction work. The tolerance is 1e-13 of it. The
+    // smallest term that could be missing, ½ (E A/l_T²)(x − x_T)² l̇_T, is 1e-5 of it.
     const double scale = std::max({h.friction_dissipation.maxCoeff(), h.elastic_energy.maxCoeff(),
                                    h.preload_energy.maxCoeff()});
     EXPECT_LE(residue.cwiseAbs().maxCoeff(), 1e-13 * scale);
@@ -83,7 +83,7 @@ TEST(SpringSliderHistory, EnergyBalances) {
 }
 
 TEST(SpringSliderHistory, FrictionWorkOfTable1) {
-  // The block slides from 0 to c and back to the jump.
+  // The block slides from 0 to the clearance c and back to the position x = jump.
   const Path path = solve(table1(), cycle());
   const History h = sample(path, grid(path, 2));
   const double jump = f * l0 / EA;
@@ -121,7 +121,7 @@ TEST(SpringSliderHistory, DoesNotDependOnTheGrid) {
 }
 
 TEST(SpringSliderHistory, StaysWithinTheSegmentAtAnEvent) {
-  // The time of an event is rounded; the state at that time must not be from before the event.
+  // Event times are rounded. At a rounded time the state must not be one from before the event.
   for (const Path& path : paths()) {
     for (const Segment& segment : path.segments) {
       const History h = sample(path, Eigen::VectorXd::Constant(1, segment.start_time));

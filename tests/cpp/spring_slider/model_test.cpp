@@ -30,7 +30,8 @@ TEST(SpringSlider, SlidingBalancesTheForces) {
   for (const int sense : {-1, 1}) {
     for (const double change : {-80.0, 3.0, 150.0}) {
       const double x = sliding_displacement(model, change, sense);
-      // Force: difference of displacements of 2e-3 m, rounded to 4e-19 m, times k = 1.3e6 N/m.
+      // The force is k = 1.3e6 N/m times a difference of displacements of 2e-3 m, each rounded to
+      // 4e-19 m.
       EXPECT_NEAR(axial_force(model, change, x) - 2e5 * x, sense * f, 1e-11);
       EXPECT_NEAR(sliding_temperature(model, x, sense), change, 1e-12 * std::abs(change));
     }
@@ -63,7 +64,7 @@ TEST(SpringSlider, RefusesWhatIsOutOfRange) {
     model.*field = value;
     return refusal([&model] { model.validate(); });
   };
-  // One at a time: without stiffness no friction is allowed either.
+  // One error at a time: without stiffness, friction is not allowed either.
   for (const auto& [field, name] :
        {std::pair{&SpringSlider::young_modulus, "young_modulus"},
         std::pair{&SpringSlider::cross_section_area, "cross_section_area"},

@@ -36,7 +36,7 @@ void expect_events(const Path& path, const std::vector<Expected>& expected) {
   }
 }
 
-// Roots of E A (α l0 ΔT − x) = s f l0 (1 + α ΔT) in closed form.
+// ΔT at slip: closed-form root of E A (α l0 ΔT − x) = s f l0 (1 + α ΔT).
 double root(double x, double s) {
   return (EA * x + s * f * l0) / (alpha * l0 * (EA - s * f));
 }
@@ -77,7 +77,8 @@ TEST(SpringSliderPath, EventsStandAtTheTimeOfTheirTemperature) {
 
 TEST(SpringSliderPath, WideClearanceRunsTheFiveStages) {
   const Path path = solve(table1(2e-3), cycle());
-  // At the peak x = x_T − f l_T/(E A); x stays constant while the force changes from f to −f.
+  // Position at the peak: x = x_T − f l_T/(E A). It stays constant while the force changes from f
+  // to −f.
   const double peak = l0 * alpha * 100.0 - f * l0 * (1.0 + alpha * 100.0) / EA;
   expect_events(path, {{EventKind::first_slip, Stage::S1, Stage::S2, root(0.0, 1)},
                        {EventKind::reversal, Stage::S2, Stage::S3, 100.0},
@@ -111,7 +112,8 @@ TEST(SpringSliderPath, PreloadReducesTheJump) {
     const double g = s * f + kp * x;
     return (EA * x + g * l0) / (alpha * l0 * (EA - g));
   };
-  // k_p c = 100 N keeps the link compressed: the force never changes sign, so stage S4 is missing.
+  // The preload k_p c = 100 N keeps the link compressed. Its force never changes sign, so stage S4
+  // is missing.
   expect_events(path,
                 {{EventKind::first_slip, Stage::S1, Stage::S2, root(0.0, 1)},
                  {EventKind::stop_reached, Stage::S2, Stage::at_stop_plus, preloaded_root(c, 1)},
@@ -124,7 +126,8 @@ TEST(SpringSliderPath, PreloadReducesTheJump) {
 
 TEST(SpringSliderPath, PreloadForceSeatsTheBlockOnAStop) {
   // P = k c + 3 f presses the block on the stop at −c with 3 f. Heating unloads the stop until only
-  // friction f remains. The block leaves when the link pushes by f more than the spring pulls.
+  // friction f remains. The block leaves the stop when the link's push exceeds the spring's pull by
+  // f.
   SpringSlider model = table1();
   model.preload_force = EA / l0 * c + 3.0 * f;
   const auto loaded_root = [&](double x, double s) {
@@ -148,7 +151,8 @@ TEST(SpringSliderPath, PreloadForceSeatsTheBlockOnAStop) {
 }
 
 TEST(SpringSliderPath, StartsStuckOrWithoutFriction) {
-  // With k_p and a tension P < f, the start is stuck with D = −P. After slipping back, D = −f.
+  // With k_p and a preload force P < f, the block starts stuck with friction D = −P. After slipping
+  // back, D = −f.
   SpringSlider model = table1();
   model.preload_stiffness = 1e5;
   model.preload_force = 2.0 / 3.0 * f;
@@ -163,13 +167,15 @@ TEST(SpringSliderPath, StartsStuckOrWithoutFriction) {
               close(c));
   EXPECT_NEAR(settled.state_jump(), f / stiffness, close(c));
   EXPECT_EQ(state_jump(model), f / stiffness);
-  // P > f: the block slides until friction holds it, and returns to that position.
+  // If P > f, the block slides until friction stops it. After the cycle it returns to that
+  // position.
   model.start_friction = StartFriction::stuck;
   model.preload_force = 3.0 * f;
   const Path slid = solve(model, cycle());
   EXPECT_NEAR(slid.segments.front().start_displacement, -2.0 * f / stiffness, close(c));
   EXPECT_NEAR(slid.state_jump(), 0.0, close(c));
-  // Pulled in the other direction, it starts at the opposite limit: both differ by 2 f.
+  // A force P in the opposite direction starts the block at the opposite limit. The two limits
+  // differ by 2 f.
   model.preload_force = -3.0 * f;
   EXPECT_NEAR(solve(model, cycle()).state_jump(), 2.0 * f / stiffness, close(c));
   EXPECT_NEAR(state_jump(model), 2.0 * f / stiffness, close(c));
@@ -262,7 +268,7 @@ TEST(SpringSliderPath, SineVisitsBothStops) {
 }
 
 TEST(SpringSliderPath, TableOfATriangleIsTheTriangle) {
-  // Many collinear points: the events must not depend on the subdivision of the table.
+  // A table with many collinear points: events must not depend on the subdivision.
   const thermal::Program points =
       table({0.0, 0.1, 0.25, 0.5, 0.6, 0.9, 1.0}, {0.0, 20.0, 50.0, 100.0, 80.0, 20.0, 0.0});
   const Path expected = solve(table1(), cycle(thermal::Shape::triangle));
@@ -278,7 +284,8 @@ TEST(SpringSliderPath, TableOfATriangleIsTheTriangle) {
 }
 
 TEST(SpringSliderPath, ReloadingAStopAndHoldingKeepTheState) {
-  // Pressed against the stop, unloaded but not separated, loaded again, held, then back.
+  // The block is pressed against the stop, unloaded without separation, pressed again, held, then
+  // moved back.
   const thermal::Program points =
       table({0.0, 1.0, 2.0, 3.0, 4.0, 5.0}, {0.0, 95.0, 84.0, 95.0, 95.0, 0.0});
   const Path path = solve(table1(), points);
@@ -318,8 +325,8 @@ TEST(SpringSliderPath, CyclesThatAreLeftOutAreComputed) {
     EXPECT_EQ(some.displacement, all.displacement);
     EXPECT_EQ(some.thermal_work, all.thermal_work);
     EXPECT_EQ(some.stage, all.stage);
-    // Cycle 142 with its neighbours, the first two and the last two: seven of 300 cycles, each as
-    // in the complete path.
+    // The path stores seven of 300 cycles: the first two, 142 with its neighbours, and the last
+    // two. Each equals that of the complete path.
     std::vector<int> kept;
     std::size_t at = 0;
     for (const Segment& segment : path.segments) {
@@ -341,7 +348,8 @@ TEST(SpringSliderPath, CyclesThatAreLeftOutAreComputed) {
 }
 
 TEST(SpringSliderPath, MemoryOfALongProgramIsThatOfTheTimes) {
-  // For any number of cycles the same segments are stored; per cycle only its end remains.
+  // The path stores equally many segments for any number of cycles, plus one end displacement per
+  // cycle.
   const auto kept = [](int cycles) {
     const thermal::Program program = cycle(thermal::Shape::sine, cycles);
     const Eigen::Vector2d ends(0.0, program.duration());
@@ -359,9 +367,9 @@ TEST(SpringSliderPath, LargestForceIsThatOfAFineHistory) {
   for (const SpringSlider& model : {table1(), table1(2e-3), preloaded}) {
     for (const thermal::Shape shape : {thermal::Shape::triangle, thermal::Shape::sine}) {
       const Path path = solve(model, cycle(shape, 2));
-      // 4000 samples per cycle contain the crests of both shapes, where stick and stops have their
-      // largest force. During slip the largest force occurs at an event between two samples, up to
-      // 0.1 K and 2 k c α away.
+      // 4000 samples per cycle include the crests of both shapes, where the force is largest during
+      // stick and at stops. During slip it is largest at an event between two samples, up to 0.1 K
+      // and 2 k c α away.
       const History h = sample(path, Eigen::VectorXd::LinSpaced(8001, 0.0, 2.0));
       const double sampled = h.axial_force.cwiseAbs().maxCoeff();
       EXPECT_LE(sampled, path.largest_axial_force + close(sampled));
@@ -371,8 +379,8 @@ TEST(SpringSliderPath, LargestForceIsThatOfAFineHistory) {
   }
 }
 
-/// Return mapping in steps of ΔT, as in finite-element codes; it shares no formula with solve().
-/// The problem is linear in x at fixed ΔT, so one correction is exact.
+/// Return mapping in steps of ΔT, as in finite-element codes. It shares no formula with solve(). At
+/// fixed ΔT the problem is linear in x, so one correction is exact.
 double return_mapping(const SpringSlider& model, double change, double x) {
   const double length = model.stress_free_length * (1.0 + model.thermal_expansion * change);
   const double stiffness = model.young_modulus * model.cross_section_area / length;
@@ -395,7 +403,7 @@ class Uniform {
   std::mt19937_64 random_;
 };
 
-/// Times and temperature changes of a table: five random values and two plateaus.
+/// Times and temperature changes of a table with five random values and two plateaus.
 std::pair<std::vector<double>, std::vector<double>> seven_changes(Uniform& uniform) {
   std::vector<double> times{0.0};
   std::vector<double> changes{0.0};
@@ -415,17 +423,17 @@ TEST(SpringSliderPath, EqualsSmallStepsForRandomModels) {
     model.clearance_plus = uniform(1e-4, 2e-3);
     model.clearance_minus = uniform(1e-4, 2e-3);
     model.preload_stiffness = run % 2 == 0 ? 0.0 : uniform(0.0, 2e6);
-    // Up to the force that presses the block on a stop at all times: 2 mm times 1.26e6 N/m.
+    // Preload forces up to the one that always keeps the block at a stop: 2 mm times 1.26e6 N/m.
     model.preload_force = run % 3 == 0 ? 0.0 : uniform(-3e3, 3e3);
     if (run % 4 < 2) model.start_friction = StartFriction::frictionless;
     const auto [times, changes] = seven_changes(uniform);
     const Path path = solve(model, table(times, changes));
-    // Every reversal of the program is a step, so the steps cause no lag: between reversals the
-    // mapping is a clamp onto monotone bounds, whose result does not depend on the steps. The
-    // difference is rounding of l_T − l0, an ulp of 0.5 m, in every step that slides.
+    // Every reversal of the program is a step. Between them the mapping clamps x to monotone
+    // bounds, so its result does not depend on the steps. Only rounding of l_T − l0 remains, an ulp
+    // of 0.5 m in every step that slides.
     const int steps = 400;
     const double tolerance = 7 * steps * 2e-16;
-    // Starts at the middle; without friction it starts in the equilibrium of the springs.
+    // The block starts in the middle or, without friction, in the equilibrium of the springs.
     SpringSlider before = model;
     if (model.start_friction == StartFriction::frictionless) before.friction_force = 0.0;
     double x = return_mapping(before, 0.0, 0.0);
@@ -477,8 +485,8 @@ TEST(SpringSliderPath, PlayWiderThanTheClearanceLeavesTheStopsFree) {
 
 namespace {
 
-/// Block in its play after one step. Its position depends only on the middle p of the play: it is
-/// the position with D = 0 if that lies within the play, else an end of the play.
+/// State of a block with play after one step. Its position x follows from the middle of the play:
+/// it is the position without friction if this lies within the play, otherwise an end of the play.
 struct Played {
   double x;
   double middle;
@@ -488,7 +496,7 @@ Played moved_in_play(const SpringSlider& model, double change, double middle) {
   const double k = EA / (l0 * (1.0 + model.thermal_expansion * change));
   const double grown = model.thermal_expansion * l0 * change;
   const double soft = std::isinf(model.stop_stiffness) ? 0.0 : model.stop_stiffness;
-  // Position at which friction has to carry the load `level`, which decreases with x.
+  // Position at which friction carries the force `level`. It decreases as `level` grows.
   const auto at_load = [&](double level) {
     const double stiffness = k + model.preload_stiffness;
     const double x = (k * grown - model.preload_force - level) / stiffness;
@@ -523,7 +531,8 @@ TEST(SpringSliderPath, PlayEqualsSmallStepsForRandomModels) {
     if (run % 4 < 2) model.start_friction = StartFriction::frictionless;
     const auto [times, changes] = seven_changes(uniform);
     const Path path = solve(model, table(times, changes));
-    // Tolerance as without play; doubled, because the error of p accumulates as well as that of x.
+    // The tolerance is twice that without play, because errors of x and of the middle of the play
+    // accumulate.
     const int steps = 400;
     const double tolerance = 2 * 7 * steps * 2e-16;
     Played at = moved_in_play(model, 0.0, 0.0);

@@ -7,7 +7,7 @@
 
 namespace statejump::spring_slider {
 
-// Table 1 of the paper, as numbers independent of the code under test.
+// Table 1 of the paper, written as numbers that do not depend on the code under test.
 inline constexpr double EA = 70e9 * 9e-6;
 inline constexpr double l0 = 0.5;
 inline constexpr double alpha = 23.4e-6;

@@ -14,7 +14,7 @@
 namespace statejump::stepper {
 namespace {
 
-/// Counts of what happened in a scene, to prove that a test covers these cases.
+/// Counts of cases that occur in a scene, to prove that a test covers them.
 struct Seen {
   long began = 0, ended = 0, slipped = 0, stuck = 0;
 };

@@ -14,14 +14,14 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// Number of steps that can be made one by one, without batches, with a finite state after each.
+/// Number of steps that succeed one by one, without batches, and leave a finite state.
 long steps_alone(Scene scene, const Scene::CreatePhysics& make, long most) {
   long made = 0;
   while (made < most && scene.run(1, make) == 1 && scene.has_finite_state()) ++made;
   return made;
 }
 
-/// @return number of steps of a single run, equal with and without AVX2
+/// @return number of steps of a single run; the test requires the same number with and without AVX2
 long steps_of_a_run(const Scene& scene, const Scene::CreatePhysics& make, long most) {
   Scene narrow = scene, wide = scene;
   narrow.uses_avx2 = false;
@@ -90,7 +90,8 @@ TEST(Questions, NoStiffnessIsPlainForNumbersThatAreNone) {
 }
 
 TEST(Questions, BatchesEndBeforeTheStepThatIsTooLongForAContact) {
-  // A journal moves deeper than its load presses it; its mass is too small for the stiffness there.
+  // Each journal moves deeper than its load would press it. Its mass is too small for the contact
+  // stiffness at that depth.
   Scene scene = scenes::crowd(6, 0.4, scenes::pressed() - 2e-7);
   scene.newton.damping = 0;
   scene.prepare();
@@ -119,11 +120,11 @@ double time_of(const Scene& scene, long step) {
   return static_cast<double>(step) * scene.time_step;
 }
 
-/// Relative shortening of the link per kelvin. At no step is the length exactly 0, where the force
+/// Relative shortening of the link per kelvin. No step has exactly the length 0, where the force
 /// would be infinite.
 constexpr double shrinks = 0.9;  // [1/K]
 
-/// A crowd with an additional link whose length becomes negative within some steps.
+/// A crowd of joints with an additional link whose length becomes negative within a few steps.
 Scene shrinking(bool moves) {
   Scene scene = scenes::held_crowd(5);
   scene.programs.front().temperature_change_max = 1e6;

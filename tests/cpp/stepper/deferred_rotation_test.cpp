@@ -19,7 +19,8 @@ Quaternion about_z(double angle) {
   return Quaternion(std::cos(angle / 2), 0, 0, std::sin(angle / 2));
 }
 
-// Quotient, root and both components are rounded a few times; directions are unit to 2^-53.
+// Allowed rounding: quotient, root and both components are rounded a few times; directions are unit
+// vectors to 2^-53.
 constexpr double rounding = 8 * 0x1p-53;
 
 TEST(Link, TheTurnInThePlaneIsThatOfTheAngle) {
@@ -27,7 +28,7 @@ TEST(Link, TheTurnInThePlaneIsThatOfTheAngle) {
   const double pi = kernel::testing::pi;
   for (int i = 0; i < 2000; ++i) {
     const double start = random.uniform(-pi, pi);
-    // All decades of small angles, both sides of a quarter turn, and half a turn.
+    // The angles cover all decades of small angles, both sides of a quarter turn, and a half turn.
     const double small = std::pow(10.0, random.uniform(-15, 0)) * (i % 2 == 0 ? 1 : -1);
     const double ends[] = {small, pi / 2 + small, pi + small, 0, pi};
     const double angle = ends[i % 5];
@@ -43,7 +44,7 @@ TEST(Link, TheTurnInThePlaneIsThatOfTheAngle) {
   }
 }
 
-// Compares one run of the rib with single steps, which never defer the rotation of a tip.
+// Compares one run of the rib with single steps, in which the rotation of a tip is never deferred.
 void expect_same_bits(const std::function<void(Scene&)>& change, bool may_wait) {
   Scene whole = scenes::rib();
   change(whole);
@@ -70,7 +71,8 @@ TEST(Link, ATurnThatWaitsChangesNoBit) {
 }
 
 TEST(Link, ATurnThatWaitedIsMadeUpForWhereItsLinkLeavesThePlane) {
-  // Pushed along z, the tip rotates about z in its first step and leaves the plane in the second.
+  // A force along z acts on the tip. It still rotates about z in its first step and leaves the
+  // plane in the second.
   expect_same_bits(
       [](Scene& scene) {
         tip(scene, 0).blocked &= ~4U;

@@ -80,7 +80,7 @@ TEST(Partition, AnyNumberOfThreadsGivesTheBitsOfTheWhole) {
 
 constexpr long few = 20;
 
-/// Makes so few steps that the sanitizer remembers all accesses.
+/// Makes few steps, so that the sanitizer still remembers all accesses.
 /// @param make as for Scene::run(); called in the first step
 void step_side_by_side(const Scene::CreatePhysics& make) {
   omp_set_num_threads(4);
@@ -105,7 +105,7 @@ constexpr bool looks_for_races = __has_feature(thread_sanitizer);
 constexpr bool looks_for_races = false;
 #endif
 
-/// Steps with a race; the sanitizer ends this process with its own exit status.
+/// Makes steps with a data race. The sanitizer then ends this process with its own exit status.
 void race(const Scene::CreatePhysics& make) {
   step_side_by_side(make);
   std::exit(0);
@@ -132,7 +132,7 @@ TEST(PartsDeathTest, TheThreadSanitizerSeesARaceOfOneAccessInEachPart) {
 
 TEST(Partition, ReturnsTheFewestStepsOfAnySubscene) {
   Scene scene = falling();
-  // The last journal has no material: its subscene stops when it would touch.
+  // The last journal has no material, so its subscene stops before the journal touches its bearing.
   Partition partition(scene);
   const auto make = [](std::size_t contact) {
     return contact + 1 == joints ? std::nullopt : aluminium();

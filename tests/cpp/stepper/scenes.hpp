@@ -13,7 +13,8 @@
 
 namespace statejump::stepper::scenes {
 
-// Table 2 of Chen et al. (2021), and one load for all joints as in studies/bench/pairs.py.
+// Data of Table 2 of Chen et al. (2021). All joints have the same load, as in
+// studies/bench/pairs.py.
 constexpr double young = 70e9, poisson = 0.3, friction = 0.3;                // Pa, -, -
 constexpr double expansion_journal = 23.75e-6, expansion_bearing = 22e-6;    // 1/K
 constexpr double radius = 5e-3, clearance = 1e-4, mass = 0.01;               // m, m, kg
@@ -60,12 +61,14 @@ inline thermal::Program rising() {
   return program;
 }
 
-/// Distance [m] of a journal from its bearing's centre at which the contact carries the load.
+/// Distance [m] between the centres of journal and bearing at which the contact force equals the
+/// load.
 inline double pressed() {
   return clearance + depth(radius * (radius + clearance) / clearance);
 }
 
-/// Independent joints: a journal pressed into a fixed bearing, both expanding. Not prepared.
+/// Independent joints, each a journal pressed into a fixed bearing; both expand. The caller calls
+/// prepare().
 /// @param spread range of the load directions over the joints [rad]
 /// @param offset initial distance of the journals from their bearings' centres [m]
 inline Scene crowd(std::size_t joints, double spread = 0, double offset = pressed()) {
@@ -99,7 +102,8 @@ inline Scene crowd(std::size_t joints, double spread = 0, double offset = presse
   return scene;
 }
 
-/// A crowd in which a heated link connects each journal to a fixed point. Not prepared.
+/// A crowd in which a heated link connects each journal to a fixed point. The caller calls
+/// prepare().
 inline Scene held_crowd(std::size_t joints, double offset = pressed()) {
   Scene scene = crowd(joints, 1, offset);
   Links links;
@@ -119,7 +123,7 @@ inline Scene held_crowd(std::size_t joints, double offset = pressed()) {
   return scene;
 }
 
-/// Blocks on floors, each connected to the next by a heated link. Not prepared.
+/// Blocks on floors, each connected to the next one by a heated link. The caller calls prepare().
 inline Scene chain(std::size_t joints) {
   Scene scene;
   scene.time_step = time_step;
@@ -156,8 +160,8 @@ inline Scene chain(std::size_t joints) {
   return scene;
 }
 
-/// Rib of an umbrella antenna with energy tracking: two links on pins, whose tips rotate with them
-/// and form a clearance joint with named laws. Not prepared.
+/// Rib of an umbrella antenna with energy tracking: two links rotate on pins, and their tips form a
+/// clearance joint with named laws. The caller calls prepare().
 inline Scene rib() {
   Scene scene;
   scene.time_step = 2.5e-6;

@@ -16,12 +16,12 @@ TEST(Link, TheSmallestTurnTakesOneDirectionToTheOther) {
   for (int i = 0; i < 2000; ++i) {
     const Vector3 from = random.unit();
     const Vector3 across = from.cross(random.unit()).normalized();
-    // From 1e-12 to half a turn minus 1e-12: all decades from either end.
+    // Rotation angles from 1e-12 to pi - 1e-12, which cover all decades from either end.
     const double small = std::pow(10.0, random.uniform(-12, 0));
     const double angle = i % 2 == 0 ? small : pi - small;
     const Vector3 to = std::cos(angle) * from + std::sin(angle) * across;
     const Quaternion turn = smallest_rotation(from, to).normalized();
-    // Close to half a turn, 1 + cos is accurate to 1e-16 relative to sin = pi - angle.
+    // Close to a half turn, 1 + cos has an absolute error of 1e-16, which sin = pi - angle divides.
     EXPECT_LE((turn * from - to).norm(), 1e-15 * (4 + 1 / std::sin(angle)) + 1e-14) << angle;
     EXPECT_NEAR(turn.vec().dot(from), 0.0, 1e-15 * (4 + 1 / std::sin(angle))) << angle;
   }

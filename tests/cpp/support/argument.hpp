@@ -10,7 +10,8 @@
 
 namespace statejump::testing {
 
-/// An argument out of range: its name and value, and the part of a model that it belongs to.
+/// An argument that is out of range: its name, its value and the part of a model that it belongs
+/// to.
 struct Argument {
   Argument(std::string key, double number, std::string part = "")
       : name(std::move(key)), value(number), item(std::move(part)) {}
@@ -22,7 +23,7 @@ struct Argument {
         item(refused.item()),
         range(refused.range()) {}
 
-  /// Equal values to 9 digits; NaN is equal to NaN. The range is only printed.
+  /// Compares values to 9 digits; NaN equals NaN. The range is printed but not compared.
   bool operator==(const Argument& other) const {
     const bool same = value == other.value || (std::isnan(value) && std::isnan(other.value)) ||
                       std::abs(value - other.value) <= 1e-9 * std::abs(value);

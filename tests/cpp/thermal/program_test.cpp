@@ -28,7 +28,7 @@ TEST(Program, FollowsItsFormulaInEveryCycle) {
     for (double phase = 0.01; phase < 1.0; phase += 0.07) {
       const double t = (k + phase) * 0.7;
       const double pi = std::numbers::pi;
-      // Rounding of t, a few ulps of 3 cycles, times the steepest slope.
+      // Allowed: rounding of t, a few ulps of 3 cycles, times the steepest slope of the program.
       EXPECT_NEAR(triangle.temperature_change(t), 100.0 * (1.0 - std::abs(2.0 * phase - 1.0)),
                   1e-12);
       EXPECT_NEAR(half_sine.temperature_change(t), 100.0 * std::sin(pi * phase), 1e-12);
@@ -51,8 +51,8 @@ TEST(Program, ReturnsToExactlyZeroAfterEveryCycle) {
 }
 
 TEST(Program, TellsTheCyclesApartOnEitherSideOfTheirEnd) {
-  // t/period rounds across the cycle boundary for some of these times. A wrong cycle would show as
-  // a temperature below the start or as the rate of the wrong flank.
+  // For some of these times, t/period is rounded across the end of a cycle. A wrong cycle would
+  // give a temperature change below the start or the rate of the wrong flank.
   for (const double period : {0.1, 0.7, 1.1, 5400.0 / 7.0, 1.0 / 49.0, 93.3}) {
     const Program triangle = cycle(Shape::triangle, 5000, period);
     const Program half_sine = cycle(Shape::half_sine, 5000, period);
@@ -114,7 +114,7 @@ TEST(Program, BranchesJoinAndInvert) {
         const double at = time_at(branch, wanted);
         EXPECT_GE(at, branch.start_time);
         EXPECT_LE(at, branch.end_time);
-        // dT/dt <= 900 K/s times the rounding of t.
+        // Allowed: dT/dt <= 900 K/s times the rounding of t.
         EXPECT_NEAR(program.temperature_change(at), wanted, 1e-12);
       }
       if (branch.end != branch.start) {

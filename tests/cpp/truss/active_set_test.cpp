@@ -86,13 +86,13 @@ TEST_P(ActiveSet, SolvesProblemsWithAPMatrix) {
     const Index n = 3 + problem % 6;
     const MatrixXd root = MatrixXd::NullaryExpr(n, n, draw);
     const MatrixXd skew = 3.0 * MatrixXd::NullaryExpr(n, n, draw);
-    // A matrix with positive definite symmetric part is a P-matrix. Block pivots alone cycle for
-    // about a tenth of these matrices, because the antisymmetric part is larger.
+    // A matrix with positive definite symmetric part is a P-matrix. For about a tenth of these
+    // matrices block pivoting alone cycles, because their antisymmetric part dominates.
     const MatrixXd m = 0.1 * (root * root.transpose() + MatrixXd::Identity(n, n)) + skew -
                        MatrixXd(skew.transpose());
     Complementarity system(m, VectorXd::NullaryExpr(n, draw));
     ASSERT_TRUE(find_active_set(system, GetParam())) << "problem " << problem;
-    // Entries of order 10 to 100, condition number at most some thousands.
+    // The matrices have entries of order 10 to 100 and condition numbers up to a few thousand.
     EXPECT_LT(system.violation(), 1e-9) << "problem " << problem;
     blocks += system.blocks;
     singles += system.singles;
@@ -102,7 +102,7 @@ TEST_P(ActiveSet, SolvesProblemsWithAPMatrix) {
 }
 
 TEST_P(ActiveSet, EndsWhereNoStatusesSolveTheProblem) {
-  // w = -z - 1 has no solution: z = 0 makes w negative, w = 0 makes z negative.
+  // The problem w = -z - 1 has no solution: z = 0 makes w negative, w = 0 makes z negative.
   Complementarity system(MatrixXd::Constant(1, 1, -1.0), VectorXd::Constant(1, -1.0));
   EXPECT_FALSE(find_active_set(system, GetParam()));
 }

@@ -32,15 +32,15 @@ Constraint tie(const std::string& name, int first, const Vector3d& one, int seco
   return {name, {{first, one}, {second, other}}};
 }
 
-/// Violation of a constraint at the given displacements of the nodes [m].
+/// Violation [m] of a constraint at given displacements of the nodes [m].
 double gap(const Constraint& constraint, const Matrix3Xd& moved) {
   double sum = 0.0;
   for (const ConstraintTerm& term : constraint.terms) sum += term.factor.dot(moved.col(term.node));
   return sum;
 }
 
-/// Two collinear bars that heating pushes towards each other. B is on a block with friction; C is
-/// at the tip of a bar that does not expand.
+/// Two collinear bars, pushed towards each other by heating. B is on a block with friction; C is at
+/// the tip of a bar that does not expand.
 Model facing_bars() {
   Model model = testing::sliding_bar();
   model.nodes.push_back(node("C", 1.0, 0, 1));
@@ -59,7 +59,7 @@ TEST(Constraints, AreTheLimitOfAStiffSpring) {
     model.springs = {{"stiff", 1, 2, stiffness, 0.5, false}};
     return (solve(model).states.back().displacement - exact.states.back().displacement).norm();
   };
-  // The spring deforms by force over stiffness: ten times the stiffness, a tenth of the error.
+  // The spring deforms by force over stiffness, so a tenfold stiffness divides the error by ten.
   const double soft = error(1e10);
   EXPECT_GT(soft, 0.0);
   EXPECT_LT(soft, 1e-3 * exact.states.back().displacement.norm());
@@ -70,7 +70,7 @@ TEST(Constraints, AreTheLimitOfAStiffSpring) {
 }
 
 TEST(Constraints, LeverCarriesByItsRatio) {
-  // u_B = 3 u_C: k u_B + k' u_C / 3 = F.
+  // For u_B = 3 u_C, equilibrium is k u_B + k' u_C / 3 = F.
   Model model = facing_bars();
   model.joints.clear();
   model.programs = {triangle(0.0)};
@@ -84,7 +84,7 @@ TEST(Constraints, LeverCarriesByItsRatio) {
   EXPECT_NEAR(path.states.back().displacement(0, 1), force / (k + other / 9.0), 1e-10 * force / k);
 }
 
-/// Pyramid on four feet, two of which move on tilted planes, with two constraints.
+/// Pyramid with two constraints and four feet, two of which move on tilted planes.
 Model pyramid() {
   Model model;
   model.programs = {triangle(60.0)};
@@ -127,7 +127,8 @@ TEST(Constraints, RotateWithTheTruss) {
   }
   const State one = solve(model).states.back();
   const State other = solve(turned).states.back();
-  // Newton's tolerance is 1e-12 of the forces; the condition number of this pyramid is below 1e3.
+  // Newton's tolerance is 1e-12 of the forces. The stiffness matrix of this pyramid has a condition
+  // number below 1e3.
   EXPECT_LT((by * one.displacement - other.displacement).norm(), 1e-9 * one.displacement.norm());
   for (const Constraint& constraint : model.constraints) {
     EXPECT_NEAR(gap(constraint, one.displacement), 0.0, 16 * epsilon * one.displacement.norm());
@@ -135,7 +136,8 @@ TEST(Constraints, RotateWithTheTruss) {
 }
 
 TEST(Constraints, CompatibleExpansionIsFreeOfForce) {
-  // All bars expand equally: u = α ΔT X, which satisfies X_C u_B = X_B u_C along each axis.
+  // All bars have equal thermal strain, so u = α ΔT X, which satisfies X_C u_B = X_B u_C along each
+  // axis.
   Model model;
   model.programs = {triangle(100.0)};
   model.nodes = {node("A", 0, 0, 0), node("B", 1.0, 0.2, 2), node("C", 0.7, 1.1, 2),
@@ -152,7 +154,7 @@ TEST(Constraints, CompatibleExpansionIsFreeOfForce) {
   const Path path = solve(model);
   for (const State& state : path.states) {
     const Eigen::VectorXd axial = element_output<Bar>(model, state).row(0);
-    // Compared with E A α ΔT = 1000 N in constrained bars.
+    // Bars with fixed ends would carry E A α ΔT = 1000 N.
     EXPECT_LT(axial.lpNorm<Eigen::Infinity>(), 1e-8);
     const double grown = 2e-5 * state.temperature_change;
     EXPECT_NEAR(state.displacement(0, 1), grown * 1.0, 1e-12);
@@ -202,7 +204,8 @@ TEST(Constraints, WrongTermsAndJointsThatHoldTheSameAreRefused) {
   EXPECT_THROW(model.validate(), std::invalid_argument);
   model.constraints = {tie("small", 1, x, 2, 1e-10 * x)};
   EXPECT_THROW(model.validate(), std::invalid_argument);
-  // A slider between two nodes constrains them perpendicular to its axis, as this constraint does.
+  // A slider between two nodes constrains their relative displacement perpendicular to its axis, as
+  // this constraint does.
   model.nodes[2].position = model.nodes[1].position;
   model.nodes[1].freedoms = model.nodes[2].freedoms = 2;
   std::get<Slider>(model.joints[0]).second = 2;
@@ -212,7 +215,7 @@ TEST(Constraints, WrongTermsAndJointsThatHoldTheSameAreRefused) {
   EXPECT_NO_THROW(model.validate());
 }
 
-/// Two masses on springs along x; the second is constrained to move twice as far.
+/// Two masses on springs along x. A constraint makes the second one move twice as far as the first.
 Model two_masses(double seconds) {
   Model model;
   model.programs = {lasting(seconds)};
@@ -223,7 +226,7 @@ Model two_masses(double seconds) {
 }
 
 TEST(Constraints, MassesSwingTogetherAndKeepTheirEnergy) {
-  // u_C = 2 u_B: ω² = (300 + 4 · 200) / (1 + 4 · 0.5).
+  // The constraint u_C = 2 u_B gives ω² = (300 + 4 · 200) / (1 + 4 · 0.5).
   const double omega = std::sqrt(1100.0 / 3.0);
   const double seconds = 10.5 * std::numbers::pi / omega;  // five periods and a quarter
   const Model model = two_masses(seconds);
@@ -240,7 +243,7 @@ TEST(Constraints, MassesSwingTogetherAndKeepTheirEnergy) {
     return std::abs(motion.states.back().displacement(0, 1));
   };
   const Motion fine = run(4000);
-  // The phase lag of the midpoint rule is (ω h)²/12 of the time.
+  // The phase of the midpoint rule lags by the fraction (ω h)²/12 of the elapsed time.
   EXPECT_LT(error(fine), 1e-3 * 0.01);
   EXPECT_NEAR(error(run(2000)) / error(fine), 4.0, 0.1);
   const State& end = fine.states.back();
@@ -249,7 +252,7 @@ TEST(Constraints, MassesSwingTogetherAndKeepTheirEnergy) {
   EXPECT_EQ(2.0 * speed(0, 1), speed(0, 2));
   const double energy = fine.states.front().elastic_energy;
   EXPECT_NEAR(energy, 0.5 * 1100.0 * 1e-4, 1e-12);
-  // The midpoint rule conserves quadratic energies: only rounding of 4000 steps remains.
+  // The midpoint rule conserves quadratic energies, so only rounding of 4000 steps remains.
   EXPECT_NEAR(scenes::residue(fine), 0.0, 4000 * 4 * epsilon * energy);
 }
 
@@ -273,7 +276,7 @@ TEST(Constraints, ExplicitStepsMoveWhatIsTied) {
   const State& one = explicit_steps.states.back();
   const State& other = implicit_steps.states.back();
   EXPECT_EQ(one.displacement(0, 1), one.displacement(0, 2));
-  // Friction of 30 N deflects its spring by 3e-5 m. Both schemes are of second order.
+  // The friction force of 30 N deflects its spring by 3e-5 m. Both schemes are of second order.
   EXPECT_NEAR(one.displacement(0, 1), other.displacement(0, 1), 1e-4 * 3e-5);
   model.constraints = {tie("twice", 1, 2.0 * x, 2, -x)};
   EXPECT_NO_THROW(simulate_regularised(model, inertia, "mindlin", options));

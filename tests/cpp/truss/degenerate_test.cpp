@@ -58,13 +58,13 @@ Model bar(thermal::Program program) {
   return model;
 }
 
-/// Slide [m] of the bar's block during slip in one direction: x_T − s f l_T/(E A).
+/// Slide [m] of the bar's block while it slips in direction s: x_T − s f l_T/(E A).
 double sliding(double change, double sense) {
   const double free = length * (1.0 + expansion * change);
   return length * expansion * change - sense * friction * free / rigidity;
 }
 
-/// Wheel with spokes from a free hub to blocks on radial rails, which tyre bars connect.
+/// Wheel: spokes from a free hub to blocks on radial rails, with tyre bars between the blocks.
 Model wheel(int blocks) {
   Model model;
   model.programs = {triangle(100.0)};
@@ -99,7 +99,8 @@ Model wheel(int blocks) {
     model.springs.push_back({"tyre", i + 1, next + 1, 1e5 * side, side, false});
   }
   if (blocks == 2) {
-    // Two collinear spokes do not constrain their hub laterally, nor axially if both blocks slide.
+    // Two collinear spokes do not constrain their hub laterally. If both blocks slide, they do not
+    // constrain it axially.
     model.nodes[0].freedoms = 1;
     Node wall;
     wall.name = "wall";
@@ -117,8 +118,8 @@ TEST_P(Wheel, BlocksThatSlipAtTheSameInstantDoSoTogether) {
   const int blocks = GetParam();
   const Model model = wheel(blocks);
   const Path path = solve(model);
-  // By symmetry the hub does not move and all blocks behave equally: slip on heating, stick and
-  // slip on cooling.
+  // By symmetry the hub does not move and all blocks behave equally. They slip on heating, then
+  // stick and slip on cooling.
   ASSERT_EQ(path.events.size(), 3u * std::size_t(blocks));
   for (int i = 0; i < blocks; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -128,8 +129,8 @@ TEST_P(Wheel, BlocksThatSlipAtTheSameInstantDoSoTogether) {
                                           JointStatus::slip_minus})[k]);
     }
   }
-  // The relative elongation of the tyre bars, of stiffness k L0, equals that of the radius. They
-  // press on each block with k x (2 sin(π/n))² L0; the spoke's force is E A/l (x_T − x).
+  // The tyre bars, of stiffness k L0, have the same relative elongation as the radius. They press
+  // on each block with k x (2 sin(π/n))² L0. The force of the spoke is E A/l (x_T − x).
   const double turn = 2.0 * std::sin(std::numbers::pi / blocks);
   const double tyre = blocks > 2 ? 1e5 * turn * turn * turn : 0.0;
   const double jump = friction / (rigidity + tyre);
@@ -175,7 +176,8 @@ TEST(Degenerate, SlipThatStopsAtACornerGoesOnAtTheNextOne) {
         }
       }
       EXPECT_NEAR(slide(model, path.states.back()), sliding(0.0, -1.0), 1e-15);
-      // Nothing slides during the hold: the heat is that of the slide on heating and back.
+      // During the hold nothing slides, so the heat is that of the slides on heating and on
+      // cooling.
       const double way = sliding(100.0, 1.0) + (sliding(100.0, 1.0) - sliding(0.0, -1.0));
       EXPECT_NEAR(path.states.back().joint_dissipation.sum(), friction * way,
                   1e-12 * friction * way);
@@ -185,7 +187,8 @@ TEST(Degenerate, SlipThatStopsAtACornerGoesOnAtTheNextOne) {
 
 TEST(Degenerate, StopThatIsReachedAsTheTemperatureTurns) {
   const double farthest = sliding(100.0, 1.0);
-  // Exactly, earlier and later by rounding, by the tolerance of events and by a nanometre.
+  // The block reaches its stop at the reversal, or misses it by rounding, by the event tolerance or
+  // by 1 nm.
   for (const double early : {0.0, 1e-16, -1e-16, 1e-15, -1e-15, 1e-12, -1e-12, 1e-9, -1e-9}) {
     for (const bool locate : {true, false}) {
       Model model = bar(triangle(100.0));
@@ -244,7 +247,7 @@ TEST(Degenerate, ClearanceNearlyZeroHoldsAsNone) {
       for (const State& state : path.states) {
         EXPECT_LE(std::abs(slide(model, state)), clearance + 1e-18) << clearance;
       }
-      // The block stays at its stop until friction alone can carry the bar's force.
+      // On cooling the block sticks at its stop: friction can carry the bar's force.
       EXPECT_NEAR(slide(model, path.states.back()), clearance, 1e-18) << clearance;
       EXPECT_LE(path.events.size(), 6u) << clearance;
     }

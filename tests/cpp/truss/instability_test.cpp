@@ -41,7 +41,7 @@ Model arch() {
   return model;
 }
 
-/// Arch whose loaded apex pushes a foot outwards against friction and a spring.
+/// Arch whose loaded apex pushes one foot outwards against friction and a spring.
 Model footed(double stiffness) {
   Model model;
   model.programs = {triangle(-100.0)};
@@ -71,7 +71,9 @@ double footed_at(double stiffness, double x) {
   return (free / std::hypot(1.0, 0.1) - 1.0) / 1e-3;
 }
 
-/// @param coarsest fewest increments of a branch for the runs without event location
+/// Expects that solve() fails at temperature `change`, for several increments, with and without
+/// event location.
+/// @param coarsest fewest increments per branch for the runs without event location
 void expect_end(const Model& model, double change, double tolerance, int coarsest = 1) {
   for (const bool locate : {true, false}) {
     for (const int increments : {1, 7, 50, 333}) {
@@ -93,7 +95,7 @@ void expect_end(const Model& model, double change, double tolerance, int coarses
 }
 
 TEST(Instability, SlipThatNothingSlowsEndsThePathWhereItBegins) {
-  // 2 E A (l_T − L)/l_T · y/L = f.
+  // Slip starts where 2 E A (l_T − L)/l_T · y/L = f.
   const double drawn = std::hypot(1.0, 0.01);
   const double share = 10.0 / (2.0 * rigidity * 0.01 / drawn);
   const double free = 1.0 / (1.0 - share);
@@ -185,13 +187,14 @@ TEST(Instability, SlipThatTheTrussOvertakesEndsThePathAtTheLimitPoint) {
   }
   ASSERT_GT(inner, 1e-3);
   ASSERT_LT(inner, 0.04);
-  // Slip starts 0.9 K before it becomes unstable; without location, a longer increment skips both.
+  // Slip starts 0.9 K before it becomes unstable. Without event location, an increment longer than
+  // that skips both.
   expect_end(footed(stiffness), footed_at(stiffness, inner), 1e-6, 50);
 }
 
 TEST(Instability, AStrutThatStaysStraightBeyondItsBucklingLoadIsRefused) {
-  // Two collinear bars compressed by heating. Their pin buckles sideways when 2 P / L equals the
-  // stiffness of its lateral spring, 2400 N/m at 100 K. Nothing pushes the pin sideways.
+  // Two collinear bars are compressed by heating. Their common pin buckles sideways when 2 P / L
+  // reaches the lateral spring's stiffness, 2400 N/m at 100 K. No lateral force acts on the pin.
   const auto strut = [](double stiffness) {
     Model model;
     model.programs = {triangle(100.0)};
@@ -215,8 +218,8 @@ TEST(Instability, AStrutThatStaysStraightBeyondItsBucklingLoadIsRefused) {
   }
 }
 
-/// Arch with one dof and no joints, which snaps through under its load when its bars have become
-/// short.
+/// Arch with one dof and without joints. Under its load it snaps through when its bars have become
+/// too short.
 Model loaded_arch() {
   Model model;
   model.programs = {triangle(-20.0)};
@@ -232,8 +235,8 @@ Model loaded_arch() {
 }
 
 TEST(Instability, ALimitPointWithoutSlipEndsThePathThere) {
-  // 2 E A (1 − l/l_T) y/l = P with l² = 1 + y². Below the smallest l_T of the descending apex there
-  // is no equilibrium.
+  // Equilibrium: 2 E A (1 − l/l_T) y/l = P with l² = 1 + y². As the apex descends, l_T(y) passes a
+  // minimum. For shorter bars there is no equilibrium.
   double shortest = std::numeric_limits<double>::infinity();
   for (double height = 0.1; height > 0.02; height -= 1e-6) {
     const double length = std::hypot(1.0, height);

@@ -15,8 +15,8 @@
 
 namespace statejump::truss {
 
-/// Truss of links, springs and sliders, solved by incremental energy minimisation. It shares
-/// nothing with the solver but the model.
+/// Truss of links, springs and sliders, solved by incremental energy minimisation. It shares only
+/// the model with the solver.
 ///
 /// At every instant the displacements x minimise, with the slips p_k of the previous instant,
 ///
@@ -25,7 +25,7 @@ namespace statejump::truss {
 /// where s(x) is a slider's slide and p its slipped part (p = s if k_t is infinite). For a braced
 /// truss near its reference configuration E is convex, so the minimum is unique. Method: sequential
 /// quadratic programming. Each convex program is solved in its dual, a bound-constrained quadratic
-/// program, by projected Gauss-Seidel sweeps; it uses no statuses and no pivots.
+/// program, by projected Gauss-Seidel sweeps; the method uses no statuses and no pivots.
 class MinimisingTruss {
  public:
   explicit MinimisingTruss(const Model& model) : model_(&model) {
@@ -55,7 +55,8 @@ class MinimisingTruss {
     heat_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.joints.size()));
   }
 
-  /// Advances to the minimum at a time. @throws std::runtime_error if the programs do not converge
+  /// Advances to the energy minimum at the given time.
+  /// @throws std::runtime_error if the programs do not converge
   void step(double time) {
     std::vector<Row*> active;
     for (Row& row : rows_) {
@@ -84,7 +85,8 @@ class MinimisingTruss {
     }
     for (std::size_t j = 0; j < friction_.size(); ++j) {
       Row& row = rows_[friction_[j]];
-      // A multiplier inside its bounds means stick; slip from rounding must not accumulate as heat.
+      // A multiplier within its bounds means stick. Its slip is rounding and must not accumulate as
+      // heat.
       if (std::abs(row.multiplier) < row.upper) continue;
       const double slipped = row.gradient.dot(x_) - row.compliance * row.multiplier;
       heat_[Eigen::Index(j)] += row.upper * std::abs(slipped - row.target);
@@ -109,7 +111,7 @@ class MinimisingTruss {
   const Eigen::VectorXd& heat() const { return heat_; }
 
  private:
-  /// Linear function of x, gradient · x − target, with a force (multiplier) within bounds.
+  /// A linear function of x, gradient · x − target, and its force (multiplier) within bounds.
   struct Row {
     Eigen::VectorXd gradient;
     double target;
@@ -178,7 +180,7 @@ class MinimisingTruss {
     return {gradient, hessian};
   }
 
-  /// Multipliers of the quadratic program, starting from those of the previous one.
+  /// Multipliers of the quadratic program, starting from the previous solution.
   /// @param free values of the rows at zero multipliers
   static void minimise(const std::vector<Row*>& rows, const Eigen::MatrixXd& delassus,
                        const Eigen::VectorXd& free) {
@@ -187,8 +189,8 @@ class MinimisingTruss {
     for (Eigen::Index r = 0; r < m; ++r) {
       value -= delassus.col(r) * rows[std::size_t(r)]->multiplier;
     }
-    // The sweeps end when no value changes by more than the rounding of the bars' lengths of about
-    // one metre, from which the values are computed.
+    // The values are computed from bar lengths of about one metre. The sweeps end when no value
+    // changes by more than the rounding of these lengths.
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     for (int sweep = 0; sweep < 100000; ++sweep) {
       double largest = 0.0;

@@ -20,7 +20,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Random numbers from one seed, the same on every machine (standard distributions are not).
+/// Random numbers from one seed, equal on every machine (unlike the standard distributions).
 class Draw {
  public:
   explicit Draw(unsigned seed) : engine_(seed) {}
@@ -44,9 +44,9 @@ Vector3d in_plane(double angle) {
   return {std::cos(angle), std::sin(angle), 0.0};
 }
 
-/// Plane truss with the given number of sliders, on the ground and between two nodes. Every node is
-/// braced separately and connected to others, so the energy is convex for any slip. There are two
-/// programs, and each link has its own fraction of one.
+/// Plane truss with random sliders on the ground and between two nodes. Every node is braced
+/// separately and connected to others, so the energy is convex for any slip. Each link follows one
+/// of two temperature programs with its own factor.
 Model random_truss(unsigned seed, int sliders) {
   Draw draw(seed);
   Model model;
@@ -114,7 +114,7 @@ Model random_truss(unsigned seed, int sliders) {
       movable.push_back(slider.first);
       movable.push_back(slider.second);
     }
-    // Constrained links carry E A times a strain of up to 3e-3, some kN.
+    // Constrained links carry E A times a strain of up to 3e-3, a few kN.
     slider.friction_force = draw.logarithmic(1.0, 1000.0);
     if (draw.happens(0.1)) slider.friction_force = 0.0;
     if (draw.happens(0.1)) slider.friction_force = 1e6;
@@ -169,7 +169,7 @@ Shuffled shuffled(const Model& model, unsigned seed) {
 class Oracle : public ::testing::TestWithParam<unsigned> {};
 
 TEST_P(Oracle, OrderOfPartsDoesNotMatter) {
-  // One truss in ten, with all numbers of sliders; all 200 trusses agree.
+  // Tests one of ten random trusses, but all numbers of sliders. (All 200 trusses agree.)
   const unsigned seed = 10 * GetParam() + GetParam() % 10;
   const Model model = random_truss(seed, 2 + static_cast<int>(seed) % 39);
   const Shuffled other = shuffled(model, seed + 1000);
@@ -183,19 +183,19 @@ TEST_P(Oracle, OrderOfPartsDoesNotMatter) {
                                   .norm());
     }
   }
-  // Rounding of displacements of some mm, 2e-16 relative, times the condition number 10 (ratio of
-  // link stiffnesses); located changes may differ by rounding.
+  // Displacements of a few mm have a relative rounding of 2e-16, amplified by the condition number
+  // 10 (ratio of link stiffnesses). Located changes also differ by rounding.
   EXPECT_LT(apart, 1e-14) << "seed " << seed;
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
-    // some kN times 1e-12 m, the uncertainty of a located change
+    // a few kN times 1e-12 m, the uncertainty of a located change
     EXPECT_NEAR(path.cycle_ends.back().joint_dissipation[Eigen::Index(j)],
                 again.cycle_ends.back().joint_dissipation[other.joint_of[j]], 1e-9);
   }
 }
 
 TEST_P(Oracle, RandomTrussesMinimiseTheirEnergy) {
-  // Ten trusses per test. A change is located to 1e-9 of a branch, in which a joint slides some mm:
-  // 1e-12 m per change. Other joints follow by at most as much.
+  // Each test runs ten trusses. A change is located to 1e-9 of a branch, in which a joint slides a
+  // few mm: 1e-12 m. Other joints have no larger error.
   constexpr double tolerance = 1e-11;
   std::size_t events = 0;
   for (unsigned seed = 10 * GetParam(); seed < 10 * GetParam() + 10; ++seed) {
@@ -205,7 +205,7 @@ TEST_P(Oracle, RandomTrussesMinimiseTheirEnergy) {
     const Path path = solve(model, options);
     events += path.events.size();
     MinimisingTruss minimum(model);
-    // The path starts from the rest position with friction, and counts heat from there.
+    // The path starts from the rest position with friction. Only later heat counts.
     minimum.step(0.0);
     const Eigen::VectorXd cold = minimum.heat();
     double before = 0.0;
@@ -220,8 +220,8 @@ TEST_P(Oracle, RandomTrussesMinimiseTheirEnergy) {
       for (; next != begun.end() && *next < state.time; ++next) {
         if (*next > before) minimum.step(before = *next);
       }
-      // The reference makes additional increments between the states of the path, so that it also
-      // detects what the path misses between two states.
+      // The reference makes additional increments between the states of the path, to detect changes
+      // that the path misses between two states.
       constexpr double longest = 0.5 / 100;
       const int parts = static_cast<int>(std::ceil((state.time - before) / longest));
       for (int part = 1; part < parts; ++part) {

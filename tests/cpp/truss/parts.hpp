@@ -18,7 +18,7 @@ inline thermal::Program triangle(double largest, double seconds = 1.0) {
   return program;
 }
 
-/// @param freedoms number of free directions, in the order x, y, z
+/// @param freedoms number of free directions, taken in the order x, y, z
 inline Node node(const std::string& name, const Eigen::Vector3d& position, int freedoms) {
   Node made;
   made.name = name;
@@ -31,8 +31,8 @@ inline Node node(const std::string& name, double x, double y, int freedoms) {
   return node(name, {x, y, 0.0}, freedoms);
 }
 
-/// Joint of a rib of two bars: the tip of the first (link 0, node 2) is the bearing, that of the
-/// second (link 1, node 3) the journal. Radius 5 mm, clearance 0.1 mm, frictionless, rigid.
+/// Joint of a rib of two bars. The tip of the first bar (link 0, node 2) is the bearing, that of
+/// the second (link 1, node 3) the journal. Radius 5 mm, clearance 0.1 mm, frictionless, rigid.
 inline ClearanceRevolute rib_joint() {
   ClearanceRevolute joint;
   joint.name = std::string("joint");

@@ -23,7 +23,7 @@ using detail::index;
 using detail::Region;
 using detail::Regions;
 
-/// Independent rows of bars; the far end of each bar is on a block that slides on the ground.
+/// Independent rows of bars. The far end of each bar is on a block that slides on the ground.
 /// @param order node indices of all rows, row by row
 Model rows_of_bars(int rows, int bars, const std::vector<int>& order) {
   Model model;
@@ -40,7 +40,7 @@ Model rows_of_bars(int rows, int bars, const std::vector<int>& order) {
       Slider slider;
       slider.name = name;
       slider.first = number;
-      // Different limits, so that no two blocks start to slide at the same time.
+      // The friction limits differ, so no two blocks start to slide at the same time.
       slider.friction_force = 0.01 * (1.0 + 0.1 * k / bars);
       model.joints.push_back(slider);
     }
@@ -67,7 +67,7 @@ const std::vector<int>& bars_of(const Region& region) {
   return region.elements[element_type_index<Bar>()];
 }
 
-/// Sets OMP_NUM_THREADS during its lifetime.
+/// Sets OMP_NUM_THREADS while the object exists.
 class Threads {
  public:
   explicit Threads(int number) {
@@ -116,14 +116,15 @@ TEST(Regions, ShareNoNodeThatMovesHoweverNodesAreNumbered) {
     links += bars_of(region).size();
     joints += region.joints.size();
     loaded += region.loaded.size();
-    // Evenly distributed, except for a few elements that belong to no region.
+    // Elements are evenly distributed over the regions, except for a few that belong to none.
     EXPECT_NEAR(static_cast<double>(bars_of(region).size() + region.joints.size()),
                 2.0 * bars / static_cast<double>(found.apart.size()), 3.0);
   }
   EXPECT_EQ(links, index(bars));
   EXPECT_EQ(joints, index(bars));
   EXPECT_EQ(loaded, 1u);
-  // The search proceeds in both directions along the row: a cut leaves one or two bars between.
+  // The search proceeds in both directions along the row, so each cut leaves one or two bars
+  // between regions.
   EXPECT_LE(bars_of(found.between).size(), 2 * (found.apart.size() - 1));
 }
 
@@ -136,7 +137,7 @@ TEST(Regions, OfASmallTrussThereAreNone) {
 }
 
 TEST(Regions, EquationsAreThoseOfTheWhole) {
-  // Equal rows: one row alone, which is too small for regions, and all rows as one truss.
+  // Compares one row alone, which is too small for regions, with a truss of equal rows.
   constexpr int rows = 8, bars = 700;
   const Model one = rows_of_bars(1, bars, counted(bars + 1));
   const Model all = rows_of_bars(rows, bars, counted(rows * (bars + 1)));
@@ -165,7 +166,8 @@ TEST(Regions, EquationsAreThoseOfTheWhole) {
     largest = std::max(largest, alone.largest_force);
     const linear::SparseView single = alone.jacobian();
     for (int i = 0; i < own.size(); ++i) {
-      // Sums of two bars and a block in a different order: some roundings of forces of 100 N.
+      // Forces of two bars and a block (100 N) are summed in a different order, which causes a few
+      // roundings.
       ASSERT_NEAR(whole.residual[place(row, i)], alone.residual[i], 1e-12);
       EXPECT_EQ(whole.units[index(place(row, i))], alone.units[index(i)]);
       for (linear::SparseView::InnerIterator it(single, i); it; ++it) {
@@ -197,13 +199,13 @@ TEST(Regions, PathsHaveTheSameBitsWithAnyNumberOfThreads) {
     EXPECT_EQ(moved[k], moved[0]);
     EXPECT_EQ(work[k], work[0]);
   }
-  // All blocks slide back: each bar carries the friction of all blocks beyond it.
+  // At the end all blocks have slid back, so each bar carries the friction of all blocks beyond it.
   double jump = 0.0, beyond = 0.0;
   for (int k = bars; k > 0; --k) {
     beyond += std::get<Slider>(model.joints[index(k - 1)]).friction_force;
     jump += 0.5 / (70e9 * 9e-6) * beyond;
   }
-  // Closures are solved to 1e-13 of the largest displacement, 1.2 mm per bar at 100 K.
+  // The solver solves closures to 1e-13 of the largest displacement, 1.2 mm per bar at 100 K.
   for (int r = 0; r < rows; ++r) {
     EXPECT_NEAR(moved[0](0, r * (bars + 1) + bars), jump, 1e-13 * bars * 1.2e-3);
   }

@@ -16,7 +16,7 @@ constexpr double k = 70e9 * 9e-6 / 0.5;
 constexpr double k_p = 1e5;
 constexpr double P = 20.0;
 
-/// Bar of Table 1 with a parallel spring that pulls the block back with P.
+/// Bar of Table 1 with a parallel spring that pulls the block back with the force `pull`.
 Model pulled_bar(double pull = P) {
   Model model = testing::sliding_bar();
   model.springs = {{"P", 0, 1, k_p, 0.5 - pull / k_p, false}};
@@ -37,7 +37,8 @@ double jump(const Path& path) {
   return along(path.states.back()) - along(path.states.front());
 }
 
-/// Newton's tolerances at both ends: closures 1e-13 of 1.2 mm; forces 1e-12 of 200 N/k, 1.6e-16 m.
+/// Newton's tolerances at both ends of the cycle: 1e-13 of 1.2 mm for closures; 1e-12 of 200 N,
+/// over k 1.6e-16 m, for forces.
 constexpr double close = 2.0 * (1.2e-16 + 1.6e-16);
 
 TEST(StartChoice, BarStartsStuckOrWithoutFriction) {
@@ -65,7 +66,7 @@ TEST(StartChoice, WithoutLoadBothAreTheDrawnShape) {
 }
 
 TEST(StartChoice, ContactsThatGiveBeginWithoutForce) {
-  // Their springs are undeformed when friction begins, also at a stop.
+  // The contact springs are undeformed when friction begins, also at a stop.
   for (const int partial_slip : {0, 1}) {
     for (const double clearance : {1e-5, 1.0}) {
       Model model = pulled_bar();
@@ -78,10 +79,10 @@ TEST(StartChoice, ContactsThatGiveBeginWithoutForce) {
       const State& begin = path.states.front();
       const double free = -P / (k + k_p);
       EXPECT_NEAR(along(begin), std::max(free, -clearance), close);
-      // The stop carries the part of P that the springs do not carry at the clearance.
+      // At the clearance, the stop carries the part of P that bar and spring do not carry.
       const double pushed = clearance < -free ? -P + (k + k_p) * clearance : 0.0;
       EXPECT_NEAR(output(model, begin, 0, "slider_force_N")[0], pushed, 1e-10);
-      // No elastic recovery: 1e-6 K are 1.2e-11 m of expansion.
+      // There is no elastic recovery. Heating by 1e-6 K expands the bar by 1.2e-11 m.
       EXPECT_NEAR(along(path.states[1]), along(begin), 1.2e-11);
     }
   }

@@ -43,8 +43,8 @@ Model bar() {
   return testing::sliding_bar();
 }
 
-/// Rib of two bars with a clearance joint, a torsion spring and a cable, in a general
-/// configuration.
+/// Rib of two bars in a general configuration, with a clearance joint, a torsion spring and a
+/// cable.
 Model rib() {
   Model model;
   model.programs = {triangle(100.0)};
@@ -74,7 +74,7 @@ TEST(Truss, BarJumpsByFrictionOverStiffness) {
 }
 
 TEST(Truss, SliderBetweenTwoNodesHoldsAcrossItsAxis) {
-  // The same bar with its block on a carrier, which a second bar supports: a lateral load is
+  // The same bar, but its block is on a carrier that a second bar supports. A lateral load is
   // transferred to the carrier.
   Model model = bar();
   model.nodes[1].freedoms = 2;
@@ -92,7 +92,8 @@ TEST(Truss, SliderBetweenTwoNodesHoldsAcrossItsAxis) {
   EXPECT_NEAR(std::abs(number(model, end, "slider_force_N")), 30.0, 1e-9);
 }
 
-/// Energy residue (heat, elastic energy, thermal work since the start) relative to the heat.
+/// Energy residue since the start, from heat, elastic energy and thermal work, relative to the
+/// heat.
 double relative_residue(const Path& path) {
   const State& start = path.states.front();
   const State& end = path.states.back();
@@ -103,7 +104,8 @@ double relative_residue(const Path& path) {
 }
 
 TEST(Truss, ElasticSliderBendsBeforeItSlips) {
-  // Bar and contact are springs in series up to friction f: (E A/l_T) (l0 α ΔT − s) = k_t s.
+  // Bar and contact act as springs in series until the force reaches f: (E A/l_T) (l0 α ΔT − s) =
+  // k_t s.
   Model model = bar();
   const double stiffness = 1e7;
   slider(model).tangential_stiffness = stiffness;
@@ -116,27 +118,28 @@ TEST(Truss, ElasticSliderBendsBeforeItSlips) {
     const double expected = axial(change) * growth * change / (axial(change) + stiffness);
     EXPECT_NEAR(slide(model, state), expected, 1e-12 * 30.0 / stiffness) << change;
   }
-  // It slips when (E A/l_T) (l0 α ΔT − f/k_t) = f. Located to 1e-9 of the branch of 100 K.
+  // The block slips when (E A/l_T) (l0 α ΔT − f/k_t) = f. The event is located to 1e-9 of the
+  // branch of 100 K.
   const double slip = path.events.front().temperature_change;
   EXPECT_EQ(path.events.front().after, JointStatus::slip_plus);
   EXPECT_NEAR(axial(slip) * (growth * slip - 30.0 / stiffness), 30.0, axial(0) * growth * 1e-7);
-  // It also slides back, so the jump is that of a rigid contact. The heat is f times the slides
-  // minus the elastic deflection, f/k_t on heating and 2 f/k_t on cooling.
+  // The block also slips back, so the jump is that of a rigid contact. The heat is f times the
+  // plastic slides, i.e. without the elastic deflections f/k_t on heating and 2 f/k_t on cooling.
   const double jump = 30.0 * 0.5 / 6.3e5;
   EXPECT_NEAR(slide(model, path.states.back()), jump, 1e-12 * jump);
   double farthest = 0.0;
   for (const State& state : path.states) farthest = std::max(farthest, slide(model, state));
   const double slid = 2.0 * farthest - jump - 3.0 * 30.0 / stiffness;
-  // Events located during stick near a reversal are wrong by 1e-9 of the slide.
+  // If an event is located during stick near a reversal, its error is 1e-9 of the slide.
   EXPECT_NEAR(path.states.back().joint_dissipation[0], 30.0 * slid, 1e-7 * 30.0 * slid);
-  // Trapezoidal rule of the thermal work over 50 increments per branch, second order: 1e-3 of the
-  // expansion, times the strain of 1e-3, is far below 1e-6 of the heat.
+  // The thermal work uses the trapezoidal rule over 50 increments per branch, of second order. Its
+  // error, 1e-3 of the expansion times the strain of 1e-3, is far below 1e-6 of the heat.
   EXPECT_LT(std::abs(relative_residue(path)), 1e-6);
 }
 
 TEST(Truss, ElasticSliderKeepsItsBendAtAStop) {
-  // The spring is deflected by f when the block reaches the stop. The block leaves when the force
-  // is f again, and slips back at −f.
+  // When the block reaches the stop, the force f deflects the contact spring. The block leaves the
+  // stop when the force is f again, and slips back at −f.
   Model model = bar();
   const double stiffness = 1e7;
   const double stop = 4e-4;
@@ -165,7 +168,7 @@ Model elastic_rib() {
   return model;
 }
 
-/// Slide of the rib's surfaces between two of its states; see solve().
+/// Slide between the two surfaces of the rib's joint from one state to another; see solve().
 double surface_slide(const Model& model, const State& from, const State& to) {
   const auto& joint = std::get<ClearanceRevolute>(model.joints[0]);
   const auto angle = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -185,7 +188,7 @@ double surface_slide(const Model& model, const State& from, const State& to) {
 }
 
 TEST(Truss, ElasticRevoluteIsTheHistorySpringOfTheDem) {
-  // The DEM's law, driven along the path of the solver, must give the same friction.
+  // The DEM's friction law, driven along the solver's path, must give the same friction force.
   Model model = elastic_rib();
   Options options;
   options.increments_per_branch = 2000;
@@ -209,7 +212,7 @@ TEST(Truss, ElasticRevoluteIsTheHistorySpringOfTheDem) {
     const double friction = -history.tangential_force.x();
     error = std::max(error, std::abs(friction - number(model, state, "friction_force_N")));
     largest = std::max(largest, std::abs(friction));
-    // A step of the DEM's law uses k_t at its end, the solver the mean of 1/k_t.
+    // In a step, the DEM's law uses k_t at its end, whereas the solver uses the mean of 1/k_t.
     allowed += 0.5 * std::abs(1.0 - before / stiffness(state)) *
                std::abs(friction - number(model, path.states[i - 1], "friction_force_N"));
     if (state.joint_status[0] == JointStatus::stick) ++sticks;
@@ -220,7 +223,7 @@ TEST(Truss, ElasticRevoluteIsTheHistorySpringOfTheDem) {
 }
 
 TEST(Truss, ElasticRevoluteClosesItsBalance) {
-  // Twenty times the increments leave less than a hundredth of the residue.
+  // With twenty times the increments, less than a hundredth of the energy residue remains.
   Options options;
   options.increments_per_branch = 50;
   const double coarse = relative_residue(solve(elastic_rib(), options));
@@ -246,8 +249,8 @@ TEST(Truss, StiffContactsApproachRigidOnes) {
 }
 
 TEST(Truss, SlipThatTurnsRoundWithinAStepIsLocated) {
-  // A block between two bars, one of which follows a sine. Their difference reverses in the middle
-  // of a branch, where no corner of a program shortens the step.
+  // A block between two bars, one of which follows a sine program. The difference of their lengths
+  // reverses in the middle of a branch, where no corner of a program shortens the step.
   Model model;
   model.programs = {triangle(100.0), triangle(100.0)};
   model.programs[1].shape = thermal::Shape::half_sine;
@@ -259,7 +262,8 @@ TEST(Truss, SlipThatTurnsRoundWithinAStepIsLocated) {
   slider.friction_force = 1.0;
   model.joints = {slider};
   const auto turns = [](const Path& path) {
-    // The reversal is at the start of the interval; the overshoot is below rounding.
+    // The slide reverses at the start of the event's interval. The overshoot in it is below
+    // rounding.
     std::vector<double> found;
     for (const Event& event : path.events) {
       if (event.before != JointStatus::stick) found.push_back(event.time - event.interval);
@@ -274,7 +278,8 @@ TEST(Truss, SlipThatTurnsRoundWithinAStepIsLocated) {
   ASSERT_EQ(fine_turns.size(), 3u);  // one in each branch, and one at the corner between them
   for (const int increments : {1, 2, 5, 8, 30}) {
     for (const bool locate : {true, false}) {
-      // Without location, a whole branch shows no event: its ends have equal positions.
+      // Without event location, an increment over a whole branch shows no event: both ends have
+      // equal positions.
       if (!locate && increments == 1) continue;
       options.locate_events = locate;
       options.increments_per_branch = increments;
@@ -285,7 +290,8 @@ TEST(Truss, SlipThatTurnsRoundWithinAStepIsLocated) {
       const std::vector<double> found = turns(path);
       ASSERT_EQ(found.size(), fine_turns.size()) << increments;
       for (std::size_t i = 0; i < found.size(); ++i) {
-        // Slide of 1e-3 m times the square of the delay, below 1e3 roundings of 1e-18 m.
+        // The overshoot, a slide of 1e-3 m times the squared delay, is below 1e3 roundings of 1e-18
+        // m.
         EXPECT_NEAR(found[i], fine_turns[i], 1e-6) << increments;
       }
     }
@@ -293,8 +299,8 @@ TEST(Truss, SlipThatTurnsRoundWithinAStepIsLocated) {
 }
 
 TEST(Truss, ContactThatComesAndGoesWithinAStepIsLocated) {
-  // A journal between two bars, laterally constrained by a third one. At both ends of a branch it
-  // is at the centre of its bearing, which it touches in between.
+  // A journal between two bars; a third bar constrains it laterally. At both ends of a branch the
+  // journal is at the centre of its bearing. In between it touches the bearing.
   Model model;
   model.programs = {triangle(100.0), triangle(100.0)};
   model.programs[1].shape = thermal::Shape::half_sine;
@@ -327,8 +333,8 @@ TEST(Truss, ContactThatComesAndGoesWithinAStepIsLocated) {
 }
 
 TEST(Truss, SlipEndsAtTheCornerHoweverLongTheIncrement) {
-  // The slide reverses between two increments of a whole branch. The short step after the corner
-  // sticks first, so both slips and the stick between them are reported.
+  // The slide reverses between two increments, each of which spans a whole branch. The short step
+  // after the corner sticks first, so the path reports both slips and the stick between them.
   Options options;
   options.locate_events = false;
   for (const int increments : {1, 3}) {
@@ -345,7 +351,8 @@ TEST(Truss, SlipEndsAtTheCornerHoweverLongTheIncrement) {
     ASSERT_NE(held + 1, path.events.end());
     EXPECT_EQ((held + 1)->before, JointStatus::stick);
     EXPECT_EQ((held + 1)->after, JointStatus::slip_minus);
-    // The start, and in each branch the short step and the increments: no event is searched.
+    // Solves: one at the start; in each branch one for the short step, plus the increments. None
+    // searches an event.
     EXPECT_EQ(path.solves, 1 + 2 * (1 + increments));
   }
 }
@@ -362,7 +369,8 @@ TEST(Truss, RibFollowsItsPathAndClosesItsBalance) {
 }
 
 TEST(Truss, JournalThatGrowsWorksAgainstTheForceThatPressesIt) {
-  // A load presses a journal into a fixed bore; the journal yields by the growth of the clearance.
+  // A load presses a journal into a fixed bore. When the clearance grows, the journal moves along
+  // with the load.
   Model model = rib();
   const double load = 50.0;
   model.nodes = {node("bore", 0, 0, 0), node("journal", 0, 0, 2), node("wall", -1, 0, 0)};
@@ -429,7 +437,7 @@ TEST(Truss, ItemsOutOfRangeAreNamed) {
   revolute(model).bearing_thermal_expansion = -1e-3;
   EXPECT_EQ(refused(model).name, clearance);
   EXPECT_LT(refused(model).value, 0.0);
-  // A journal that exactly fills its bore; powers of two avoid rounding.
+  // At the peak temperature the journal fills its bore exactly; powers of two avoid rounding.
   model = rib();
   model.programs = {triangle(64.0)};
   revolute(model).journal_radius = 0.5;
@@ -458,7 +466,7 @@ TEST(Truss, MechanismIsNamed) {
   ASSERT_FALSE(fields.modes.empty());
   EXPECT_FALSE(fields.more_modes);
   EXPECT_EQ(fields.time, 0.0);
-  // With many free nodes six modes are found, and the error states that there may be more.
+  // With many free nodes the solver finds six modes, and the error states that there may be more.
   model = bar();
   for (int i = 0; i < 4; ++i) model.nodes.push_back(node("free" + std::to_string(i), i, 1, 2));
   const FailureFields many = failure(model);
@@ -473,7 +481,7 @@ TEST(Truss, EventsHaveTheStepInWhichTheyHappened) {
   const Path path = solve(bar(), options);
   ASSERT_FALSE(path.events.empty());
   for (const Event& event : path.events) {
-    // Half a second of heating or cooling; the sum of a time and a step is rounded.
+    // A branch lasts half a second. The sum of time and step is rounded.
     EXPECT_GT(event.interval, 0.0);
     EXPECT_LE(event.interval, 1.5 * options.event_tolerance * 0.5);
     EXPECT_NEAR(event.temperature_change, 200.0 * std::min(event.time, 1.0 - event.time), 1e-12);
@@ -511,15 +519,15 @@ TEST(Truss, LocalProblemsAreThoseThatThePathSolves) {
       const complementarity::Problem& problem = local.problem;
       EXPECT_EQ(local.joints, std::vector<int>{0});
       ASSERT_EQ(problem.contacts(), 1);
-      // Forces are in equilibrium to 1e-12; closures are solved to 1e-13 of the displacements,
-      // which are a hundred times those of a step.
+      // Forces are in equilibrium to 1e-12. Closures are solved to 1e-13 of the displacements,
+      // which are a hundred times larger than those of one step.
       EXPECT_LT(complementarity::merit(problem, local.reactions).largest(), 1e-9);
       EXPECT_LT((complementarity::velocities(problem, local.reactions) - local.velocities).norm(),
                 1e-12 * problem.q.norm());
       EXPECT_GT(std::abs(local.reactions[1]), 0.0);
     }
   }
-  // The block slides at 0.1 s and 20 K: W is the compliance of the bar at this temperature, and
+  // At 0.1 s and 20 K the block slides. W is the compliance of the bar at this temperature, and
   // friction is 30 N.
   const LocalProblem local = solve(bar(), options).problems[0];
   const auto& w = std::get<Eigen::MatrixXd>(local.problem.delassus);
@@ -533,7 +541,8 @@ TEST(Truss, RoundingGoesWithTheLargestDisplacementOfThePath) {
   const detail::System system(model);
   Eigen::VectorXd z = Eigen::VectorXd::Zero(system.unknowns());
   z.tail(system.unknowns() - 1).setConstant(30.0);  // forces do not count
-  // At rest it is the largest thermal strain, 23.4e-6/K times 100 K, times the size of the truss.
+  // For zero displacements the reach is the largest thermal strain, 23.4e-6/K times 100 K, times
+  // the size of the truss.
   EXPECT_DOUBLE_EQ(system.reach(z), 23.4e-4 * system.size());
   EXPECT_DOUBLE_EQ(system.rounding(z).length, detail::closure_tolerance * system.reach(z));
   EXPECT_DOUBLE_EQ(system.rounding(z).force, system.stiffness_scale() * system.rounding(z).length);
@@ -587,7 +596,7 @@ TEST(Truss, ProgramsNeedNotLastEquallyLongToTheLastBit) {
     const Path path =
         solve(longer_first ? two_programs(0.1, 3, 0.3, 1) : two_programs(0.3, 1, 0.1, 3));
     EXPECT_EQ(path.cycle_ends.size(), longer_first ? 4u : 2u);
-    // Both programs have ended: the free bar has its initial length, to the rounding of its force.
+    // After both programs the free bar has its initial length, to the rounding of its force.
     EXPECT_NEAR(path.states.back().displacement(0, 3), 0.0, 1e-16);
     EXPECT_EQ(path.states.back().temperature_change, 0.0);
   }
@@ -595,7 +604,8 @@ TEST(Truss, ProgramsNeedNotLastEquallyLongToTheLastBit) {
 }
 
 TEST(Truss, CornersThatNearlyCoincideAreOne) {
-  // Eight cycles of 0.15 s have 16 corners; the ends of four of 0.3 s nearly coincide with some.
+  // Eight cycles of 0.15 s have 16 corners. The ends of four cycles of 0.3 s nearly coincide with
+  // some of them.
   ASSERT_NE(3 * 0.3 + 0.15, 7 * 0.15);
   for (const bool longer_first : {false, true}) {
     const Model model =

@@ -9,7 +9,7 @@ namespace toys {
 
 using namespace statejump::kernel::laws;
 
-/// F = E*/R1 delta^3: a law that the project does not have.
+/// Normal law F = E*/R1 delta^3, which the project does not contain.
 struct Cubic {
   static constexpr LawInfo info{"cubic",
                                 "F = E*/R1 delta^3",

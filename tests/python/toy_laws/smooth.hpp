@@ -9,7 +9,7 @@ namespace toys {
 
 using namespace statejump::kernel;
 
-/// F_T = mu F_N v/sqrt(v^2 + v1^2), against v: no corner anywhere.
+/// Friction force mu F_N v/sqrt(v^2 + v1^2) against the velocity v, without a corner.
 struct Smooth {
   static constexpr laws::LawInfo info{
       "smooth",    "F_T = mu F_N v/sqrt(v^2 + v1^2), against v",

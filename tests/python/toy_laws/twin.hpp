@@ -3,7 +3,7 @@
 
 #include "statejump/kernel/laws/dissipation.hpp"
 
-/// Hunt and Crossley's law under another name: the same text has to give the same bits.
+/// Hunt and Crossley's law under another name. The same source must give the same bits.
 struct Twin {
   static constexpr statejump::kernel::laws::LawInfo info{
       "twin",

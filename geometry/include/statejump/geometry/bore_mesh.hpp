@@ -39,12 +39,12 @@ struct WallPoint {
   Eigen::Vector3d direction_2;        ///< unit, tangential, of curvature_2, direction_1 x normal
   int face;                           ///< index of the mesh face, as in the file
   std::array<double, 3> barycentric;  ///< weights of the corners of that face, >= 0, sum 1
-  /// The nearest point is on the wall's rim and not the foot of a normal. It is then only as
-  /// accurate as the facets, h^2/(8 R) for an edge length h.
+  /// Whether the nearest point is on the rim of the wall and not the foot of a normal. Its accuracy
+  /// is then that of the facets, h^2/(8 R) for an edge length h.
   bool on_rim;
 };
 
-/// One point where a journal or a ball touches the wall or nearly does.
+/// A point at which a journal or ball touches the wall or nearly touches it.
 struct BoreContact {
   Eigen::Vector3d point;     ///< [m], on the smooth wall
   Eigen::Vector3d normal;    ///< unit, from the journal into the wall, perpendicular to its axis
@@ -63,32 +63,32 @@ struct BoreContact {
 
 /// Inner surface of a bore (or of a socket) given by triangles.
 ///
-/// **The wall.** In an open tube every face can belong to the wall. In a closed ring only the
-/// largest patch can that surrounds an axis with normals pointing to it. Patches end where faces
-/// meet at more than 40 degrees, so a closed ring needs more than 9 facets around. In both cases,
-/// faces inclined by more than 45 degrees to the axis (ends, chamfers) are excluded. Axis and mean
-/// radius are those of the least-squares cylinder through the wall's vertices, weighted with their
-/// areas (for a socket: sphere).
+/// **The wall.** In an open tube every face can belong to the wall. In a closed ring, the wall is
+/// part of one patch: the largest one that surrounds an axis and has normals pointing to it.
+/// Patches end where faces meet at more than 40 degrees, so a closed ring needs more than 9 facets
+/// around. In both cases, faces inclined by more than 45 degrees to the axis (ends, chamfers) do
+/// not belong to the wall. Axis and mean radius are those of the least-squares cylinder through the
+/// wall's vertices, weighted with their areas (for a socket: sphere).
 ///
-/// **The smooth wall.** The vertices are taken as points of the true surface. A chord lies inside a
-/// circle by h^2/(8 R), far more than an elastic depth, so the facets only locate a point. A
-/// polynomial of degree 4 over the tangent plane is fitted by least squares to each vertex and its
-/// neighbours, two rings (the jet of Cazals and Pouget, Computer Aided Geometric Design 22, 2005).
-/// Within a face, the polynomials of the three corners are blended with weights that vanish
+/// **The smooth wall.** The vertices are taken as points of the true surface. The chord of a facet
+/// is h^2/(8 R) inside the true circle, far more than an elastic depth. So the facets only locate a
+/// point. A polynomial of degree 4 over the tangent plane is fitted by least squares to each vertex
+/// and its neighbours, two rings (the jet of Cazals and Pouget, Computer Aided Geometric Design 22,
+/// 2005). Within a face, the polynomials of the three corners are blended with weights that vanish
 /// smoothly on the opposite edge. Points, normals and curvatures are those of the blend. On a round
-/// bore the error of the distance is of order h^6, 2e-13 m at a radius of 5.1 mm and 200 facets
-/// around. Limits: noise of the vertices is followed, not smoothed, and curvature amplifies it by
-/// 1/h^2. Coordinates stored as float, as in binary STL, cause an error of the depth of 2.5e-10 m
-/// at a radius of 5.1 mm. With a clearance of 0.1 mm the error of the effective radius 1/(1/R1 +
+/// bore the error of the distance is of order h^6, e.g. 2e-13 m at a radius of 5.1 mm and 200
+/// facets around. Limits: the fit follows noise of the vertices, and curvature amplifies this noise
+/// by 1/h^2. Coordinates stored as float, as in binary STL, cause an error of the depth of 2.5e-10
+/// m at a radius of 5.1 mm. With a clearance of 0.1 mm the error of the effective radius 1/(1/R1 +
 /// section_curvature) is then 1 % at 200 facets around, 16 % at 800. Sharp edges inside the wall
 /// (keyways, grooves) are rounded.
 ///
-/// Immutable after construction; all queries are const and may run in any number of threads. Copies
-/// share the mesh.
+/// The object is immutable after construction; all queries are const and may run in any number of
+/// threads. Copies share the mesh.
 class BoreMesh {
  public:
   /// Checks the triangles and prepares the queries.
-  /// @param name printed first in errors
+  /// @param name name of the mesh, printed first in errors
   /// @throws std::invalid_argument when an option is out of its range
   /// @throws std::runtime_error with one sentence that names the defect and its position: no faces,
   ///         a
@@ -103,37 +103,42 @@ class BoreMesh {
   /// read_triangles(), then the constructor.
   static BoreMesh read(const std::string& file, const BoreOptions& options = {});
 
-  /// Nearest point of the smooth wall. If two parts of the wall are equally near, as for a query on
-  /// the axis, either may be returned. @param query [m]
+  /// Nearest point of the smooth wall. If two points of the wall are equally near, as for a query
+  /// on the axis, the result is one of them. @param query [m]
   WallPoint closest_point(const Eigen::Vector3d& query) const;
 
-  /// All separate contacts of a journal with the wall, and gaps below `maximum_gap`, deepest first.
+  /// All separate contacts of a journal with the wall, deepest first, including gaps below
+  /// `maximum_gap`.
   ///
   /// Only the section through the journal's centre and perpendicular to its axis is searched.
   /// Contacts are local minima of the distance between wall and centre in this section. For a
   /// tilted journal, whose end touches first, call this again with a centre shifted along its axis.
   /// Two minima count as one if the distance between them rises by less than prominence().
   /// The cost does not depend on the number of faces.
-  /// @param journal_centre [m], inside the bore, @param journal_axis any length, either direction
+  /// @param journal_centre [m], inside the bore, @param journal_axis vector of any length, either
+  ///     direction
   /// @param journal_radius [m], > 0
   /// @param maximum_gap [m], >= 0: contacts with depth > -maximum_gap are returned
-  /// @param previous an earlier result; BoreContact::previous then identifies the continued
-  ///        contact, the nearest one within a twelfth of a turn
-  /// Limits: minima nearer than 2 pi/256 around the bore may be merged. In the section, every wall
-  /// point must be visible from the centre. The result is empty if the section misses the wall.
+  /// @param previous result of an earlier call; BoreContact::previous then identifies the contact
+  ///     that continues, the nearest one within a twelfth of a turn
+  /// Limits: minima at angles that differ by less than 2 pi/256 may be merged. In the section,
+  /// every wall point must be visible from the journal's centre. The result is empty if the section
+  /// misses the wall.
   std::vector<BoreContact> contacts(const Eigen::Vector3d& journal_centre,
                                     const Eigen::Vector3d& journal_axis, double journal_radius,
                                     double maximum_gap,
                                     const std::vector<BoreContact>& previous = {}) const;
 
-  /// The same for a ball in a socket or bore: local minima of the distance between wall and centre.
-  /// BoreContact::section_curvature is the smaller, axial_curvature the larger principal curvature.
+  /// Contacts of a ball in a socket or bore: local minima of the distance between wall and centre.
+  /// BoreContact::section_curvature is the smaller principal curvature, axial_curvature the larger
+  /// one.
   std::vector<BoreContact> ball_contacts(const Eigen::Vector3d& ball_centre, double ball_radius,
                                          double maximum_gap,
                                          const std::vector<BoreContact>& previous = {}) const;
 
-  /// Radii of the smooth wall [m] around the fitted axis at the axial position z [m] from the
-  /// wall's middle, at angles 2 pi i/count from axis_x() towards axis_y(). NaN without wall.
+  /// Radii of the smooth wall [m] around the fitted axis, at the axial position z [m] from the
+  /// wall's middle, at angles 2 pi i/count from axis_x() towards axis_y(). NaN where there is no
+  /// wall.
   std::vector<double> section_radii(double z, int count) const;
 
   const Triangles& triangles() const;    ///< scaled and flipped, otherwise as given
@@ -148,13 +153,13 @@ class BoreMesh {
   double length() const;                  ///< [m], of the wall along the axis
   double smallest_curvature() const;      ///< [1/m], of the wall at its vertices, convex positive
   double largest_curvature() const;       ///< [1/m]
-  /// Largest difference [m] between the polynomials of neighbouring vertices, evaluated a quarter
-  /// along their edge: an estimate of the error of the smooth wall.
+  /// Estimated error of the smooth wall [m]: the largest difference between the polynomials of
+  /// neighbouring vertices, evaluated at a quarter of their common edge.
   double reconstruction_error() const;
-  /// Two minima count as one in contacts() if the distance rises by less than this between them
-  /// [m]: 1e-12 plus 4 times the 95 % quantile of the differences used in reconstruction_error().
+  /// Smallest rise of the distance [m] that separates two minima in contacts(). It is 1e-12 plus 4
+  /// times the 95 % quantile of the differences that reconstruction_error() uses.
   double prominence() const;
-  /// Vertex normals, unit, towards the free side; zero for vertices outside the wall.
+  /// Unit vertex normals, towards the free side; zero for vertices outside the wall.
   const std::vector<Eigen::Vector3d>& vertex_normals() const;
 
   struct Impl;  ///< implementation with CGAL

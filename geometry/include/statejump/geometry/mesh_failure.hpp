@@ -52,7 +52,7 @@ inline const char* to_string(MeshFault fault) {
   return "unknown";
 }
 
-/// Texts of a reason, as templates: names in braces are fields of the failure.
+/// Texts of a reason, as templates. Names in braces stand for fields of the failure.
 struct MeshReasonText {
   const char* name;  ///< the enumerator's
   MeshFault fault;
@@ -77,8 +77,8 @@ using MeshFields = std::vector<std::pair<std::string, MeshValue>>;
 /// The cause, with the fields in place of their names.
 std::string cause(MeshReason reason, const MeshFields& fields);
 
-/// A mesh that is no bore or socket, as fields; what() is "file: cause; remedy", where the cause
-/// asks a question "file: cause? Then remedy".
+/// Error for a mesh that is no bore or socket, with its data as fields. what() is "file: cause;
+/// remedy", or "file: cause? Then remedy" if the cause is a question.
 class MeshFailure : public std::runtime_error {
  public:
   MeshFailure(std::string file, MeshReason reason, MeshFields fields = {});

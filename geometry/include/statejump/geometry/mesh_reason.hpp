@@ -3,7 +3,8 @@
 
 namespace statejump::geometry {
 
-/// Why a mesh is rejected: finer than its MeshFault. Names are public and do not change.
+/// Reason why a mesh is rejected, in more detail than its MeshFault. Names are public and do not
+/// change.
 enum class MeshReason : unsigned char {
   // Files
   unknown_ending,

@@ -8,24 +8,24 @@
 
 namespace statejump::geometry {
 
-/// Triangles as arrays, as read from a file or made by a generator; not checked.
+/// Unchecked triangles as arrays, from a file or a generator.
 struct Triangles {
   std::vector<Eigen::Vector3d> vertices;  ///< [m], or the file's unit before scaling
-  /// Vertex indices, anticlockwise as seen from the side that the normal points to.
+  /// Vertex indices of each face, anticlockwise as seen from the side to which the normal points.
   std::vector<std::array<int, 3>> faces;
   int removed = 0;  ///< number of faces of the file without area, which were left out
 };
 
-/// Reads OFF, STL (text or binary), PLY or OBJ, selected by the extension of the name.
+/// Reads a file in the format OFF, STL (text or binary), PLY or OBJ, selected by the extension of
+/// its name.
 ///
 /// The file may be untrusted: pipes, devices and files of more than 2 GiB are rejected, and so are
-/// counts that exceed the size of the file. Equal vertices are merged (STL shares no vertices), and
-/// 32-bit float vertices also if they differ only by rounding. Polygons are split into triangles;
-/// faces of fewer than three vertices are left out. The order is kept.
+/// counts that exceed the size of the file. Equal vertices are merged (STL repeats them in each
+/// facet), and 32-bit float vertices also if they differ only by rounding. Polygons are split into
+/// triangles; faces with fewer than three vertices are left out. Faces keep their order.
 /// @throws MeshFailure if there is no such file, the extension is unknown, the content is not of
-///         that
-///         format (with the line of a text file), a corner does not exist, a vertex is not finite,
-///         or
+///         that format (for a text file, the error names the line), a corner does not exist, a
+///         vertex is not finite, or
 ///         there are no faces
 Triangles read_triangles(const std::string& file);
 
@@ -36,7 +36,7 @@ struct Lobe {
   double phase = 0;  ///< [rad], angle of the largest radius
 };
 
-/// Shape of a bore along z; its inner wall is r(theta, z) = R + lobes + wear.
+/// Shape of a bore along z. Its inner wall is r(theta, z) = R + lobes + wear.
 struct BoreShape {
   double radius;  ///< R [m], > 0
   double length;  ///< [m], > 0, from z = -length/2 to +length/2
@@ -52,13 +52,14 @@ struct BoreShape {
 double bore_radius(const BoreShape& shape, double theta, double z);
 
 /// Mesh of a bore whose vertices lie on the shape, with `around` facets around and `along` rows of
-/// quadrilaterals, each of two triangles. Normals point to the axis (out of a ring's material).
+/// quadrilaterals, each of two triangles. Normals point to the axis (for a ring: out of its
+/// material).
 /// @param around >= 3, @param along >= 1
 /// @throws std::invalid_argument when an argument is out of its range
 Triangles bore_triangles(const BoreShape& shape, int around, int along);
 
-/// Cup of a ball-and-socket joint: part of a sphere about the origin below the plane
-/// z = radius cos(opening); normals point to the centre.
+/// Mesh of the cup of a ball-and-socket joint: the part of a sphere about the origin below the
+/// plane z = radius cos(opening). Normals point to the centre.
 /// @param radius [m], > 0, @param opening polar angle of the rim [rad], in (0, pi)
 /// @param around >= 3 facets around, @param along >= 2 rings from rim to pole
 Triangles socket_triangles(double radius, double opening, int around, int along);

@@ -27,18 +27,18 @@ using Eigen::VectorXd;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-/// Derivative of a function at 0 by fourth-order differences with step h: truncation error h⁴/30
-/// times the fifth derivative, rounding 1.5 ε/h times the value.
+/// Derivative of a function at 0 by fourth-order differences with step h. The truncation error is
+/// h⁴/30 times the fifth derivative, the rounding error 1.5 ε/h times the value.
 template <class Function>
 auto derivative(Function&& at, double h) {
   return ((8.0 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12.0 * h)).eval();
 }
 
-/// Step of the differences [m]. Lengths of the samples are about 1 m, so the truncation error is
-/// about 1e-13 of the largest derivative and the rounding about 1e-12 of the value.
+/// Step of the differences [m]. The samples have lengths of about 1 m, so the truncation error is
+/// about 1e-13 of the largest derivative and the rounding error about 1e-12 of the value.
 constexpr double step = 5e-4;
-/// Tolerance relative to (value over 1 m) and to the derivative: sum of truncation and rounding,
-/// with a factor of ten for the fifth derivatives of directions.
+/// Relative tolerance for derivatives and for values per metre: truncation plus rounding error,
+/// times ten because directions have larger fifth derivatives.
 constexpr double of_differences = 1e-11;
 
 /// Elements of one type in test states.
@@ -74,7 +74,7 @@ class ElementContract : public ::testing::Test {
     return at(q, changes(),
               [&](const ElementState& state) { return elements()[i].energy(frames[i], state); });
   }
-  /// Calls `write(state, writer)` and returns the forces and derivatives that it wrote.
+  /// Calls `write(state, writer)` and returns the forces and derivatives written.
   template <class Write>
   Assembly written(const VectorXd& q, const std::vector<double>& temperatures,
                    Write&& write) const {
@@ -163,8 +163,8 @@ TYPED_TEST(ElementContract, TangentIsTheGradientOfTheForce) {
   this->check_tangent();
 }
 
-/// Sample of a type with constraints between its nodes: one eliminates a displacement of B, one of
-/// A.
+/// Sample of an element type with two constraints between its nodes. They eliminate one
+/// displacement of B and one of A.
 template <class Type>
 Model constrained_sample() {
   Model model = testing::sample(std::type_identity<Type>());
@@ -200,21 +200,22 @@ TYPED_TEST(ElementContract, ThermalRateIsTheRateOfTheForceWhereNothingMoves) {
                         this->elements()[i].thermal_rate(this->frames[i], state, rates, writer);
                       })
             .residual;
-    // Thermal strain makes forces nonlinear: 1e-3 over a second, 1e-15 in the fifth derivative.
+    // Thermal strain makes forces nonlinear in time. The effect is 1e-3 over a second, 1e-15 in the
+    // fifth derivative.
     const VectorXd difference = derivative(
         [&](double h) {
           const std::vector<double> then{60.0 + h * rates[0], -35.0 + h * rates[1]};
           return this->evaluated(i, q, then).residual;
         },
         0.1);
-    // Rounding of the force (1 m times the stiffness) over 0.1 s.
+    // Rounding of the force (1 m times the stiffness), divided by 0.1 s.
     const double rounding = 64.0 * epsilon * this->tangent(i, q).norm() / 0.1;
     EXPECT_LE((rate - difference).norm(), rounding + of_differences * rate.norm());
   }
 }
 
 TYPED_TEST(ElementContract, WorksOfForceAndTemperatureAreTheChangeOfTheEnergy) {
-  // The program heats at a constant rate up to t = 0.5; nodes move at constant velocity.
+  // The program heats at a constant rate until t = 0.5, and nodes move at constant velocity.
   const VectorXd from = this->displaced();
   const double duration = 0.2;
   const VectorXd rate = (this->displaced(0.1) - from) / duration;
@@ -235,7 +236,7 @@ TYPED_TEST(ElementContract, WorksOfForceAndTemperatureAreTheChangeOfTheEnergy) {
       const auto rules = detail::quadratures(way, this->model);
       const double heated = this->elements()[i].thermal_work(
           this->frames[i], detail::ThermalStep{way, this->drawn, this->dofs, rules});
-      // Simpson's rule with 64 parts: error 64⁻⁴/2880 = 2e-11 of the fourth derivative.
+      // Simpson's rule with 64 parts has an error of 64⁻⁴/2880 = 2e-11 of the fourth derivative.
       double work = 0.0;
       constexpr int parts = 64;
       for (int k = 0; k <= 2 * parts; ++k) {
@@ -249,15 +250,16 @@ TYPED_TEST(ElementContract, WorksOfForceAndTemperatureAreTheChangeOfTheEnergy) {
     };
     const double whole = unbalanced(duration);
     const double half = unbalanced(0.5 * duration);
-    // Fourth order overall, so fifth order per step: half the step has 1/32 of the error; 1/16
-    // allows for sixth-order terms. Otherwise the error is rounding and that of Simpson's rule.
+    // The quadrature is of fourth order, so its error per step is of fifth order: half the step has
+    // 1/32 of the error. The factor 1/16 allows for sixth-order terms, and the second term for
+    // rounding and Simpson's rule.
     EXPECT_LE(half, whole / 16.0 + 1e-12 * stored) << this->elements()[i].name;
     EXPECT_LE(whole, 1e-3 * stored) << this->elements()[i].name;
   }
 }
 
 TYPED_TEST(ElementContract, ForcesTurnWithTheStructure) {
-  // All nodes are free, so that their dofs are components along the axes.
+  // With all nodes free, their dofs are displacement components along the axes.
   for (Node& node : this->model.nodes) {
     node.freedoms = 3;
     node.free_directions = Directions();

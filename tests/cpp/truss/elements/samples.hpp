@@ -11,7 +11,7 @@
 
 namespace statejump::truss::testing {
 
-/// Four nodes in space: free, free in a tilted plane, free on a tilted line, fixed.
+/// Four nodes in space: one free, one free in a tilted plane, one free on a tilted line, one fixed.
 inline Model four_nodes() {
   Model model;
   model.programs = {triangle(80.0, 2.0), triangle(-50.0, 2.0)};

@@ -58,7 +58,7 @@ Driven driven(const Model& model, int increments, bool partial) {
       continue;
     }
     const State& last = path.states[i - 1];
-    // Velocities over the step, times its length.
+    // Displacement of a node in the step, i.e. its mean velocity times the step length.
     const auto moved = [&](int at_node) {
       return Vector3d(state.displacement.col(at_node) - last.displacement.col(at_node));
     };
@@ -100,7 +100,7 @@ TEST(BallJoint, IsTheHistorySpringOfTheDemInSpace) {
   const Driven fine = driven(tripod(), 2000, false);
   EXPECT_GT(fine.slips, 100);
   EXPECT_LT(fine.slips, fine.states - 100);
-  // A step of the DEM's contact is of first order if the slide direction changes.
+  // If the slide direction changes, a contact step of the DEM is of first order.
   EXPECT_LT(coarse.error, 2e-3);
   EXPECT_NEAR(fine.error, 0.5 * coarse.error, 0.05 * coarse.error);
 }
@@ -113,7 +113,7 @@ TEST(BallJoint, IsTheContactWithPartialSlipOfTheDemInSpace) {
   EXPECT_GT(fine.slips, 100);
   EXPECT_LT(fine.slips, fine.states - 100);
   EXPECT_LT(fine.smallest, 0.5);
-  // First order, plus the chords of both.
+  // The error is of first order, plus the chord errors of solver and DEM.
   EXPECT_LT(coarse.error, 2e-3);
   EXPECT_LT(fine.error, 0.5 * coarse.error + 3e-4);
 }

@@ -6,7 +6,7 @@
 
 namespace statejump::truss::testing {
 
-/// A ball pressed into its socket between two links, in a state of slip.
+/// A ball between two links, pressed into its socket and slipping.
 struct Pressed {
   Model model;
   Eigen::VectorXd z;
@@ -15,7 +15,7 @@ struct Pressed {
 
   explicit Pressed(const BallJoint& joint = ball_joint(3, 1, 2, 0)) {
     model.programs = {triangle(100.0)};
-    // Soft links, so that their rounding errors do not hide the terms of the joint.
+    // Soft links have small rounding errors, which do not hide the terms of the joint.
     model.nodes = {node("A", {0, 0, 0}, 3), node("C", {0.12, 0.03, -0.05}, 3),
                    node("B", {0.02875, 0.0409, 0.01}, 3), node("J", {0.02875, 0.0409, 0.01}, 3)};
     model.links = {{"AB", 0, 2, 1e2, 0.05, 2e-5, 0, 1.0}, {"CJ", 1, 3, 1e2, 0.1, 1e-5, 0, 0.5}};

@@ -49,8 +49,8 @@ TEST(BallJoint, TurnedInSpaceTheTrussIsTheSame) {
 }
 
 TEST(BallJoint, FrictionTurnsIntoANewSlideAsATractrix) {
-  // Gross slip along x, then a slide along y. For the angle θ between friction and slide,
-  // dθ/ds = −(k/μN) sin θ, so tan(θ/2) decreases from 1 as exp(−k s/μN).
+  // Gross slip along x is followed by a slide s along y. The angle θ between friction and slide
+  // obeys dθ/ds = −(k/μN) sin θ, so tan(θ/2) decreases from 1 as exp(−k s/μN).
   const Model model = pushed_around_a_corner();
   double error[2] = {0.0, 0.0};
   for (const int fine : {0, 1}) {
@@ -77,13 +77,14 @@ TEST(BallJoint, FrictionTurnsIntoANewSlideAsATractrix) {
     }
     EXPECT_GT(turning, 20);
   }
-  // The rods deform by a thousandth of the contact's deflection; increments do not matter.
+  // The rods deform by a thousandth of the contact's deflection. The number of increments has no
+  // effect.
   EXPECT_LT(error[0], 1e-3);
   EXPECT_NEAR(error[1], error[0], 1e-6);
 }
 
 TEST(BallJoint, OpensAndClosesWhereTheRodThatPressesItIsAsLongAsTheWay) {
-  // Three rods constrain the ball; cooling shortens the one that presses it down.
+  // Three rods constrain the ball. Cooling shortens the rod that presses the ball down.
   Model model = pushed_around_a_corner();
   model.programs = {quarters({0.0, -100.0, 0.0})};
   model.nodes[1].load.setZero();
@@ -94,7 +95,8 @@ TEST(BallJoint, OpensAndClosesWhereTheRodThatPressesItIsAsLongAsTheWay) {
                  {"Y", 3, 1, 1e9, 10.0, 0.0, 0, 1.0},
                  {"Z", 4, 1, 1e9, pressed, expansion, 0, 1.0}};
   const Path path = solve(model);
-  // Near zero load friction slips before the contact opens: deflection remains, the bound vanishes.
+  // As the load vanishes, so does the friction bound, but not the tangential deflection. The
+  // contact slips before it opens.
   const JointStatus expected[] = {JointStatus::stick, JointStatus::slip_plus, JointStatus::open,
                                   JointStatus::stick};
   ASSERT_GE(path.events.size(), 3u);
@@ -102,7 +104,8 @@ TEST(BallJoint, OpensAndClosesWhereTheRodThatPressesItIsAsLongAsTheWay) {
     EXPECT_EQ(path.events[i].before, expected[i]);
     EXPECT_EQ(path.events[i].after, expected[i + 1]);
   }
-  // Lateral rods carry the fraction c/L of a force from elongation c²/(2 L) = 5e-8 m: < 1e-5 K.
+  // Lateral rods elongate by c²/(2 L) = 5e-8 m and carry the fraction c/L of their force, which
+  // shifts the event by less than 1e-5 K.
   const double change = ((10.0 + joint_of(model).radial_clearance) / pressed - 1.0) / expansion;
   EXPECT_NEAR(path.events[1].temperature_change, change, 1e-5);
   EXPECT_NEAR(path.events[2].temperature_change, change, 1e-5);
@@ -123,8 +126,8 @@ TEST(BallJoint, EnergyIsKeptWhateverTheIncrements) {
       for (const State& state : path.states) work = std::max(work, std::abs(state.thermal_work));
       return std::abs(relative_residue(path)) * path.states.back().joint_dissipation.sum() / work;
     };
-    // Step halving and event location may each lose the tolerance, with the same sign. The scale is
-    // the largest work, less than twice the solver's scale.
+    // Step halving and event location may each cause an energy error of the tolerance, with the
+    // same sign. The scale is the largest work, less than twice the solver's.
     EXPECT_LT(lost(), 2.0 * options.energy_tolerance);
     // Without step halving more energy is lost.
     options.energy_tolerance = 1.0;
@@ -147,7 +150,7 @@ TEST(BallJoint, IncrementsDoNotMatterAndEnergyIsKept) {
     jump[i] = (moved - fine).norm() / fine.norm();
     residue[i] = std::abs(relative_residue(path));
   }
-  // Four times the increments: both are of second order at least.
+  // With four times the increments, jump and residue decrease at least with second order.
   EXPECT_LT(jump[0], 1e-6);
   EXPECT_LT(jump[1], 0.08 * jump[0]);
   EXPECT_LT(residue[0], 1e-6);

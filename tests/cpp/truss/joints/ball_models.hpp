@@ -56,8 +56,8 @@ inline double normal(const Model& model, const State& state) {
   return output(model, state, 0, "ball_normal_force_N")[0];
 }
 
-/// A bar with the ball on the end of another, whose ends are both pulled by springs: a rib in
-/// space. Heating rotates sockets and bars about all axes.
+/// Three bars carry a socket. The ball in it is at the tip of a fourth bar, and two springs pull
+/// it. Heating rotates socket and bars about all axes.
 inline Model tripod() {
   Model model;
   model.programs = {triangle(100.0), quarters({0.0, 60.0, -40.0, 30.0, 0.0})};
@@ -79,7 +79,7 @@ inline Model tripod() {
   return model;
 }
 
-/// The planar rib of the revolute tests; with a ball, the rib is in a rotated plane.
+/// The planar rib of the revolute tests. With a ball joint, the rib lies in a rotated plane.
 inline Model rib(bool with_ball, const Matrix3d& turned) {
   Model model;
   model.programs = {triangle(150.0)};
@@ -118,8 +118,8 @@ inline Model rib(bool with_ball, const Matrix3d& turned) {
   return model;
 }
 
-/// A load presses a ball into a wide socket. Two stiff rods move it along x, then along y, by so
-/// little that the normal hardly rotates.
+/// A load presses a ball into a wide socket. Two stiff rods move the ball along x, then along y, by
+/// so little that the normal hardly rotates.
 inline Model pushed_around_a_corner() {
   Model model;
   model.programs = {quarters({0.0, 100.0, 100.0}), quarters({0.0, 0.0, 100.0})};
@@ -147,9 +147,8 @@ inline double relative_residue(const Path& path) {
          heat;
 }
 
-/// Expects the rotated truss to behave as the original one.
-///
-/// @param friction_share allowed relative difference of friction
+/// Expects that the rotated truss behaves like the original one.
+/// @param friction_share allowed relative difference of the friction force
 inline void expect_the_same_turned(const Model& model, double friction_share) {
   const Path path = solve(model);
   Model other = model;

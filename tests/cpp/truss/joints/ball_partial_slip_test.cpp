@@ -31,7 +31,7 @@ Model with_partial_slip(Model model) {
 TEST(BallPartialSlip, GradientsAreThoseOfItsForces) {
   BallJoint joint = ball_joint(3, 1, 2, 0);
   joint.partial_slip = 1;
-  // So soft that the slides of the steps, 1e-6 m to 1e-5 m, are within partial slip.
+  // This contact is so soft that slides of 1e-6 m to 1e-5 m per step remain within partial slip.
   joint.mindlin_stiffness = 3e7;
   const Pressed pressed(joint);
   for (const double loaded : {4.0, 7.0}) {
@@ -47,8 +47,8 @@ TEST(BallPartialSlip, GradientsAreThoseOfItsForces) {
 }
 
 TEST(BallPartialSlip, InAPlaneHoweverTurnedItIsTheRevolute) {
-  // The two joints integrate the slide of a step differently: the heat differs by 1.4e-9 with 50
-  // increments, in proportion to the fourth power of their length.
+  // Ball and revolute joints integrate the slide of a step differently. With 50 increments their
+  // heats differ by 1.4e-9, proportional to the fourth power of the increment.
   Options options;
   options.increments_per_branch = 100;
   const Path planar = solve(with_partial_slip(rib(false, Matrix3d::Identity())), options);
@@ -87,8 +87,8 @@ TEST(BallPartialSlip, IncrementsMatterToFirstOrderAndEnergyIsKeptToTheChords) {
     } else {
       off[increments == 50 ? 0 : 1] = (moved - fine).norm() / fine.norm();
     }
-    // Chords of 1e-4 of the limit, several of them within the slide that erases the memory. More
-    // steps have more chords.
+    // A chord has an error of 1e-4 of the limit; several lie within the slide that erases the
+    // memory. More steps have more chords.
     EXPECT_LT(std::abs(relative_residue(path)), 3e-4) << increments;
     double before = 0.0;
     for (const State& state : path.states) {
@@ -98,17 +98,17 @@ TEST(BallPartialSlip, IncrementsMatterToFirstOrderAndEnergyIsKeptToTheChords) {
                 joint.friction_coefficient * normal(model, state) * (1.0 + 1e-9));
     }
   }
-  // Annuli return radially to their bounds, independent of the path. If the direction changes, the
-  // error is of first order.
+  // Annuli return radially to their bounds, whatever the path. If the slide direction changes, this
+  // causes a first-order error.
   EXPECT_LT(off[0], 5e-6);
   EXPECT_LT(off[1], 0.3 * off[0]);
 }
 
-/// Ball and socket are at the tips of two stiff triangles. Struts rotate both about one corner,
-/// about the contact normal. First a rod of the ball's triangle is heated a little, which causes
-/// friction; then the struts rotate everything. The height of the socket's triangle equals the
-/// offset of the centres under load, because an inclined triangle would rotate its end differently.
-/// In the reference configuration both centres coincide.
+/// Ball and socket are at the tips of two stiff triangles. First a rod of the ball's triangle is
+/// heated a little, which causes friction. Then struts rotate both triangles about one corner,
+/// about the contact normal. The socket's triangle is higher by the offset of the centres under
+/// load, because an inclined triangle would rotate its tip differently. In the reference
+/// configuration both centres coincide.
 Model on_turntables() {
   Model model;
   model.programs = {quarters({0.0, 100.0, 100.0}), quarters({0.0, 0.0, 100.0})};
@@ -118,7 +118,7 @@ Model on_turntables() {
   model.joints = {joint};
   const double load = 100.0;
   const double above = joint.radial_clearance + std::pow(load / joint.hertz_stiffness, 2.0 / 3.0);
-  // Slide of 1.5e-7 m along x; gross slip begins at 9e-7 m.
+  // Heating causes a slide of 1.5e-7 m along x. Gross slip would begin at 9e-7 m.
   for (const auto& [height, rubs] : {std::pair{0.0, 5e-9}, std::pair{above, 0.0}}) {
     const int first = static_cast<int>(model.nodes.size());
     for (const Node& one : {node("pivot", {0.0, 0.0, height}, 0), node("P", {0.1, -0.1, height}, 2),
@@ -154,13 +154,13 @@ TEST(BallPartialSlip, FrictionTurnsWithPartsThatTurnAboutTheNormal) {
     double turned = 0.0;
     for (const State& state : path.states) {
       if (state.time < 0.25) continue;
-      // Rotation of the triangle, from the position of P on its circle.
+      // Rotation angle of the triangle, from the position of P on its circle about the pivot.
       const Vector3d corner = model.nodes[1].position + state.displacement.col(1);
       const double angle = std::atan2(corner.y(), corner.x()) + 0.25 * 3.14159265358979323846;
       const Matrix3d back = Eigen::AngleAxisd(-angle, Vector3d::UnitZ()).toRotationMatrix();
       const Vector3d now = back * friction(model, state);
       if (rubbed.isZero(0.0)) rubbed = now;
-      // The struts yield to the friction moment by a thousandth of the slide.
+      // The friction moment deforms the struts by a thousandth of the slide.
       EXPECT_LT((now - rubbed).norm(), 4e-3 * rubbed.norm()) << angle << " rad";
       turned = std::max(turned, angle);
       EXPECT_EQ(state.joint_status[0], JointStatus::stick);
@@ -171,7 +171,7 @@ TEST(BallPartialSlip, FrictionTurnsWithPartsThatTurnAboutTheNormal) {
 }
 
 TEST(BallPartialSlip, DirectionsOfFrictionTurnByTheMeanSpinOfBothParts) {
-  // Ball and socket rotate about the normal by different angles.
+  // Ball and socket rotate about the contact normal by different angles.
   const Vector3d n = Vector3d(1.0, -2.0, 0.5).normalized();
   const Vector3d across = n.unitOrthogonal();
   detail::BallMemory start{};

@@ -21,13 +21,13 @@ using Eigen::VectorXd;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// The joint of a sample, in contact, at rest since the start of a step.
+/// The joint of a sample truss, in contact and at rest since the start of a step.
 template <class Type>
 class JointContract : public ::testing::Test {
  protected:
   JointContract() : sample(testing::sample(std::type_identity<Type>())), system(sample.model) {
     sample.model.validate();
-    // Different displacements of about 1e-6 m, plus those that close the contact.
+    // Displacements of about 1e-6 m, all different, plus those that close the contact.
     z = VectorXd::LinSpaced(system.unknowns(), 1e-6, 4e-6);
     z.segment<3>(system.dofs().at(3).row) += sample.touching;
     z.tail(system.force_count(0)).setConstant(3.0);
@@ -36,7 +36,7 @@ class JointContract : public ::testing::Test {
 
   const Type& joint() const { return std::get<Type>(sample.model.joints[0]); }
   Trial trial() const { return system.trial(0, z, 0.1, start, JointModel::friction, 1.0); }
-  /// Positions of the Jacobian entries that the joint writes with a status.
+  /// Row and column indices of the Jacobian entries that the joint writes in a status.
   std::vector<std::pair<int, int>> entries(JointStatus status) const {
     Assembly to = Assembly::listing(system.unknowns());
     system.evaluate_joint(0, z, 0.3, start, status, JointModel::friction, 1.0, to);
@@ -115,7 +115,7 @@ TYPED_TEST(JointContract, RestMakesNoHeat) {
   EXPECT_NEAR(slip, 0.0, 1e-16);
   const Trial at = this->trial();
   const double heat = this->joint().dissipation(at, after.history.data(), 0.0);
-  // That rounding times forces of 100 N.
+  // Rounding of lengths of 0.1 m, times forces of 100 N.
   EXPECT_NEAR(heat, 0.0, 1e-14);
   EXPECT_TRUE(std::isfinite(this->joint().elastic_energy(at, after.history.data())));
 }

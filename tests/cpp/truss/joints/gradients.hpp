@@ -11,12 +11,12 @@
 
 namespace statejump::truss {
 
-/// Compares the Jacobian of a truss with central differences of its residual, at z after a step
-/// from `before`, for each of the given statuses and for pinned joints. Also compares the
-/// residual's derivative by time at fixed unknowns.
-/// @param displacement_step, force_step steps of the unknowns [m], [N], so small that the residual
-///        is nearly linear over them
-/// @param between intermediate state at which a first step ends; empty: none
+/// Compares the Jacobian of a truss with central differences of its residual at z, after a step
+/// from `before`, for each given status of the joints and with pinned joints. Also compares the
+/// time derivative of the residual at fixed unknowns.
+/// @param displacement_step, force_step steps of the unknowns [m], [N]; small, so that the residual
+///     is nearly linear
+/// @param between state after a preceding step; empty if there is none
 inline void check_gradients(const Model& model, const Eigen::VectorXd& z,
                             const Eigen::VectorXd& before, const std::vector<JointStatus>& branches,
                             double displacement_step, double force_step,
@@ -28,7 +28,7 @@ inline void check_gradients(const Model& model, const Eigen::VectorXd& z,
     const detail::Statuses statuses(model.joints.size(), status);
     detail::StepStart start = system.begin(before, 0.0, statuses, 1.0);
     if (between.size() > 0) start = system.commit(between, 0.15, statuses, start);
-    // Accumulated slip error of earlier steps, and its expected change in this step.
+    // Slip error accumulated in earlier steps, and its expected change in this step.
     const auto count = static_cast<Eigen::Index>(model.joints.size());
     start.owed = Eigen::Matrix3Xd::Constant(3, count, 1e-9);
     start.lost = Eigen::Matrix3Xd::Constant(3, count, 2e-9);
@@ -50,8 +50,8 @@ inline void check_gradients(const Model& model, const Eigen::VectorXd& z,
         moved[j] -= 2 * step;
         const Eigen::VectorXd difference = (plus - residual(moved)) / (2 * step);
         for (int i = 0; i < system.unknowns(); ++i) {
-          // Rounding over the step: force of the stiffest element at a displacement of 1e-4 m,
-          // lengths of 0.1 m, or forces of 100 N.
+          // Rounding error over the step: of the stiffest element's force at a displacement of 1e-4
+          // m, of lengths of 0.1 m, or of forces of 100 N.
           const RowUnit unit = at.units[static_cast<std::size_t>(i)];
           const double rounded =
               (unit == RowUnit::balance   ? 2e-16 * (system.stiffness_scale() * 1e-4 + 100.0)
@@ -75,7 +75,8 @@ inline void check_gradients(const Model& model, const Eigen::VectorXd& z,
     };
     const Eigen::VectorXd difference = (residual(0.3 + step) - residual(0.3 - step)) / (2 * step);
     for (int i = 0; i < system.unknowns(); ++i) {
-      // Relative truncation error (ω step)²/6 of the program; rounding of 100 N over the step.
+      // Truncation: the program's relative error (ω step)²/6. Rounding: that of 100 N, divided by
+      // the step.
       const double rounded = i < system.displacements() ? 2e-14 / step : 2e-17 / step;
       EXPECT_NEAR(heating[i], difference[i], 1e-7 * std::abs(heating[i]) + 4 * rounded)
           << to_string(status) << " row " << i;

@@ -7,8 +7,8 @@
 
 namespace statejump::truss::testing {
 
-/// Bar of Table 1, fixed at one end. Heating pushes it against a joint on node 1: 1.26e6 N/m,
-/// 11.7 um/K.
+/// Bar of Table 1, fixed at one end. Heating pushes its other end against a joint on node 1, with
+/// 1.26e6 N/m and 11.7 um/K.
 inline Model heated_bar(Joint joint, double largest, int cycles) {
   Model model;
   model.programs = {triangle(largest)};

@@ -67,7 +67,7 @@ TEST(IwanJoint, GradientsAreThoseOfItsForces) {
   const detail::System system(model);
   Eigen::VectorXd z = Eigen::VectorXd::LinSpaced(system.unknowns(), 1e-6, 9e-6);
   z[6] = 12.0;
-  // Some elements slip on the way from `before` to z, others do not.
+  // From `before` to z, some Jenkins elements slip and others stick.
   Eigen::VectorXd before = 0.5 * z;
   check_gradients(model, z, before,
                   {JointStatus::stick, JointStatus::slip_plus, JointStatus::slip_minus}, 1e-9,
@@ -92,10 +92,10 @@ TEST(IwanJoint, ElementsHaveStiffnessSlipForceAndBackboneOfTheClosedForm) {
         EXPECT_GE(more, -rounding(one));
         largest = std::max(largest, more);
       }
-      // The samples are so dense that they miss the largest error by at most 1 %.
+      // The samples are dense enough to miss the largest error by at most 1 %.
       EXPECT_LE(largest, one.slack() + rounding(one));
       EXPECT_GE(largest, 0.99 * one.slack());
-      // Tangent polygons have a second-order error in the length of the intervals.
+      // A polygon of tangents has a second-order error in the length of its intervals.
       if (spacing == 1.0 && before > 0.0) {
         EXPECT_LT(one.slack(), before / 2.6);
       }
@@ -105,7 +105,7 @@ TEST(IwanJoint, ElementsHaveStiffnessSlipForceAndBackboneOfTheClosedForm) {
 }
 
 TEST(IwanJoint, PathFollowsMasingsRule) {
-  // Two cycles: heating pushes the joint into macroslip, cooling pulls it back.
+  // Two cycles: heating drives the joint into macroslip, cooling drives it back.
   const IwanJoint one = joint();
   const Model model = heated_bar(one, 100.0, 2);
   const Path path = solve(model);
@@ -155,7 +155,8 @@ TEST(IwanJoint, IncrementsDoNotMatterAndEnergyIsKept) {
     EXPECT_NEAR(end.joint_dissipation[0], ends.front().joint_dissipation[0],
                 1e-9 * ends.front().joint_dissipation[0]);
   }
-  // The thermal work is a quadrature across the corners of the polygon, of second order.
+  // The quadrature of the thermal work crosses corners of the polygon, so its error is of second
+  // order.
   EXPECT_LT(std::abs(residues[1]), 1e-4);
   EXPECT_LT(std::abs(residues[3]), 0.5 * std::abs(residues[1]));
 }
@@ -180,14 +181,15 @@ TEST(IwanJoint, HeatOfSmallCyclesGoesWithTheForceToThreePlusChi) {
     }
     forces.push_back(0.5 * (force(model, *top) - force(model, end)));
     heats.push_back(end.joint_dissipation[0] - start.joint_dissipation[0]);
-    // ∫ 4 φ (u − φ) R φ^χ up to u. Intervals are a twentieth of their reach: second order.
+    // Heat: ∫ 4 φ (u − φ) R φ^χ dφ from 0 to u. The interval length φ/20 causes a second-order
+    // error.
     const double amplitude = 0.5 * (slide(model, *top) - slide(model, end));
     share = std::pow(amplitude / last, chi + 1.0);
     const double closed = 4.0 * one.tangent_stiffness / (1.0 + one.stiffness_ratio) * share *
                           (chi + 1.0) / ((chi + 2.0) * (chi + 3.0)) * amplitude * amplitude;
     EXPECT_NEAR(heats.back(), closed, 0.05 * 0.05 * closed);
   }
-  // Force K_T u (1 − c (u/φm)^(χ + 1)): its exponent in u differs from 1 by the following term.
+  // For the force K_T u (1 − c (u/φm)^(χ + 1)), the exponent of u differs from 1 by `bent`.
   const double bent = (chi + 1.0) * share / ((1.0 + one.stiffness_ratio) * (chi + 2.0));
   for (std::size_t i = 0; i + 1 < forces.size(); ++i) {
     const double slope = std::log(heats[i + 1] / heats[i]) / std::log(forces[i + 1] / forces[i]);

@@ -22,7 +22,7 @@ TEST(LatchHinge, GradientsAreThoseOfItsForces) {
   hinge.friction_moment = 0.2;
   hinge.preload_moment = -0.1;
   for (const int second : {-1, 1}) {
-    // Within the play and beyond it; the displacements rotate the links by about 1e-3.
+    // Deadbands wider and narrower than the rotation of the links, which is about 1e-3.
     for (const double deadband : {0.0, 1e-6, 0.1}) {
       hinge.second_link = second;
       hinge.friction_stiffness = deadband == 0.0 ? 0.7 : std::numeric_limits<double>::infinity();

@@ -18,7 +18,8 @@ using testing::heated_bar;
 constexpr double friction = 100.0, stiffness = 2e7;
 /// Slide at which gross slip begins [m].
 constexpr double gross = 1.5 * friction / stiffness;
-/// Closures are solved to 1e-13 of the largest displacement, forces to 1e-12 of the largest force.
+/// The solver solves closures to 1e-13 of the largest displacement and forces to 1e-12 of the
+/// largest force.
 constexpr double rounding = 1e-11 * friction;
 
 Slider rubbing() {
@@ -43,7 +44,8 @@ double first_loading(double slide) {
   return friction * (1.0 - std::pow(1.0 - std::min(slide / gross, 1.0), 1.5));
 }
 
-/// Heat [J] of a cycle between forces +-T (Mindlin and Deresiewicz 1953), t = T/f, 8 G* a = k_t.
+/// Heat [J] of a cycle between the forces -T and T (Mindlin and Deresiewicz 1953), with t = T/f and
+/// 8 G* a = k_t.
 double heat_of_cycle(double t) {
   return 7.2 * friction * friction / stiffness *
          (1.0 - std::pow(1.0 - t, 5.0 / 3.0) -
@@ -87,7 +89,7 @@ TEST(TrussPartialSlip, LoadingUnloadingReloadingAreTheClosedForms) {
       const bool slides_all = largest > 7.4;
       const auto slipped = [](const State& state) { return is_slip(state.joint_status[0]); };
       EXPECT_EQ(std::any_of(path.states.begin(), path.states.end(), slipped), slides_all);
-      // Partial slip has no events; gross slip begins once in every branch.
+      // Partial slip causes no events. Gross slip begins once per branch.
       EXPECT_EQ(path.events.empty(), !slides_all);
     }
   }
@@ -108,9 +110,9 @@ TEST(TrussPartialSlip, HeatOfACycleIsThatOfMindlinAndDeresiewicz) {
     const double t = 0.5 * (high - low) / friction;
     const double heat =
         path.cycle_ends[3].joint_dissipation[0] - path.cycle_ends[2].joint_dissipation[0];
-    // The formula is a difference of terms of order 1, equal to t³/36.
+    // Rounding: the closed form is a difference of terms of order 1 that equals t³/36.
     EXPECT_NEAR(heat, heat_of_cycle(t), (1e-10 + 1e-14 / (t * t * t)) * heat) << largest;
-    // Limit for small t: 2 T³/(9 k_t f); the error is of the next power of t.
+    // Heat of a cycle for small t: 2 T³/(9 k_t f). The error is of the next power of t.
     EXPECT_NEAR(heat, 2.0 / 9.0 * std::pow(t, 3) * friction * friction / stiffness, t * heat);
     if (before > 0.0 && t < 0.1) {
       EXPECT_NEAR(before / heat, 8.0, 8.0 * t);
@@ -126,13 +128,15 @@ TEST(TrussPartialSlip, EnergyIsKeptToSecondOrderInTheIncrement) {
     options.increments_per_branch = increments;
     const State end = solve(model, options).states.back();
     const double left = std::abs(residue(end)) / end.joint_dissipation.sum();
-    // At the onset of gross slip the rates change within a step: 0.4/n² to 0.8/n².
+    // Energy residue: rates jump within an increment when gross slip begins. This leaves 0.4/n² to
+    // 0.8/n² for n increments.
     EXPECT_LT(left, 1.0 / increments / increments) << increments;
   }
 }
 
 TEST(TrussPartialSlip, ManyTimesTheFrictionIsTheSpring) {
-  // s = T/k (1 + t/6 + ...), t = T/f: the excess over the spring's slide halves if f doubles.
+  // Slide under a force T: s = T/k (1 + t/6 + ...), t = T/f. If f doubles, its excess over T/k
+  // halves.
   Slider spring = rubbing();
   spring.partial_slip = 0;
   double before = 0.0;
@@ -151,7 +155,8 @@ TEST(TrussPartialSlip, ManyTimesTheFrictionIsTheSpring) {
     const double bent = top(bends);
     const double more = top(slips) / bent - 1.0;
     const double t = stiffness * bent / slider.friction_force;
-    // The bar deforms as well, by its fraction of the compliance: 1.26e6 of 2.126e7 N/m.
+    // The bar (1.26e6 N/m) takes part of the additional compliance, so only the fraction
+    // 2e7/2.126e7 of the excess remains.
     EXPECT_NEAR(more, t / 6.0 * 2e7 / 2.126e7, t * t) << times;
     if (before > 0.0) {
       EXPECT_NEAR(before / more, 2.0, 2.0 * t);
@@ -168,9 +173,10 @@ TEST(TrussPartialSlip, StiffContactsAndSlidesToTheEndAreCoulombs) {
     const Model model = heated_bar(slider, largest, 1);
     return slide(model, solve(model).states.back());
   };
-  // With gross slip at the end of the cycle, the earlier stick phase does not matter.
+  // The cycle ends in gross slip, so the earlier stick phase has no effect.
   EXPECT_NEAR(jump(rubbing(), 40.0), jump(coulomb, 40.0), 1e-10 * jump(coulomb, 40.0));
-  // Here the joint sticks on the way back: the difference is its creep, proportional to 1/k_t.
+  // In this cycle the joint still sticks at the end. The error is its elastic deflection,
+  // proportional to 1/k_t.
   double before = 0.0;
   for (const double k : {2e8, 2e9, 2e10}) {
     Slider slider = rubbing();
@@ -200,7 +206,8 @@ TEST(TrussPartialSlip, AStopTakesWhatIsBeyondFriction) {
       continue;
     }
     stopped = true;
-    // It arrives in gross slip, rests there and leaves with the same friction.
+    // The block arrives at the stop in gross slip, rests there and leaves with the same friction
+    // force.
     EXPECT_GE(force(model, state), friction - rounding);
   }
   EXPECT_TRUE(stopped);

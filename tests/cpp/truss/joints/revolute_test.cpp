@@ -9,7 +9,7 @@ namespace {
 
 using testing::node;
 
-/// Two bars with a clearance joint with elastic contact and expanding radii.
+/// Two bars, connected by a clearance joint with elastic contact and expanding radii.
 Model rib() {
   Model model;
   thermal::Program program;
@@ -18,7 +18,7 @@ Model rib() {
   model.programs = {program};
   model.nodes = {node("A", 0, 0, 2), node("C", 0.12, 0, 2), node("B", 0.02875, 0.0409, 2),
                  node("J", 0.02875, 0.0409, 2)};
-  // Soft links, so that their rounding errors do not hide the terms of the joint.
+  // Soft links have small rounding errors, which do not hide the terms of the joint.
   model.links = {{"AB", 0, 2, 1e2, 0.05, 2e-5, 0, 1.0}, {"CJ", 1, 3, 1e2, 0.1, 1e-5, 0, 0.5}};
   ClearanceRevolute joint = testing::rib_joint();
   joint.journal_thermal_expansion = 2e-5;

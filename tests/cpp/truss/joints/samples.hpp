@@ -9,7 +9,7 @@
 
 namespace statejump::truss::testing {
 
-/// A truss with one joint, close to contact in its reference configuration.
+/// Truss with one joint that is close to contact in the reference configuration.
 struct JointSample {
   Model model;
   std::vector<JointStatus> statuses;  ///< Statuses of the type in which the contact is closed.

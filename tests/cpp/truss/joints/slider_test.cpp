@@ -27,7 +27,8 @@ TEST(Slider, GradientsAreThoseOfItsForces) {
   slider.clearance_minus = 1e-4;
   slider.clearance_plus = 2e-4;
   const double rigid = std::numeric_limits<double>::infinity();
-  // With partial slip, z is 1.5 times or a fraction of the gross slip 30 N/(1e7 N/m) from `before`.
+  // For partial slip: z is a slide of 1.5 times the gross slip 30 N/(1e7 N/m), or a fraction of it,
+  // away from `before`.
   const auto check = [&](const std::vector<JointStatus>& statuses) {
     model.joints = {slider};
     const detail::System system(model);
@@ -44,7 +45,8 @@ TEST(Slider, GradientsAreThoseOfItsForces) {
     check({JointStatus::stick, JointStatus::slip_plus, JointStatus::slip_minus,
            JointStatus::stop_plus, JointStatus::stop_minus});
   }
-  // z presses on the soft stop on the plus side; the deflection is within the play or beyond it.
+  // At z the soft stop on the plus side is in contact. Its deflection is within the play or beyond
+  // it.
   slider.partial_slip = 0;
   slider.tangential_stiffness = 1e7;
   slider.clearance_minus = slider.clearance_plus = 1e-6;

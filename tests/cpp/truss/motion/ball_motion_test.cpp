@@ -23,7 +23,7 @@ constexpr double gravity = 9.81;
 constexpr double clearance = 1e-3;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// A ball of 1 kg that falls in the direction `down` within its socket, both rigid.
+/// A rigid ball of 1 kg that falls in direction `down` within its rigid socket.
 Model falling_ball(const Vector3d& down, double friction, double seconds) {
   Model model;
   model.programs = {lasting(seconds)};
@@ -60,14 +60,14 @@ TEST(MotionBall, BouncesAtItsAnalyticTimes) {
   int impact = 0;
   for (const Event& event : motion.events) {
     if (event.before != JointStatus::open || impact == 6) continue;
-    // A contact is located to one step; every bounce inherits the earlier errors.
+    // A contact is located to one step, and every bounce inherits the errors of earlier ones.
     EXPECT_NEAR(event.time, time, 3.0 * motion.time_step * (1 + impact)) << "impact " << impact;
     speed *= e;
     time += 2.0 * speed / gravity;
     ++impact;
   }
   EXPECT_EQ(impact, 6);
-  // The ball stays on its line, and the impacts dissipate the energy of the fall.
+  // The ball stays on its line, and impacts dissipate the energy of the fall.
   const Vector3d place = motion.states.back().displacement.col(1);
   EXPECT_LT((place - down * down.dot(place)).norm(), 1e-9 * clearance);
   EXPECT_NEAR(motion.moving.back().impact_dissipation, energy, 1e-3 * energy);
@@ -76,8 +76,8 @@ TEST(MotionBall, BouncesAtItsAnalyticTimes) {
 
 using Numbers = std::array<double, 6>;
 
-/// Point on a sphere, pressed on it by its weight and centrifugal force, with friction against its
-/// velocity: position and velocity, integrated to 1e-12.
+/// Reference for a point on a sphere under its weight and centrifugal force, with friction against
+/// its velocity. Returns position and velocity, integrated to 1e-12.
 Numbers slid_on_a_sphere(const Vector3d& down, double friction, double seconds, Numbers y) {
   const auto rates = [&](const Numbers& at, Numbers& rate, double) {
     const Vector3d place(at[0], at[1], at[2]);
@@ -102,8 +102,9 @@ TEST(MotionBall, SlidesAroundItsSocketByItsOwnEquation) {
   const Vector3d down = Vector3d(1.0, -2.0, 0.7).normalized();
   const Vector3d aside = down.unitOrthogonal();
   const Vector3d along = down.cross(aside);
-  // Starts beside the deepest point, perpendicular to the slope, so that the directions of motion
-  // and friction change. The duration is a third of the time in which friction would stop it.
+  // The ball starts beside the deepest point of the socket, perpendicular to the slope, so that the
+  // directions of motion and friction change. Friction would stop the ball after three times the
+  // duration.
   const double seconds = 0.02;
   const Vector3d place = clearance * (std::cos(0.6) * down + std::sin(0.6) * aside);
   const Vector3d speed = 0.08 * along;
@@ -130,7 +131,8 @@ TEST(MotionBall, SlidesAroundItsSocketByItsOwnEquation) {
   const double coarse = error(2000);
   const double fine = error(4000);
   EXPECT_LT(fine, 1e-3);
-  // Friction direction and normal are constant within a step: first order or better.
+  // The scheme keeps friction direction and normal constant within a step, so it is at least of
+  // first order.
   EXPECT_GT(coarse / fine, 1.8);
 }
 
@@ -138,8 +140,8 @@ TEST(MotionBall, MovesAsTheJournalDoesInAPlane) {
   MotionOptions options;
   options.steps = 4000;
   options.sample_every = 400;
-  // The same law in two and in three dimensions. The ball may have friction components
-  // perpendicular to its direction; the linear start of the depth is common to both.
+  // Ball and journal have the same law, in three and two dimensions. The ball may have friction
+  // components across its direction. Both share the linear start of the depth.
   expect_ball_moves_as_journal(
       [&](const Model& model) { return simulate(model, rib_inertia(), options); }, 1e-6, 1e-4);
 }
@@ -170,7 +172,8 @@ TEST(MotionBall, SlowHeatingFollowsTheQuasiStaticPath) {
   const double fast = apart(0.2);
   const double slow = apart(1.0);
   EXPECT_LT(slow, 1e-5);
-  // Dashpots delay the ends in proportion to the rate: first order, with no other error.
+  // Dashpots delay the end state in proportion to the heating rate. This first-order error is the
+  // only one.
   EXPECT_NEAR(fast / slow, 5.0, 0.05);
 }
 

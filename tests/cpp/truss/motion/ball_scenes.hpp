@@ -33,9 +33,10 @@ inline double apart(const State& state, const State& exact) {
   return (state.displacement - exact.displacement).norm() / exact.displacement.norm();
 }
 
-/// Expects the rib with a ball, in a rotated plane, to move as the rib with a journal.
-/// @param run simulates a rib, with ten samples; @param moved, heat allowed differences, relative
-///        to the largest displacement and to the friction heat
+/// Expects that the rib with a ball, in a rotated plane, moves like the rib with a journal.
+/// @param run simulates a rib and returns ten samples
+/// @param moved, heat allowed differences, relative to the largest displacement and to the friction
+///     heat
 template <class Run>
 void expect_ball_moves_as_journal(Run&& run, double moved, double heat) {
   using Eigen::Matrix3d;

@@ -48,11 +48,11 @@ TEST(MotionDashpots, JournalReboundsAsItsEquationsSay) {
   };
   const Motion coarse = run(20000);
   const Motion fine = run(40000);
-  // First order: implicit Euler in the contact.
+  // The error is of first order, because the contact uses implicit Euler.
   EXPECT_NEAR(error(coarse) / error(fine), 2.0, 0.2);
   EXPECT_LT(error(fine), 2e-2 * 0.5e-3);
-  // The dashpot dissipates the energy loss of the fall, except for the numerical dissipation of the
-  // scheme in the contact, which is proportional to the step.
+  // The dashpot dissipates the energy that the fall loses, except for numerical dissipation in the
+  // contact, which is proportional to the step.
   const double lost = mass * 9.81 * (exact[0] - 0.5e-3) - 0.5 * mass * exact[1] * exact[1];
   EXPECT_NEAR(fine.moving.back().damping_dissipation, lost, 0.05 * lost);
   EXPECT_NEAR(coarse.moving.back().impact_dissipation / fine.moving.back().impact_dissipation, 2.0,
@@ -61,9 +61,10 @@ TEST(MotionDashpots, JournalReboundsAsItsEquationsSay) {
 }
 
 TEST(MotionDashpots, RestitutionOfADashpotDoesNotDependOnSpeed) {
-  // For constant ζ relative to the tangent stiffness: e = exp(−π β/√(1 − β²)), β = ζ √(6/5) (Tsuji
-  // et al. 1992; Antypov and Elliott 2011), if the dashpot pulled until the end. The contact does
-  // not pull, so e is larger: by 2.4 % at this ζ according to its own equation.
+  // Restitution for constant ζ relative to the tangent stiffness, if the dashpot could pull until
+  // the end: e = exp(−π β/√(1 − β²)), β = ζ √(6/5) (Tsuji et al. 1992; Antypov and Elliott 2011).
+  // The contact cannot pull, so e is larger: at this ζ by 2.4 %, according to the integrated
+  // equation.
   const double beta = zeta * std::sqrt(1.2);
   const double known = std::exp(-std::numbers::pi * beta / std::sqrt(1.0 - beta * beta));
   double last = 0.0;

@@ -19,8 +19,8 @@ using namespace scenes;
 using Eigen::Vector2d;
 
 TEST(MotionMechanism, BodyOnAPinSwingsByItsOwnEquation) {
-  // A plate whose centre of mass is beside the line of its nodes: θ'' = −m g d cos(θ + φ)/(J + m
-  // d²).
+  // A plate whose centre of mass is beside the line of its nodes, so that θ'' = −m g d cos(θ +
+  // φ)/(J + m d²).
   const double mass = 2.0;
   const double moment = 0.05;
   const double length = 0.5;
@@ -40,9 +40,9 @@ TEST(MotionMechanism, BodyOnAPinSwingsByItsOwnEquation) {
   Model model;
   model.programs = {lasting(0.3)};
   model.nodes = {node("A", 0, 0, 0), node("B", length, 0, 2)};
-  // So stiff that its elongation, 1e-9 relative, is below the errors of the steps.
+  // The link is so stiff that its relative elongation, 1e-9, is below the time integration errors.
   model.links = {{"AB", 0, 1, 1e10, length, 0.0, 0, 1.0}};
-  // Weight on the node, by the motion of the centre of mass with it: Gᵀ m g.
+  // The weight at the centre of mass, which moves by G times the node, gives the nodal load Gᵀ m g.
   model.nodes[1].load = mass * 9.81 / length * Eigen::Vector3d(-centre.y(), -centre.x(), 0.0);
   Inertia inertia;
   inertia.link_mass = Eigen::VectorXd::Constant(1, mass);
@@ -65,7 +65,7 @@ TEST(MotionMechanism, BodyOnAPinSwingsByItsOwnEquation) {
 }
 
 TEST(MotionMechanism, DrivenLinkFollowsItsProgramAndTakesItsMoment) {
-  // A rod on a pin is accelerated: (m L²/3) α'' plus the moment of the weight.
+  // A drive accelerates a rod on a pin. It needs the moment (m L²/3) α'' plus that of the weight.
   const double mass = 3.0;
   const double length = 0.4;
   Model model;
@@ -100,7 +100,8 @@ TEST(MotionMechanism, DrivenLinkFollowsItsProgramAndTakesItsMoment) {
         mass * length * length / 3.0 * rate + 9.81 * mass * 0.5 * length * std::cos(turned);
     EXPECT_NEAR(motion.moving[k].drive_moment[0], moment, 1e-3 * 80.0) << time;
   }
-  // The work of the drive equals the rod's energy, except for energy and loss of its elongation.
+  // The work of the drive equals the energy of the rod, except for energy and loss due to its
+  // elongation.
   const double raised = 9.81 * mass * 0.5 * length * std::sin(drive.turned_at(0.1));
   const double has = 0.5 * mass * length * length / 3.0 * 1600.0 + raised;
   EXPECT_NEAR(motion.moving.back().drive_work, has, 1e-4 * has);

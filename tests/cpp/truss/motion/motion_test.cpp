@@ -36,10 +36,11 @@ Model double_pendulum() {
   return model;
 }
 
-/// Reference from its own equations, accurate to 1e-12: final positions of B and C.
+/// Reference: final positions of B and C from the equations of motion, accurate to 1e-12.
 Eigen::Vector4d double_pendulum_by_ode() {
   using Numbers = std::vector<double>;
-  // Rods with linear velocity profile: m/3 of both rods at B, of one at C, m/6 coupling.
+  // Mass matrix of rods with linear velocity profile: at B m/3 of both rods, at C m/3 of one,
+  // coupling m/6.
   Matrix2d mass;
   mass << 2.0 * rod_mass / 3.0, rod_mass / 6.0, rod_mass / 6.0, rod_mass / 3.0;
   const Matrix2d inverse = mass.inverse();
@@ -89,7 +90,8 @@ TEST(Motion, DoublePendulumConvergesAtSecondOrderToItsOwnEquations) {
 }
 
 TEST(Motion, FreeChainKeepsItsMomenta) {
-  // No external forces: momentum is conserved, angular momentum and energy to second order.
+  // Without external forces momentum is conserved exactly, angular momentum and energy to second
+  // order.
   Model model = double_pendulum();
   model.nodes[0].freedoms = 2;
   for (Node& one : model.nodes) one.load.setZero();
@@ -124,7 +126,7 @@ TEST(Motion, FreeChainKeepsItsMomenta) {
   const Motion coarse = run(4000);
   const Motion fine = run(8000);
   for (const Motion* one : {&coarse, &fine}) {
-    // Residual of 1e-10 of a step's forces in 8000 steps, with random sign.
+    // The residual of each step is 1e-10 of its forces, with random sign over 8000 steps.
     EXPECT_LT(lost(*one).head<2>().norm(), 1e-8);
   }
   EXPECT_NEAR(lost(coarse)[2] / lost(fine)[2], 4.0, 0.5);
@@ -148,20 +150,20 @@ TEST(Motion, JournalBouncesAtItsAnalyticTimes) {
   int impact = 0;
   for (const Event& event : motion.events) {
     if (event.before != JointStatus::open || impact == 6) continue;
-    // A contact is located to one step; every bounce inherits the earlier errors.
+    // A contact is located to one step, and every bounce inherits the errors of earlier ones.
     EXPECT_NEAR(event.time, time, 3.0 * h * (1 + impact)) << "impact " << impact;
     speed *= e;
     time += 2.0 * speed / 9.81;
     ++impact;
   }
   EXPECT_EQ(impact, 6);
-  // Finally it rests, and the impacts have dissipated the energy of the fall.
+  // At the end the journal rests, and impacts have dissipated the energy of the fall.
   EXPECT_NEAR(motion.moving.back().impact_dissipation, energy, 1e-3 * energy);
   EXPECT_LT(motion.moving.back().velocity.norm(), 9.81 * h * 2.0);
   EXPECT_LT(std::abs(residue(motion)), 1e-12 * energy * 1e3);
 }
 
-/// Bar of Table 1 on a block that slides on the ground, up to a stop.
+/// Bar of Table 1 on a block that slides on the ground up to a stop.
 Model bar(double seconds) {
   Model model = testing::sliding_bar(seconds);
   std::get<Slider>(model.joints[0]).clearance_plus = 1e-3;
@@ -189,7 +191,7 @@ TEST(Motion, SlidingBlockStopsWhereFrictionHasTakenItsEnergy) {
 
 TEST(Motion, ContactProblemsAreSolvedOnlyWhereBranchesAreNotFound) {
   // A block that slides and then sticks, and a journal that bounces off an elastic contact with
-  // friction: the active-set iteration finds the statuses in every step.
+  // friction. In every step the active-set iteration must find the statuses.
   Model block = bar(0.02);
   block.programs = {lasting(0.02)};
   block.links.clear();
@@ -211,7 +213,8 @@ TEST(Motion, ContactProblemsAreSolvedOnlyWhereBranchesAreNotFound) {
       EXPECT_LT(motion.factorizations, motion.steps / 4);
     }
   }
-  // The iteration fails when a bar with elastic friction reaches its stop; the merit is reported.
+  // The active-set iteration fails when a bar with elastic friction reaches its stop; the merit is
+  // reported.
   Model heated = bar(0.1);
   std::get<Slider>(heated.joints[0]).tangential_stiffness = 1e6;
   options = {};
@@ -223,8 +226,8 @@ TEST(Motion, ContactProblemsAreSolvedOnlyWhereBranchesAreNotFound) {
 }
 
 TEST(Motion, BarsBesideEachOtherMoveAsEachAlone) {
-  // Two bars that are coupled only by the common contact problem; the second has different
-  // friction, play and springs.
+  // Two bars, coupled only by the common contact problem. The second one has different friction,
+  // play and springs.
   const auto heated = [](int which) {
     Model model = bar(0.1);
     Slider& slider = std::get<Slider>(model.joints[0]);
@@ -258,7 +261,8 @@ TEST(Motion, BarsBesideEachOtherMoveAsEachAlone) {
     const Motion alone = moved(heated(which), {masses.segment<1>(which), {}, {}, {}, {}});
     ASSERT_EQ(alone.states.size(), together.states.size());
     for (std::size_t i = 0; i < alone.states.size(); ++i) {
-      // Contact problems are solved to 1e-10 of their size: a millionth of the millimetres here.
+      // Contact problems are solved to a relative 1e-10; displacements of millimetres agree to a
+      // millionth.
       EXPECT_NEAR(together.states[i].displacement(0, 1 + 2 * which),
                   alone.states[i].displacement(0, 1), 1e-9)
           << which << " " << i;
@@ -281,8 +285,8 @@ TEST(Motion, ProgressEndsAMotion) {
 }
 
 TEST(Motion, SlowHeatingFollowsTheQuasiStaticPath) {
-  // Start, slips and corners of the program excite oscillations of amplitude v sqrt(m/k),
-  // proportional to the heating rate: first order.
+  // Start, slip and reversals of the program excite oscillations of amplitude v sqrt(m/k),
+  // so the error is of first order in the heating rate.
   const auto error = [](double seconds) {
     const Model model = bar(seconds);
     const double k = 70e9 * 9e-6 / 0.5;
@@ -306,8 +310,8 @@ TEST(Motion, SlowHeatingFollowsTheQuasiStaticPath) {
 }
 
 TEST(Motion, RibMeetsTheLinkageThroughImpacts) {
-  // Rib of the umbrella antenna without friction. Reference: the linkage's RK4 with 20 times the
-  // steps. Implicit Euler in the contact is of first order.
+  // Rib of the umbrella antenna without friction. The reference is the linkage's RK4 with 20 times
+  // the steps. In the contact, implicit Euler is of first order.
   linkage::Linkage antenna;
   antenna.frame_length = 0.12;
   antenna.link_ab = {0.050, 0.5, 70e9, 9e-6, 23.75e-6, 0.3};
@@ -352,8 +356,8 @@ TEST(Motion, RibMeetsTheLinkageThroughImpacts) {
   EXPECT_NEAR(coarse / fine, 2.0, 0.4);
 }
 
-/// Painlevé's rod: uniform, 1 m, 1 kg, inclined by 60°, with its tip moving along a rough floor.
-/// The floor is the bottom of a bearing with a play of 100 m.
+/// Painlevé's rod: uniform, 1 m, 1 kg, inclined by 60°. Its tip moves along a rough floor, the
+/// bottom of a bearing with a play of 100 m.
 Model rod_on_floor(double friction) {
   Model model;
   model.programs = {lasting(1e-3)};
@@ -374,9 +378,9 @@ Model rod_on_floor(double friction) {
 }
 
 TEST(Motion, SlidesThatCannotGoOnAreNamed) {
-  // Per unit of normal force the tip accelerates by 1 + 3 cos a (cos a -+ mu sin a), in 1/kg. At 60
-  // degrees this is negative for mu > 1.347 if the tip moves towards the rod's foot. The rod is so
-  // stiff that it is rigid in steps of 10 us.
+  // Per newton of normal force the tip accelerates by 1 + 3 cos a (cos a -+ mu sin a) [1/kg]. At 60
+  // degrees this is negative for mu > 1.347 if the tip moves towards the foot of the rod. The rod
+  // is so stiff that it is rigid in steps of 10 us.
   const double speed = 1.0;
   const auto first_step = [&](double friction, double towards, long steps) {
     const Model model = rod_on_floor(friction);
@@ -396,7 +400,8 @@ TEST(Motion, SlidesThatCannotGoOnAreNamed) {
     EXPECT_EQ(jams.jammed->joints, std::vector<int>{0});
     EXPECT_NEAR(jams.jammed->time, h, 1e-3 * h);  // immediately
     EXPECT_NEAR(lost(jams, -1.0), speed, 1e-3 * speed);
-    // Below that mu, and in the other direction, it slides on: forces are large but finite.
+    // With smaller mu, or in the other direction, the rod continues to slide. Forces are large but
+    // finite.
     const Motion slides = first_step(1.3, -1.0, steps);
     EXPECT_FALSE(slides.jammed) << steps;
     EXPECT_LT(lost(slides, -1.0), 1e3 * h);
@@ -405,7 +410,8 @@ TEST(Motion, SlidesThatCannotGoOnAreNamed) {
 }
 
 TEST(Motion, StepsWhoseReactionsAreOpenAreNamed) {
-  // Two sliders in series on one rigid node: nothing determines which of them carries the load.
+  // Two sliders between the ground and one rigid node: nothing determines which one carries the
+  // load.
   Model model = bar(0.01);
   model.programs = {lasting(0.01)};
   Slider twin = std::get<Slider>(model.joints[0]);
@@ -420,7 +426,7 @@ TEST(Motion, StepsWhoseReactionsAreOpenAreNamed) {
   };
   EXPECT_FALSE(run().undetermined);
   model.joints.push_back(twin);
-  // No step is short enough to find their statuses: step halving must end.
+  // No step is short enough to determine the statuses of both sliders, so step halving must end.
   for (const double tolerance : {0.0, 1e-9}) {
     const Motion motion = run(tolerance);
     ASSERT_TRUE(motion.undetermined);
@@ -432,8 +438,8 @@ TEST(Motion, StepsWhoseReactionsAreOpenAreNamed) {
 }
 
 TEST(Motion, ReactionsOfWhatComesToRestTogetherAreNamed) {
-  // The same two sliders slide and stop in one step. If one of them sticks, the other one has no
-  // slide, which satisfies each of its statuses.
+  // The two sliders move and stop within one step. If one sticks, the slide of the other is zero,
+  // which satisfies each of its statuses.
   Model model = bar(0.01);
   model.programs = {lasting(0.01)};
   Slider twin = std::get<Slider>(model.joints[0]);

@@ -28,7 +28,8 @@ MotionOptions from_rest(const Model& model, long steps) {
 }
 
 TEST(MotionRegularised, BlockThatSticksSwingsAtFourthOrder) {
-  // Four oscillations on its spring, from an initial velocity; friction stays below its bound.
+  // Free oscillation of the block on its contact spring, from an initial velocity. Friction stays
+  // below its bound.
   const double omega = std::sqrt(1e6 / mass);
   const double seconds = 8.3 / omega;
   const Model model = block(1e3, seconds);
@@ -45,14 +46,14 @@ TEST(MotionRegularised, BlockThatSticksSwingsAtFourthOrder) {
   };
   const double coarse = error(100);
   const double fine = error(200);
-  // The phase error of a step of h ω = 0.042 is (h ω)^5/120, in 200 steps.
+  // The phase error of one step with h ω = 0.042 is (h ω)^5/120; there are 200 steps.
   EXPECT_NEAR(fine, 200.0 * std::pow(8.3 / 200.0, 5) / 120.0, 0.1 * fine);
   EXPECT_NEAR(coarse / fine, 16.0, 0.2);
 }
 
 TEST(MotionRegularised, CornersOfTheProgramKeepFourthOrder) {
-  // A bar with a dashpot on a sticking block, heated and cooled. At the corner the dashpot's rate
-  // jumps, which must happen between the end of one step and the start of the next.
+  // A bar with a dashpot on a sticking block, heated and cooled. The dashpot's rate jumps at the
+  // reversal, which must coincide with a boundary between steps.
   Model model = testing::sliding_bar(0.02);
   model.programs = {lasting(0.02, 100.0)};
   auto& slider = std::get<Slider>(model.joints[0]);
@@ -80,7 +81,8 @@ TEST(MotionRegularised, BlockThatSlidesGivesItsEnergyToFriction) {
       simulate_regularised(model, masses(Eigen::VectorXd::Constant(1, mass)), spring, options);
   const State& end = motion.states.back();
   const double energy = 0.5 * mass * 0.01;
-  // It slides until its energy is heat, except for the final oscillation on the spring: 30²/2e6 J.
+  // The block slides until its energy is converted to heat, except for 30²/2e6 J of final
+  // oscillation on the spring.
   EXPECT_NEAR(end.joint_dissipation[0], energy, 1.001 * 30.0 * 30.0 / 2e6);
   EXPECT_NEAR(residue(motion), 0.0, 1e-4 * energy);
   EXPECT_NEAR(end.displacement(0, 0), energy / 30.0, 2.0 * 30.0 / 1e6);
@@ -107,7 +109,7 @@ TEST(MotionRegularised, JournalReboundsAsItsEquationsSay) {
   const double coarse = error(10000);
   const double fine = error(40000);
   // The dashpot is proportional to the fourth root of the depth, so the force nearly jumps at first
-  // contact. The order is between one, for a jump within a step, and two.
+  // contact. The order lies between one, for a jump within a step, and two.
   EXPECT_LT(fine, 1e-5 * 0.5e-3);
   EXPECT_GT(coarse / fine, 4.0);
 }
@@ -116,7 +118,7 @@ TEST(MotionRegularised, BallMovesAsTheJournalDoesInAPlane) {
   MotionOptions options;
   options.steps = 40000;
   options.sample_every = 4000;
-  // The same law in two and in three dimensions: rounding only.
+  // Ball and journal have the same law, so they differ only by rounding.
   expect_ball_moves_as_journal(
       [&](const Model& model) {
         return simulate_regularised(model, rib_inertia(), spring, options);

@@ -41,7 +41,8 @@ Motion thrown(const Model& model, long steps, double tolerance = 0.0) {
 }
 
 TEST(MotionRings, BlockSlidesAndSwingsAsInExplicitSteps) {
-  // Gross slip first, then oscillations within the bound, which dissipate in every period.
+  // The block first slips completely, then oscillates within the friction bound and dissipates in
+  // every period.
   const Model model = in_part(block(100.0, 0.03));
   MotionOptions options;
   options.steps = options.sample_every = 40000;
@@ -56,7 +57,7 @@ TEST(MotionRings, BlockSlidesAndSwingsAsInExplicitSteps) {
   };
   const Motion coarse = thrown(model, 20000);
   const Motion fine = thrown(model, 80000);
-  // First order: contacts use implicit Euler.
+  // The error is of first order, because contacts use implicit Euler.
   EXPECT_LT(apart(fine), 2e-3 * slid);
   EXPECT_NEAR(apart(coarse) / apart(fine), 4.0, 0.8);
   EXPECT_NEAR(fine.states.back().joint_dissipation[0], heat, 2e-3 * heat);
@@ -85,13 +86,14 @@ TEST(MotionRings, SlowlyHeatedBarIsItsPath) {
                 1e-3 * still.joint_dissipation[0]);
     return std::abs(end.displacement(0, 1) - still.displacement(0, 1));
   };
-  // The dashpot delays it in proportion to the heating rate.
+  // The dashpot delays the motion in proportion to the heating rate.
   const double quick = apart(1.0);
   EXPECT_LT(quick, 1e-5 * still.displacement(0, 1));
   EXPECT_NEAR(apart(10.0), 0.1 * quick, 1e-3 * quick);
 }
 
-/// A rib under a fast temperature cycle, by explicit steps or by nonsmooth time stepping.
+/// A rib under a fast temperature cycle. `by_sets` selects nonsmooth time stepping, otherwise
+/// explicit steps.
 Motion quick(const Model& model, long steps, bool by_sets) {
   MotionOptions options;
   options.steps = steps;
@@ -100,7 +102,8 @@ Motion quick(const Model& model, long steps, bool by_sets) {
                  : simulate_regularised(model, rib_inertia(), law, options);
 }
 
-/// Expects nonsmooth time stepping to converge to this state. @param end result of so many steps
+/// Expects nonsmooth time stepping to converge to the state `exact`.
+/// @param end returns the state after a number of steps; @param coarse allowed error of 4000 steps
 template <class End>
 void expect_to_go_to(const State& exact, End&& end, double coarse) {
   const double off = apart(end(4000), exact);
@@ -134,8 +137,8 @@ TEST(MotionRings, TripodGoesToExplicitStepsAsItsStepsFall) {
 }
 
 TEST(MotionRings, ContactProblemHasTheSameLaw) {
-  // Two rigid stops at the same position share their force in an undetermined way. The active-set
-  // iteration then finds no statuses, and both contacts are solved as one problem.
+  // Two rigid stops at the same position share their force in an indeterminate way. The active-set
+  // iteration then fails, and both contacts are solved as one problem.
   Model model = in_part(block(20.0, 0.02));
   auto& slider = std::get<Slider>(model.joints[0]);
   slider.clearance_plus = 2e-5;

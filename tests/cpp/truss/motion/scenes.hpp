@@ -41,7 +41,8 @@ inline double residue(const Motion& motion) {
          sum(motion.states.front(), motion.moving.front());
 }
 
-/// A block on the ground with a tangential spring of 1e6 N/m. @param bound friction limit [N]
+/// A block on the ground, with a tangential contact spring of 1e6 N/m.
+/// @param bound friction limit [N]
 inline Model block(double bound, double seconds) {
   Model model;
   model.programs = {lasting(seconds)};
@@ -71,7 +72,7 @@ inline Model falling_journal() {
   return model;
 }
 
-/// Position of falling_journal() below the centre of its bearing, and its speed, integrated to
+/// Reference for falling_journal(): position below the bearing's centre and speed, integrated to
 /// 1e-12 with F = max(0, K δ^1.5 + c δ'), c = 2 ζ √(m k), k = 1.5 K √δ. @param gravity [m/s²]
 /// @param hertz K [N/m^1.5] @param mass [kg] @param y initial position and speed
 inline std::vector<double> fallen(double seconds, double gravity, double zeta, double hertz,
@@ -84,7 +85,7 @@ inline std::vector<double> fallen(double seconds, double gravity, double zeta, d
     rate[1] = gravity - (depth > 0.0 ? std::max(force, 0.0) : 0.0) / mass;
   };
   namespace odeint = boost::numeric::odeint;
-  // In short intervals: any step is exact for free fall, so a long step could skip the contact.
+  // Short intervals: free fall allows steps of any length, so a long step could skip the contact.
   const int pieces = 2000;
   for (int i = 0; i < pieces; ++i) {
     odeint::integrate_adaptive(

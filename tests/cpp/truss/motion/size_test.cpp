@@ -53,8 +53,8 @@ Inertia inertia(int blocks, double damping_ratio) {
   return made;
 }
 
-/// Displacements of the blocks after an undamped cycle, from the equations of the scheme with a
-/// dense W and impulses by projected Gauss-Seidel.
+/// Reference displacements of the blocks after an undamped cycle. It solves the equations of the
+/// scheme with a dense W, and the impulses by projected Gauss-Seidel.
 VectorXd reference(int blocks, int steps) {
   const thermal::Program program = lasting(1.0, heating);
   MatrixXd mass = MatrixXd::Zero(blocks, blocks);
@@ -72,7 +72,7 @@ VectorXd reference(int blocks, int steps) {
   };
   const auto force = [&](const VectorXd& q, double time) {
     VectorXd found = -stiffness(time) * (laplace * q);
-    // Thermal forces of adjacent bars cancel, except on the last block, which has only one bar.
+    // Thermal forces of adjacent bars cancel. Only the last block has a single bar.
     found[blocks - 1] += stiffness(time) * length * expansion * program.temperature_change(time);
     return found;
   };
@@ -113,7 +113,7 @@ TEST(MotionSize, SlipSpreadsInAStepAsTheContactProblemHasIt) {
   EXPECT_GT(motion.events.size(), static_cast<std::size_t>(4 * options.steps));
   const VectorXd exact = reference(blocks, static_cast<int>(options.steps));
   const VectorXd found = motion.states.back().displacement.row(0).tail(blocks).transpose();
-  // Every step is in equilibrium to 1e-10; a wrong status causes an error of the order of a slide.
+  // Each step solves equilibrium to 1e-10. A wrong status would cause an error as large as a slide.
   EXPECT_LT((found - exact).cwiseAbs().maxCoeff(), 1e-7 * exact.cwiseAbs().maxCoeff());
 }
 
@@ -123,17 +123,19 @@ TEST(MotionSize, SystemsOfAStepDoNotGrowWithTheJointsThatSlip) {
     options.steps = options.sample_every = 200;
     const Motion motion = simulate(chain(blocks), inertia(blocks, 1.0), options);
     SCOPED_TRACE(blocks);
-    // Every block slips on heating and most of them on cooling, up to a dozen in one step.
+    // Every block slips during heating and most slip during cooling; one step contains up to a
+    // dozen changes.
     EXPECT_GT(motion.events.size(), static_cast<std::size_t>(2 * blocks));
-    // One factorization for a change of statuses, and one if the change affects remote joints.
+    // A step with status changes needs one factorization, and another one if they affect remote
+    // joints.
     EXPECT_LT(motion.factorizations, 3 * options.steps);
     EXPECT_EQ(motion.iterations, 0);
   }
 }
 
 TEST(MotionSize, FrictionJustWithinItsBoundHoldsWithoutAContactProblem) {
-  // With ten thousand joints, one is this close to its bound in some step. It must not switch to
-  // slip, from which the iteration would switch it back.
+  // Among ten thousand joints, one is this close to its bound. It must not switch to slip, because
+  // the iteration would switch it back.
   Model model;
   model.programs = {lasting(0.1)};
   model.nodes = {node("B", 0, 0, 1)};

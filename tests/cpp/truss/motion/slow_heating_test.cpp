@@ -15,7 +15,7 @@ namespace {
 
 using namespace scenes;
 
-/// A lever on a latch hinge, which a heated strut lifts through its play.
+/// A lever on a latch hinge. A heated strut lifts the lever through the play of the hinge.
 Model lever(double seconds) {
   Model model;
   model.programs = {lasting(seconds, 100.0)};
@@ -52,8 +52,8 @@ struct Apart {
   double heat;          ///< relative to the heat of the path [-]
 };
 
-/// Difference between motion and path at the end of a cycle; links of 0.1 kg with half their
-/// critical damping.
+/// Differences between motion and quasi-static path at the end of a cycle. Each link has 0.1 kg and
+/// half its critical damping.
 Apart apart(const Model& model) {
   const auto links = static_cast<Eigen::Index>(model.links.size());
   Inertia inertia{Eigen::VectorXd::Constant(links, 0.1), {}, Eigen::VectorXd(links), {}, {}};

@@ -21,14 +21,14 @@ TEST(SmoothSteps, RadauIntegratesPolynomialsAndIsPutTogetherFromItsModes) {
   for (const int stages : {3, 5, 7}) {
     SCOPED_TRACE(stages);
     const detail::Radau radau(stages);
-    // Coefficients are computed in long double and rounded to double: sums of terms up to 1.
+    // The coefficients are sums of terms up to 1, computed in long double and rounded to double.
     for (int k = 0; k < 2 * stages - 1; ++k) {
       const VectorXd power = radau.c.array().pow(k);
       EXPECT_NEAR(radau.a.row(stages - 1).dot(power), 1.0 / (k + 1), 1e-15) << k;
       if (k >= stages) continue;
       const VectorXd integral = radau.c.array().pow(k + 1) / (k + 1);
       EXPECT_LT((radau.a * power - integral).cwiseAbs().maxCoeff(), 1e-15) << k;
-      // The embedded method, which includes the start among its nodes, has the same order.
+      // The embedded method also uses the start as a node. It has the same order.
       const VectorXd increments = radau.a * power;
       const double start = k == 0 ? 1.0 / radau.eigenvalue : 0.0;
       EXPECT_NEAR(start + radau.embedded.dot(increments), 0.0, 1e-13) << k;
@@ -37,7 +37,7 @@ TEST(SmoothSteps, RadauIntegratesPolynomialsAndIsPutTogetherFromItsModes) {
     for (const detail::Radau::Pair& pair : radau.pairs) {
       sum += 2.0 * (pair.eigenvalue * pair.from_mode * pair.to_mode).real();
     }
-    // For seven stages the eigenvectors amplify rounding errors by up to 1e3.
+    // For seven stages the eigenvectors amplify rounding errors up to a thousandfold.
     EXPECT_LT((sum - radau.inverse).cwiseAbs().maxCoeff(), 1e-12);
     EXPECT_LT((radau.a * radau.inverse - Eigen::MatrixXd::Identity(stages, stages)).norm(), 1e-12);
   }
@@ -74,7 +74,7 @@ TEST(SmoothSteps, ComplexFactorSolvesWhatItFactors) {
 }
 
 TEST(SmoothSteps, TrajectoryOfASlideIsExactForPolynomials) {
-  // Polynomial of degree 11 through six points with their rates, over 0.7 s.
+  // A polynomial of degree 11 is determined by values and rates at six points.
   const auto slide = [](double t) { return std::pow(t, 11) - 2.0 * std::pow(t, 3) + t; };
   const auto speed = [](double t) { return 11.0 * std::pow(t, 10) - 6.0 * t * t + 1.0; };
   detail::SlipTrajectory slip;
@@ -89,7 +89,7 @@ constexpr double axial_stiffness = 5e3;  // E A [N]
 constexpr double spring = 2e3;           // of the slider [N/m]
 constexpr double gravity = 9.81;
 
-/// A mass of 1 kg on a rod of 1 m that swings from side to side, with friction along x.
+/// A swinging pendulum: 1 kg on a rod of 1 m, with friction along x.
 Model rubbing_pendulum(double bound, double seconds) {
   Model model;
   model.programs = {lasting(seconds)};
@@ -106,7 +106,8 @@ Model rubbing_pendulum(double bound, double seconds) {
   return model;
 }
 
-/// Its position from its own equations, integrated to 1e-13. @param damping c of the slider [N s/m]
+/// Position of the pendulum, by integration of its equations of motion to 1e-13.
+/// @param damping c of the slider [N s/m]
 Vector2d swung(double bound, double damping, double seconds) {
   std::vector<double> y{0.0, 0.0, 0.0, 0.0, 0.0};  // displacements, velocities, force of the spring
   const auto rates = [&](const std::vector<double>& at, std::vector<double>& rate, double) {
@@ -122,7 +123,7 @@ Vector2d swung(double bound, double damping, double seconds) {
     rate[4] = std::abs(at[4]) >= bound && at[4] * at[2] > 0.0 ? 0.0 : spring * at[2];
   };
   namespace odeint = boost::numeric::odeint;
-  // Short intervals, so that the spring exceeds its bound only slightly before it is reset to it.
+  // In short intervals the spring force exceeds its bound only slightly before it is reset.
   const int pieces = 40000;
   for (int i = 0; i < pieces; ++i) {
     odeint::integrate_adaptive(
@@ -138,7 +139,8 @@ struct Reached {
   int changes = 0;
 };
 
-/// Equal three-stage steps (order 5), except for steps that a status change shortens.
+/// Result of equal three-stage steps (order 5). A status change shortens the step in which it
+/// occurs.
 Reached stepped(double bound, double damping, double seconds, int steps) {
   const Model model = rubbing_pendulum(bound, seconds);
   Inertia inertia;
@@ -178,7 +180,8 @@ TEST(SmoothSteps, KeepTheirOrderOverChangesOfBranches) {
     int least_changes;
   };
   double smooth_error = 0.0;
-  // Sticks; slides and sticks; the same with a dashpot. Its spring continues to deform during slip.
+  // Cases: stick; slip and stick; slip and stick with a dashpot, whose contact spring also deforms
+  // during slip.
   for (const Rubs& rubs : {Rubs{1e6, 0.0, 0}, Rubs{3.0, 0.0, 5}, Rubs{3.0, 4.0, 5}}) {
     SCOPED_TRACE(::testing::Message() << rubs.bound << " N, " << rubs.damping << " N s/m");
     const Vector2d exact = swung(rubs.bound, rubs.damping, seconds);
@@ -186,10 +189,11 @@ TEST(SmoothSteps, KeepTheirOrderOverChangesOfBranches) {
     const Reached fine = stepped(rubs.bound, rubs.damping, seconds, 800);
     const double by = (coarse.place - exact).norm() / (fine.place - exact).norm();
     EXPECT_GE(fine.changes, rubs.least_changes);
-    // Order five: a quarter of the step divides the error by 4^5 = 2^10; measured 2^9.8 to 2^10.
+    // Order five: a quarter of the step divides the error by 4^5 = 2^10. Measured are 2^9.8 to
+    // 2^10.
     EXPECT_GT(std::log2(by), 9.0) << (coarse.place - exact).norm();
-    // Located status changes leave errors of the same size as without changes. If the changes were
-    // only taken at the ends of steps, the error would be a thousand times larger.
+    // Located status changes cause errors as small as without changes. With changes only at ends of
+    // steps, the error would be a thousand times larger.
     const double error = (fine.place - exact).norm();
     if (rubs.least_changes == 0) smooth_error = error;
     EXPECT_LT(error, 20.0 * smooth_error + 1e-15);
@@ -197,7 +201,7 @@ TEST(SmoothSteps, KeepTheirOrderOverChangesOfBranches) {
 }
 
 TEST(SmoothSteps, EnergiesCloseWithTheTolerance) {
-  // Bar of Table 1 with its block, which has a tangential spring and slides on heating and cooling.
+  // Bar of Table 1 and its block, which has a tangential spring and slides on heating and cooling.
   Model model = testing::sliding_bar(0.1);
   std::get<Slider>(model.joints[0]).tangential_stiffness = 1e7;
   const Inertia inertia{VectorXd::Constant(1, 0.1), {}, VectorXd::Constant(1, 50.0), {}, {},
@@ -218,7 +222,7 @@ TEST(SmoothSteps, EnergiesCloseWithTheTolerance) {
   const double heat = fine.states.back().joint_dissipation.sum();
   EXPECT_GT(heat, 1e-3);
   EXPECT_GT(fine.moving.back().damping_dissipation, 0.0);
-  // An error of position equal to the tolerance, times a force of 30 N, per step.
+  // Each step may lose a position error equal to the tolerance, times a force of 30 N.
   EXPECT_LT(std::abs(residue(coarse)), 30.0 * 1e-7 * static_cast<double>(coarse.steps));
   EXPECT_LT(std::abs(residue(fine)), 30.0 * 1e-9 * static_cast<double>(fine.steps));
 }

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector2d;
 using namespace scenes;
 
-/// A mass on a rod of 1 m that swings from side to side.
+/// A swinging pendulum: mass on a rod of 1 m.
 Model pendulum(double seconds) {
   Model model;
   model.programs = {lasting(seconds)};
@@ -52,8 +52,9 @@ TEST(StepControl, ErrorsFallWithTheToleranceAtSecondOrder) {
   long many = 0;
   const double coarse = error(1e-6, few);
   const double close = error(1e-9, many);
-  // The error of a step is proportional to h³: a tolerance 1000 times smaller needs 10 times the
-  // steps. The global error, proportional to h², decreases by 100. Step lengths are powers of two.
+  // The error of a step is proportional to h³, so a tolerance 1000 times smaller needs 10 times the
+  // steps. The global error, proportional to h², then decreases by 100. Step lengths are powers of
+  // two.
   EXPECT_NEAR(std::log2(static_cast<double>(many) / static_cast<double>(few)), std::log2(10.0),
               0.7);
   EXPECT_NEAR(std::log2(coarse / close), std::log2(100.0), 1.4);
@@ -61,8 +62,8 @@ TEST(StepControl, ErrorsFallWithTheToleranceAtSecondOrder) {
 }
 
 TEST(StepControl, SlowerHeatingTakesNoMoreStepsAndComesCloserToThePath) {
-  // Bar of Table 1 with its block. Oscillations, which decay, start when heating begins and
-  // reverses and when the block starts to slip; in between, motion is slow.
+  // Bar of Table 1 with its block. Oscillations start when heating begins, when it reverses and
+  // when the block starts to slip. They decay, and then the motion is slow.
   const double k = 70e9 * 9e-6 / 0.5;
   const double mass = 0.1;
   const auto heated = [&](double seconds) {
@@ -96,7 +97,7 @@ TEST(StepControl, JournalBouncesAtItsAnalyticTimes) {
   int impact = 0;
   for (const Event& event : motion.events) {
     if (event.before != JointStatus::open || impact == 6) continue;
-    // Locating an impact within a step is wrong by up to the step, as long as the tolerance allows.
+    // The time of an impact has an error of up to one step, as far as the tolerance allows.
     EXPECT_NEAR(event.time, time, 1e-4 * time) << "impact " << impact;
     speed *= e;
     time += 2.0 * speed / 9.81;

@@ -15,7 +15,7 @@ namespace statejump::thermal {
 /// Form of one temperature cycle; see Program.
 enum class Shape { triangle, half_sine, sine, table };
 
-/// Name of a shape in case files: "triangle", "half_sine", "sine" or "table".
+/// Name of a shape as in case files: "triangle", "half_sine", "sine" or "table".
 inline const char* to_string(Shape shape) {
   switch (shape) {
     case Shape::triangle:
@@ -50,41 +50,44 @@ inline Shape shape_of(const std::string& name) {
 /// The cycle is repeated `cycles` times. Before t = 0, ΔT is the value at the start of the first
 /// cycle; after the last cycle it stays at its end value. ΔTmax < 0 cools first.
 ///
-/// Every length is computed from this total ΔT, never from a sum of increments, and a state jump is
-/// the difference between two states at the same ΔT. So the program must return to its end value
-/// exactly. Each half of a cycle is therefore evaluated from its own end, and cycle k ends at the
-/// rounded product (k + 1)·P. With sin(π·1), ΔT would be 1.2e-16 ΔTmax instead of 0.
+/// Every length is computed from this total ΔT, never from a sum of increments. A state jump is the
+/// difference between two states at the same ΔT, so the program must return exactly to its end
+/// value. Each half of a cycle is therefore evaluated from its own end, and cycle k ends at the
+/// rounded product (k + 1)·P. Evaluated from the start, sin(π·1) would give 1.2e-16 ΔTmax instead
+/// of 0.
 ///
-/// A plain value type: set the fields and call validate() once; the other functions do not check.
+/// This is a plain value type: set the fields and call validate() once. The other functions do not
+/// check.
 struct Program {
   Shape shape = Shape::half_sine;
-  /// Largest temperature change ΔTmax [K], any finite value; ignored for a table.
+  /// Largest temperature change ΔTmax [K], any finite value. A table ignores it.
   double temperature_change_max = 0.0;
-  /// Length P of one cycle [s], > 0. For a table it must equal the last time.
+  /// Length P of one cycle [s], > 0. For a table, it must equal the last of its times.
   double period = 1.0;
   /// Number of cycles, >= 1.
   int cycles = 1;
-  /// Times of a table [s]: from 0, strictly increasing, to `period`. Empty for other shapes.
+  /// Times of a table [s], strictly increasing from 0 to `period`. Empty for other shapes.
   std::vector<double> table_times;
   /// Temperature changes of a table [K], one per time. The first must be 0, because T0 is the
-  /// temperature of the stress-free start. If the cycle repeats, the last must be 0, too.
+  /// temperature of the stress-free start. If the cycle repeats, the last one must also be 0.
   std::vector<double> table_temperature_changes;
 
-  /// Throws std::invalid_argument that names the first field out of range, its value and the range.
+  /// Throws std::invalid_argument that names the first field out of range, its value and its range.
   void validate() const;
 
   /// Length of the whole program [s].
   double duration() const { return cycles * period; }
 
-  /// ΔT at time t [K]; exactly the end value at the end of every cycle.
+  /// Temperature change ΔT at time t [K]. At the end of every cycle it is exactly the end value.
   double temperature_change(double t) const;
 
-  /// dΔT/dt at time t [K/s]; at a corner the rate just after it; 0 outside the program.
+  /// Rate dΔT/dt at time t [K/s]. At a corner it is the rate just after the corner; outside the
+  /// program it is 0.
   double temperature_rate(double t) const;
 };
 
 /// Stress-free length l0 (1 + α ΔT) [m] of a part with reference length l0 [m] and expansion
-/// coefficient α [1/K]; eq. (2) of the paper. Radii follow the same rule.
+/// coefficient α [1/K]; see eq. (2) of the paper. Radii follow the same rule.
 inline double length(double l0, double alpha, double temperature_change) {
   return l0 * (1.0 + alpha * temperature_change);
 }
@@ -103,9 +106,9 @@ struct Branch {
   double amplitude = 0.0;          ///< |ΔTmax| of the sine [K].
 };
 
-/// Time [s] at which the branch passes `temperature_change` [K]. The result is the nearer end if
-/// the value lies beyond the branch, and the start if the branch is constant. Near the crest of a
-/// sine the time is ill-conditioned: an error ε in ΔT changes it by sqrt(2 ε/amplitude)/ω.
+/// Time [s] at which the branch passes `temperature_change` [K]. If the branch does not reach the
+/// value, the result is the nearer end; if the branch is constant, it is the start. Near the crest
+/// of a sine the time is ill-conditioned: an error ε in ΔT changes it by sqrt(2 ε/amplitude)/ω.
 inline double time_at(const Branch& branch, double temperature_change) {
   const double span = branch.end - branch.start;
   const double passed = (temperature_change - branch.start) / (span == 0.0 ? 1.0 : span);
@@ -133,14 +136,15 @@ inline std::string entry(const char* name, std::size_t index) {
   return std::string(name).append("[").append(std::to_string(index)).append("]");
 }
 
-/// Position of a time within its cycle, measured from both ends of the cycle.
+/// Position of a time within its cycle, measured from both ends of this cycle.
 struct CyclePlace {
   double elapsed;    ///< Time since the cycle began [s].
   double remaining;  ///< Time until the cycle ends [s].
 };
 
-/// Position of 0 <= t < duration. The division may round across a boundary; the loops correct this.
-/// The boundaries are then the products k·period, where the differences are exactly zero.
+/// Position of the time 0 <= t < duration in its cycle. The division may round across the end of a
+/// cycle; the loops correct this. Cycles end at the products k·period, where the differences are
+/// zero.
 inline CyclePlace cycle_place(const Program& program, double t) {
   double k = std::floor(t / program.period);
   while (k > 0.0 && t < k * program.period) k -= 1.0;
@@ -240,7 +244,8 @@ inline double Program::temperature_rate(double t) const {
       return side * temperature_change_max * omega * std::cos(omega * nearest);
     }
     case Shape::sine: {
-      // The rate is symmetric about the middle of the cycle, so it has the same sign on both sides.
+      // The rate is symmetric about the middle of the cycle, so it has the same sign in both
+      // halves.
       const double omega = 2.0 * detail::pi / period;
       return temperature_change_max * omega * std::cos(omega * nearest);
     }
@@ -252,8 +257,8 @@ inline double Program::temperature_rate(double t) const {
          (table_times[i + 1] - table_times[i]);
 }
 
-/// Calls `visit(const Branch&)` for every branch of cycle `cycle` (0, 1, …) in order,
-/// without allocating. A table has one branch per interval, other shapes two or three.
+/// Calls `visit(const Branch&)` for all branches of one cycle (cycle = 0, 1, …) in order, without
+/// allocating. A table has one branch per interval, other shapes two or three.
 template <class Visit>
 void for_each_branch(const Program& program, int cycle, Visit&& visit) {
   const double from = cycle * program.period;
@@ -293,7 +298,7 @@ void for_each_branch(const Program& program, int cycle, Visit&& visit) {
   }
 }
 
-/// All branches of the program in order; each begins where the previous one ends.
+/// All branches of the program in order. Each begins where the previous one ends.
 inline std::vector<Branch> monotone_branches(const Program& program) {
   std::vector<Branch> branches;
   for (int cycle = 0; cycle < program.cycles; ++cycle) {

@@ -12,7 +12,7 @@
 
 namespace statejump::kernel {
 
-/// Material, friction and damping of one contact, constant over a run. validate() checks them once.
+/// Material, friction and damping of one contact, constant during a run. Call validate() once.
 struct ContactParameters {
   ElasticPair elastic;                    ///< E*, G* [Pa], both > 0; see elastic_pair()
   double friction_coefficient = 0.0;      ///< mu [-], >= 0; 0: frictionless (default)
@@ -21,7 +21,7 @@ struct ContactParameters {
   double effective_mass = 0.0;            ///< m = m1 m2/(m1 + m2) [kg], >= 0; only damping uses it
 };
 
-/// Kinematics of the two bodies of a contact in this step. The inner loop does not check them.
+/// Kinematics of the two bodies of a contact in one step. The inner loop does not check them.
 struct ContactKinematics {
   Vector3 normal;  ///< unit, from body 1 (journal, slider) into body 2 (bearing, slot); body 1
                    ///< pushes along it
@@ -31,7 +31,8 @@ struct ContactKinematics {
   double time_step;           ///< dt [s], >= 0
 };
 
-/// Forces and energies of a contact after one step. Forces act on body 1; body 2 gets the opposite.
+/// Forces and energies of a contact after one step. The forces are those on body 1; body 2 gets the
+/// opposite.
 struct ContactResponse {
   double normal_force;               ///< F_N with its viscous part [N], >= 0: clipped, no adhesion
   double elastic_normal_force;       ///< Hertz part of F_N [N], >= 0
@@ -45,7 +46,7 @@ struct ContactResponse {
   double damping_dissipation;        ///< of this step [J], >= 0
 };
 
-/// Checks the parameters of a contact; call it whenever they are set.
+/// Checks the parameters of a contact. Call it whenever they are set.
 /// @throws std::invalid_argument that names the field, its value and its range.
 inline void validate(const ContactParameters& parameters) {
   const auto positive = [&](double value, const char* name, const char* range) {
@@ -69,7 +70,7 @@ inline double viscous_damping(double damping_ratio, double mass, double stiffnes
 }
 
 /// Normal force with its viscous part [N], clipped at 0: the bodies never pull on each other.
-/// @param force F [N] without the viscous part, @param damping c [N s/m]
+/// @param force elastic force F [N], @param damping c [N s/m]
 /// @param approach_speed [m/s]
 inline double damped_normal_force(double force, double damping, double approach_speed) {
   return std::max(0.0, force + damping * approach_speed);
@@ -78,7 +79,7 @@ inline double damped_normal_force(double force, double damping, double approach_
 /// Adds the viscous force -c v_t of a sticking spring and projects the sum onto the disc of radius
 /// mu F_N. The projection is monotone, so the remaining viscous force still opposes v_t.
 /// @param damping c [N s/m], @param limit mu F_N [N], @param velocity v_t [m/s]
-/// @param force in: force of the spring [N], at most `limit`; out: with the viscous part
+/// @param force on input the force of the spring [N], at most `limit`; on output the sum
 /// @return power dissipated by the viscous part [W], >= 0
 inline double add_tangential_damping(double damping, double limit, const Vector3& velocity,
                                      Vector3& force) {
@@ -102,20 +103,21 @@ struct ImpactDamping {
 ///    F_N = max(0, F_el max(0, 1 + (chi/K) delta_dot) + c_n v_n),   c_n = 2 zeta_n sqrt(m k_n),
 ///
 /// with the approach speed v_n = v . n of the bodies and the rate of the depth delta_dot = v_n -
-/// dc/dt. Tangential force: the friction law. While its spring sticks, add_tangential_damping()
-/// adds a viscous force.
+/// dc/dt. The friction law gives the tangential force. While its spring sticks,
+/// add_tangential_damping() adds a viscous force.
 ///
 /// @tparam Laws the laws, resolved at compile time:
 ///  normal()                      elastic state with force, stiffness, elastic_energy
 ///  velocity()                    velocity of body 1 relative to body 2 [m/s], used by friction
 ///  tangential_stiffness(normal)  k_t [N/m]
 ///  friction(k_t, mu F_N, F_N, v_t, history) -> MindlinEnergy
-///  friction_force(history)       force on body 1 after that step, without the viscous part [N]
+///  friction_force(history)       force on body 1 after friction() [N], without the viscous part
 ///  dissipates                    whether impact() returns an ImpactDamping&
 ///  always_spring                 friction is always a spring of stiffness k_t; if false,
 ///  history.tangential_stiffness > 0 marks a spring
 /// @param normal n, unit; @param depth delta [m]; @param time_step dt [s]
-/// @param history of this contact, rotated into the current tangent plane by the caller; updated
+/// @param history memory of this contact, updated; the caller has rotated it into the current
+///     tangent plane
 template <class Laws>
 ContactResponse contact_step(Laws& laws, const ContactParameters& parameters, const Vector3& normal,
                              double depth, double time_step, ContactHistory& history) {
@@ -211,22 +213,22 @@ struct HertzMindlinLaws {
 /// The bodies never pull on each other. k_n is the tangent stiffness at this depth, so zeta_n is
 /// the damping ratio of a small oscillation there.
 ///
-/// Tangential: history spring k_t = 8 G* a under the limit mu F_N, see mindlin_step(). F_N is the
-/// clipped total normal force, because that force presses the surfaces together. While the spring
-/// sticks, the viscous force -c_t v_t, c_t = 2 zeta_t sqrt(m k_t), is added.
-/// add_tangential_damping() projects the sum onto the disc of radius mu F_N. While the spring
-/// slips, there is no viscous force. |tangential_force| <= mu F_N always; with mu = 0 it is exactly
-/// zero.
+/// Tangential: a history spring of stiffness k_t = 8 G* a under the limit mu F_N, see
+/// mindlin_step(). F_N is the clipped total normal force, because that force presses the surfaces
+/// together. While the spring sticks, the viscous force -c_t v_t, c_t = 2 zeta_t sqrt(m k_t), is
+/// added. add_tangential_damping() projects the sum onto the disc of radius mu F_N. While the
+/// spring slips, there is no viscous force. |tangential_force| <= mu F_N always; with mu = 0 it is
+/// exactly zero.
 ///
-/// Energy: friction by the identity of mindlin_step(), damping by (viscous force) . v dt with the
-/// given velocity. A leapfrog integrator does work with the mean velocity of two half steps, so its
-/// damping work differs from this value at first order in dt.
+/// Energy: the friction loss follows from the identity of mindlin_step(), the damping loss is
+/// (viscous force) . v dt with the given velocity. A leapfrog integrator does work with the mean
+/// velocity of two half steps, so its damping work differs from this value at first order in dt.
 ///
-/// Cost: one square root without damping in stick, one more in slip, one more per active damper.
+/// Cost: one square root, one more during slip, one more per active damper.
 /// @param parameters see validate(); not checked here
-/// @param kinematics of this step
-/// @param history of this contact, rotated into the current tangent plane by the caller; updated. A
-///        gap clears it and counts the energy left in the spring as friction loss.
+/// @param kinematics motion of the two bodies in this step
+/// @param history memory of this contact, updated; the caller has rotated it into the current
+///     tangent plane. A gap clears it and counts the energy of the spring as friction loss.
 /// Limits: those of hertz() and mindlin_step(); no rolling or twisting resistance.
 inline ContactResponse hertz_mindlin(const ContactParameters& parameters,
                                      const ContactKinematics& kinematics, ContactHistory& history) {
@@ -235,7 +237,8 @@ inline ContactResponse hertz_mindlin(const ContactParameters& parameters,
                       kinematics.time_step, history);
 }
 
-/// Forces [N] and torques [N m] of one contact on the centres of its two bodies, world frame.
+/// Forces [N] and torques [N m] that one contact exerts on the centres of its two bodies, world
+/// frame.
 struct Wrench {
   Vector3 force_1;
   Vector3 torque_1;
@@ -243,12 +246,13 @@ struct Wrench {
   Vector3 torque_2;
 };
 
-/// Carries the contact force to the two body centres: torque = arm x force.
+/// Transfers the contact force to the centres of the two bodies: torque = arm x force.
 ///
-/// Both forces act at one point, so forces and moments about any point cancel exactly. (The two
-/// points of the paper's eq. 14 are delta apart and would leave a torque delta F_t.)
-/// @param force_on_1 [N]; body 2 gets the opposite
-/// @param arm_1, arm_2 contact point minus centre of the body [m]
+/// The forces on both bodies act at the same point, so forces and moments about any point cancel
+/// exactly. (The paper's eq. 14 has two points at a distance delta, which would leave a torque
+/// delta F_t.)
+/// @param force_on_1 force on body 1 [N]; body 2 gets the opposite
+/// @param arm_1, arm_2 contact point minus centre of body 1 and 2 [m]
 inline Wrench contact_wrench(const Vector3& force_on_1, const Vector3& arm_1,
                              const Vector3& arm_2) {
   return {force_on_1, cross(arm_1, force_on_1), -force_on_1, cross(force_on_1, arm_2)};

@@ -24,8 +24,8 @@ struct ElasticPair {
 };
 
 /// Combines the materials of two bodies.
-/// @param young_modulus_1, young_modulus_2  E [Pa], > 0. One of them (not both) may be +infinity:
-///        a rigid body.
+/// @param young_modulus_1, young_modulus_2  E [Pa], > 0. One of them (not both) may be +infinity,
+///     for a rigid body.
 /// @param poisson_ratio_1, poisson_ratio_2  nu [-], in (-1, 0.5].
 /// @throws std::invalid_argument that names the argument, its value and its range.
 inline ElasticPair elastic_pair(double young_modulus_1, double poisson_ratio_1,

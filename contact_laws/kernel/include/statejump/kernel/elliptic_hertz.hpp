@@ -15,7 +15,7 @@ namespace statejump::kernel {
 /// Principal curvatures of the gap between two touching surfaces, and their directions.
 ///
 /// The gap is 1/2 (larger x^2 + smaller y^2): Johnson's A and B (Contact Mechanics, 1985, eq. 4.3)
-/// are halves of these.
+/// are half of `larger` and `smaller`.
 struct RelativeCurvature {
   double larger;   ///< [1/m]; the short semi-axis of the contact has this direction
   double smaller;  ///< [1/m]; the long semi-axis of the contact has this direction
@@ -25,8 +25,8 @@ struct RelativeCurvature {
 /// Adds the curvatures of two bodies (Johnson 1985, eq. 4.4).
 /// @param curvature_11, curvature_12 principal curvatures of body 1 [1/m], convex positive. A
 ///        journal of radius R1 has 1/R1 and 0, a bore of radius R2 has -1/R2 and 0.
-/// @param curvature_21, curvature_22 those of body 2
-/// @param angle [rad] from direction 1 of body 1 to direction 1 of body 2
+/// @param curvature_21, curvature_22 principal curvatures of body 2 [1/m]
+/// @param angle from the first principal direction of body 1 to that of body 2 [rad]
 inline RelativeCurvature relative_curvature(double curvature_11, double curvature_12,
                                             double curvature_21, double curvature_22,
                                             double angle) {
@@ -39,19 +39,19 @@ inline RelativeCurvature relative_curvature(double curvature_11, double curvatur
   return {0.5 * (sum + difference), 0.5 * (sum - difference), 0.5 * std::atan2(across, along)};
 }
 
-/// Largest ratio of the two curvatures that elliptic_shape() accepts; for larger ratios the contact
+/// Largest ratio of the two curvatures that elliptic_shape() accepts. A contact with a larger ratio
 /// is a line.
 constexpr double largest_curvature_ratio = 1e10;
 
-/// Contact ellipse of a pair of curvatures. It holds for every depth, because the semi-axes grow as
-/// the square root of the depth.
+/// Contact ellipse for given relative curvatures. Its shape holds for every depth, because both
+/// semi-axes grow as the square root of the depth.
 struct EllipticShape {
   double long_axis;   ///< a / sqrt(delta) [m^0.5], a the longer semi-axis
   double short_axis;  ///< b / sqrt(delta) [m^0.5]
   double stiffness;   ///< F / (E* delta^1.5) [m^0.5]; 4/3 sqrt(R) for a circle
 };
 
-/// Solves the ellipse (Johnson 1985, section 4.2(b)).
+/// Computes the shape of the contact ellipse (Johnson 1985, section 4.2(b)).
 ///
 /// A pressure p0 sqrt(1 - x^2/a^2 - y^2/b^2) gives the displacement (L - M x^2 - N y^2)/(pi E*)
 /// (eqs 4.26), with k'^2 = b^2/a^2, k^2 = 1 - k'^2 and the complete elliptic integrals K, D, B,
@@ -59,15 +59,15 @@ struct EllipticShape {
 ///
 ///     L = pi p0 b K,    M = pi p0 b D/a^2,    N = pi p0 b B/b^2
 ///
-/// Matching L to delta, M and N to the halves of the curvatures:
+/// L must equal delta; M and N must equal half the curvatures:
 ///
 ///     larger/smaller = B/(k'^2 D)          (eq. 4.28)
 ///     a^2 = 2 delta D/(smaller K)
 ///     F = 2/3 pi a b p0 = 2/3 pi E* a delta/K
 ///
-/// K and D are Carlson's R_F(0, k'^2, 1) and R_D(0, k'^2, 1)/3 of Boost.Math. The differences K - D
-/// suffer no cancellation, neither at the circle nor near the line. TOMS 748 finds ln(b/a) in about
-/// ten evaluations of 0.2 us, so call this once per pair of curvatures, not in every step.
+/// Boost.Math computes K and D as Carlson's R_F(0, k'^2, 1) and R_D(0, k'^2, 1)/3. The difference K
+/// - D suffers no cancellation, neither near the circle nor near the line. TOMS 748 finds ln(b/a)
+/// in about ten evaluations of 0.2 us, so call this once per pair of curvatures, not in every step.
 /// @throws std::invalid_argument unless 0 < larger < inf and larger/1e10 <= smaller <= larger
 /// Limits: those of hertz(), and a well below the longer radius 1/smaller.
 inline EllipticShape elliptic_shape(const RelativeCurvature& curvature) {
@@ -92,8 +92,8 @@ inline EllipticShape elliptic_shape(const RelativeCurvature& curvature) {
     return std::log((k - d) / d) - 2.0 * log_axes - ratio;
   };
   double log_axes = 0.0;
-  // Near the circle ln(b/a) = -2/3 ratio + O(ratio^3). The bracket follows from D >= B, and from D
-  // < 26 B down to the smallest b/a.
+  // Near the circle ln(b/a) = -2/3 ratio + O(ratio^3). The bracket uses D >= B, and D < 26 B
+  // down to the smallest b/a.
   if (ratio > 1e-7) {
     const double high = -0.5 * ratio;
     const double low = -ratio - 2.0;
@@ -119,7 +119,8 @@ struct EllipticHertzState {
   double elastic_energy;  ///< integral of F over delta [J], >= 0
 };
 
-/// Hertz contact of two surfaces with any curvatures: F = E* stiffness delta^1.5. One square root.
+/// Hertz contact of two surfaces with any curvatures: F = E* stiffness delta^1.5. The cost is one
+/// square root.
 /// @param effective_young_modulus E* [Pa], > 0
 /// @param shape from elliptic_shape()
 /// @param penetration_depth delta [m]; <= 0 is a gap and gives zeros. Arguments are not checked.

@@ -20,13 +20,15 @@ namespace statejump::kernel {
 /// 1 + c cancels. The result is projected onto the new plane and rescaled to the magnitude of v. A
 /// force rotated over millions of steps therefore neither leaves its plane nor decays.
 ///
-/// @param tangential vector in the plane of n_old, any unit. A part along n_old is projected away;
-///        the magnitude is kept.
-/// @param n_old, n_new unit normals
-/// @param twist_angle [rad], right-handed about n_new: rotation of both bodies about their common
-///        normal, mean of omega_1 . n and omega_2 . n times dt. Zero costs no trigonometry.
-/// @return zero for a zero vector or one along the normal, NaN for a vector with NaN. For n_new =
-///        -n_old the smallest rotation is not unique; the vector is left unchanged.
+/// @param tangential vector in the plane of n_old, any unit. A component along n_old is removed,
+///     but the magnitude is kept.
+/// @param n_old, n_new old and new unit normal
+/// @param twist_angle [rad], right-handed about n_new: common rotation of both bodies about the
+///     normal, i.e. the mean of omega_1 . n and omega_2 . n, times dt. A zero angle costs no
+///     trigonometry.
+/// @return rotated vector; zero for a zero vector or a vector along the normal, NaN for a vector
+///     with NaN. For n_new = -n_old the smallest rotation is not unique, and the vector is returned
+///     unchanged.
 inline Vector3 transport(const Vector3& tangential, const Vector3& n_old, const Vector3& n_new,
                          double twist_angle = 0.0) {
   const double magnitude_squared = tangential.squaredNorm();
@@ -40,8 +42,8 @@ inline Vector3 transport(const Vector3& tangential, const Vector3& n_old, const 
 
   const double ratio = turned.squaredNorm() / magnitude_squared;
   if (ratio <= 1e-30) return Vector3::Zero();
-  // 1/sqrt(ratio) = 1 + (1 - ratio)/2 + 3/8 (1 - ratio)^2: for |1 - ratio| < 1e-8 two terms are
-  // exact to rounding
+  // For e = 1 - ratio, 1/sqrt(ratio) = 1 + e/2 + 3/8 e^2 + ...; if |e| < 1e-8, two terms are exact
+  // to rounding
   const double excess = 1.0 - ratio;
   turned *= std::abs(excess) < 1e-8 ? 1.0 + 0.5 * excess : 1.0 / std::sqrt(ratio);
   if (twist_angle != 0.0) {

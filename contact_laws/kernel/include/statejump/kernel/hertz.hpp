@@ -10,14 +10,14 @@ namespace statejump::kernel {
 /// Effective radius of an internal contact, a pin in a hole: R = R1 R2 / (R2 - R1) [m].
 ///
 /// Curvatures add with sign (Johnson 1985, eq. 4.14): the journal is convex, +1/R1, the bearing
-/// concave, -1/R2. The paper's eq. (7) has R1 R2 / (R1 + R2), the external contact of two balls.
-/// The concave bearing makes the contact much stiffer.
+/// concave, -1/R2. The paper's eq. (7) has R1 R2 / (R1 + R2), which holds for the external contact
+/// of two balls. The concave bearing makes the contact much stiffer.
 /// @param journal_radius R1 [m], > 0 and finite
 /// @param bearing_radius R2 [m], > R1. +infinity is a flat wall and gives R1. A negative value is a
 ///        wall of radius -R2 that bulges towards the journal.
 /// @throws std::invalid_argument unless R1 > 0, and R2 > R1 or R2 < 0
-/// Limit: Hertz needs a contact radius a = sqrt(R delta) much smaller than R1. As R2 tends to R1
-/// the contact becomes conformal and this radius grows without bound.
+/// Limit: Hertz's theory needs a contact radius a = sqrt(R delta) much smaller than R1. As R2 tends
+/// to R1, the contact becomes conformal and R grows without bound.
 inline double internal_effective_radius(double journal_radius, double bearing_radius) {
   require(journal_radius > 0.0, "journal_radius", journal_radius, "(0, inf) m");
   require(bearing_radius > journal_radius || bearing_radius < 0.0, "bearing_radius", bearing_radius,
@@ -26,8 +26,8 @@ inline double internal_effective_radius(double journal_radius, double bearing_ra
   return journal_radius * (bearing_radius / (bearing_radius - journal_radius));
 }
 
-/// Hertz stiffness K = 4/3 E* sqrt(R) [N/m^1.5] of F = K delta^1.5 (paper eq. 6; Johnson 1985,
-/// eq. 4.23).
+/// Hertz stiffness K = 4/3 E* sqrt(R) [N/m^1.5], with which F = K delta^1.5 (paper eq. 6; Johnson
+/// 1985, eq. 4.23).
 /// @param effective_young_modulus E* [Pa], @param effective_radius R [m]
 inline double hertz_stiffness(double effective_young_modulus, double effective_radius) {
   return 4.0 / 3.0 * effective_young_modulus * std::sqrt(effective_radius);
@@ -58,7 +58,7 @@ struct HertzState {
 ///     dF/d(delta) = 2 E* a
 ///     integral of F d(delta) = 2/5 F delta
 ///
-/// One square root, no division.
+/// The cost is one square root and no division.
 /// @param effective_young_modulus E* [Pa], > 0
 /// @param effective_radius R [m], > 0, finite
 /// @param penetration_depth delta [m], positive when the bodies overlap; <= 0 is a gap and gives

@@ -18,7 +18,7 @@ struct BodyMotion {
 };
 
 /// Geometry of one contact point between body 1 (journal, ball, slider) and body 2 (bearing,
-/// socket, slot, other ball). A gap has a contact point too: the middle of the gap.
+/// socket, slot, other ball). For a gap, the contact point is the middle of the gap.
 struct JointContact {
   double penetration_depth;   ///< delta [m]; negative: gap
   Vector3 normal;             ///< unit, from body 1 into body 2
@@ -32,13 +32,15 @@ using RevoluteContact = JointContact;  ///< of revolute_contact()
 using BallContact = JointContact;      ///< of ball_contact()
 using PlaneContact = JointContact;     ///< of plane_contact()
 
-/// Input of the contact law from the geometry of a joint. @param time_step dt [s]
+/// Converts the geometry of a joint to the input of the contact law.
+/// @param time_step dt [s]
 inline ContactKinematics contact_kinematics(const JointContact& contact, double time_step) {
   return {contact.normal, contact.penetration_depth, contact.effective_radius,
           contact.relative_velocity, time_step};
 }
 
-/// Velocity [m/s] of the material of a body at centre + arm. @param arm [m]
+/// Velocity [m/s] of the material of a body at the position centre + arm.
+/// @param arm [m]
 inline Vector3 material_velocity(const BodyMotion& body, const Vector3& arm) {
   return body.velocity + cross(body.angular_velocity, arm);
 }
@@ -49,9 +51,10 @@ inline Vector3 perpendicular_part(const Vector3& v, const Vector3& axis) {
 }
 
 /// Penetration depth of journal and bearing [m], eq. (12): delta = |d| - (R2 - R1), where d is the
-/// offset of eq. (11) perpendicular to the axis. Negative: gap. One square root.
+/// offset of eq. (11) perpendicular to the axis. A negative depth is a gap. The cost is one square
+/// root.
 /// @param journal_centre, bearing_centre [m]; @param journal_radius, bearing_radius [m]
-/// @param axis unit, the bearing's axis
+/// @param axis unit vector along the bearing's axis
 inline double revolute_penetration(const Vector3& journal_centre, double journal_radius,
                                    const Vector3& bearing_centre, double bearing_radius,
                                    const Vector3& axis) {
@@ -59,10 +62,11 @@ inline double revolute_penetration(const Vector3& journal_centre, double journal
          (bearing_radius - journal_radius);
 }
 
-/// Whether journal and bearing touch: revolute_penetration() > 0, decided on squares without a
-/// square root. The two can disagree within rounding, |delta| of about 1e-16 of the clearance. A
-/// bearing not larger than the journal counts as touching, so that revolute_contact() reports it.
-/// NaN positions count as touching too, so that the depth becomes NaN.
+/// Returns whether journal and bearing touch, i.e. revolute_penetration() > 0. It compares squares,
+/// without a square root. Both functions may disagree within rounding, |delta| of about 1e-16 of
+/// the clearance. A bearing not larger than the journal counts as touching, so that
+/// revolute_contact() reports it. NaN positions count as touching too, so that the depth becomes
+/// NaN.
 inline bool revolute_touches(const Vector3& journal_centre, double journal_radius,
                              const Vector3& bearing_centre, double bearing_radius,
                              const Vector3& axis) {
@@ -75,7 +79,7 @@ inline bool revolute_touches(const Vector3& journal_centre, double journal_radiu
 namespace detail {
 
 /// One contact of round bodies: a journal or ball inside a bearing or socket.
-/// @param centres centre 1 minus centre 2 [m]
+/// @param centres position of centre 1 minus that of centre 2 [m]
 /// @param offset d [m], the component of `centres` that closes the clearance
 /// @param concentric_normal returns the normal when d is zero
 template <class Normal>
@@ -106,20 +110,21 @@ JointContact round_contact(const BodyMotion& inner, double inner_radius, const B
 ///
 ///     d = r_C - r_D, perpendicular to the bearing's axis;   delta = |d| - c;   n = d/|d|.
 ///
-/// The paper's two contact points of eq. (14), r_C + R1 n and r_D + R2 n, are delta apart. Here
-/// there is one point, half-way between them and in the journal's mid-plane,
+/// The paper's two contact points of eq. (14), r_C + R1 n and r_D + R2 n, are delta apart. This
+/// function uses a single point half-way between them, in the journal's mid-plane,
 ///
 ///    P = r_C + (R1 - delta/2) n = r_D + (axial offset) + (R2 + delta/2) n,
 ///
 /// so that the moments of action and reaction balance. The velocities are those of the material at
-/// P, v + omega x arm. Eqs (15) and (16) differentiate the geometric points instead. That omits the
-/// spin, and with it the sliding of a rotating journal.
+/// P, v + omega x arm. Eqs (15) and (16) differentiate the geometric points instead. These
+/// derivatives omit the spin, and thus the sliding of a rotating journal.
 ///
-/// One square root, two divisions. The axial offset does not change the depth: the joint is
-/// infinitely long. Tilt of the journal relative to the axis is ignored.
+/// Cost: one square root, two divisions. The axial offset does not change the depth, because the
+/// joint counts as infinitely long. Tilt of the journal relative to the axis is ignored.
 /// @param journal_radius R1 [m], @param bearing_radius R2 [m], 0 < R1 < R2
-/// @param axis unit, the bearing's axis, either direction
-/// @return for concentric bodies a gap of -c with any unit normal perpendicular to the axis
+/// @param axis unit vector along the bearing's axis, either direction
+/// @return the contact; concentric bodies have a gap (depth -c) and any unit normal perpendicular
+///     to the axis
 /// @throws std::invalid_argument when not 0 < R1 < R2
 inline RevoluteContact revolute_contact(const BodyMotion& journal, double journal_radius,
                                         const BodyMotion& bearing, double bearing_radius,
@@ -133,7 +138,8 @@ inline RevoluteContact revolute_contact(const BodyMotion& journal, double journa
                                perpendicular_part(centres, axis), across_the_axis);
 }
 
-/// Penetration depth of a ball in its socket [m]: delta = |d| - (R2 - R1). Negative: gap.
+/// Penetration depth of a ball in its socket [m]: delta = |d| - (R2 - R1), d from socket centre to
+/// ball centre. A negative depth is a gap.
 /// @param ball_centre, socket_centre [m]; @param ball_radius R1, socket_radius R2 [m]
 inline double ball_penetration(const Vector3& ball_centre, double ball_radius,
                                const Vector3& socket_centre, double socket_radius) {
@@ -154,10 +160,10 @@ inline bool ball_touches(const Vector3& ball_centre, double ball_radius,
 ///     d = r_C - r_D;   delta = |d| - c;   n = d/|d|;   P = r_C + (R1 - delta/2) n.
 ///
 /// The bodies touch exactly along a circle of effective radius R1 R2/(R2 - R1), as Hertz's formulas
-/// assume. The whole inner sphere counts; the opening of the socket is ignored. One square root,
-/// two divisions.
+/// assume. The socket counts as a whole inner sphere; its opening is ignored. Cost: one square
+/// root, two divisions.
 /// @param ball_radius R1 [m], @param socket_radius R2 [m], 0 < R1 < R2
-/// @return for concentric bodies a gap of -c with normal x
+/// @return the contact; concentric bodies have a gap (depth -c) and the normal x
 /// @throws std::invalid_argument when not 0 < R1 < R2
 inline BallContact ball_contact(const BodyMotion& ball, double ball_radius,
                                 const BodyMotion& socket, double socket_radius) {
@@ -166,8 +172,8 @@ inline BallContact ball_contact(const BodyMotion& ball, double ball_radius,
                                [] { return Vector3(Vector3::UnitX()); });
 }
 
-/// Whether two balls touch each other from outside, decided on squares as in revolute_touches().
-/// NaN positions count as touching.
+/// Returns whether two balls touch each other from outside, by comparison of squares as in
+/// revolute_touches(). NaN positions count as touching.
 /// @param centre_1, centre_2 [m]; @param radius_1 R1, radius_2 R2 [m]
 inline bool outer_balls_touch(const Vector3& centre_1, double radius_1, const Vector3& centre_2,
                               double radius_2) {
@@ -175,16 +181,16 @@ inline bool outer_balls_touch(const Vector3& centre_1, double radius_1, const Ve
   return !((centre_1 - centre_2).squaredNorm() >= reach * reach);
 }
 
-/// Two balls that touch each other from outside. With d = r_1 - r_2
+/// Contact of two balls from outside. With d = r_1 - r_2
 ///
 ///     delta = R1 + R2 - |d|;   n = -d/|d|;   P = r_1 + (R1 - delta/2) n.
 ///
-/// It is ball_contact() with the socket turned inside out, R2 < 0. The effective radius is R1
-/// R2/(R1 + R2), the clearance -(R1 + R2) and the eccentricity -|d|. One square root, two
-/// divisions.
+/// This is ball_contact() for a socket turned inside out, R2 < 0. The effective radius is R1 R2/(R1
+/// + R2), the clearance -(R1 + R2) and the eccentricity -|d|. Cost: one square root, two divisions.
 /// @param radius_1 R1 [m], @param radius_2 R2 [m], both > 0; |d| > 0
 /// @throws std::invalid_argument when R1 or R2 is not > 0
-/// Limit: Hertz's contact is small relative to both balls; a depth near a radius has no meaning.
+/// Limit: Hertz's theory needs a contact small relative to both balls, i.e. a depth far below both
+/// radii.
 inline BallContact outer_ball_contact(const BodyMotion& ball_1, double radius_1,
                                       const BodyMotion& ball_2, double radius_2) {
   BallContact contact;
@@ -201,17 +207,18 @@ inline BallContact outer_ball_contact(const BodyMotion& ball_1, double radius_1,
   return contact;
 }
 
-/// Spherical pad of a slider against a flat end wall of its slot.
+/// Contact of a slider's spherical pad with the flat end wall of its slot.
 ///
 ///     delta = R - (w - (r_1 - r_2) . n),   P = r_1 + (R - delta/2) n,
 ///
-/// where w is the distance of the wall from the slot's centre. Material velocities at P as in
-/// revolute_contact(). The effective radius is R: the wall is flat. No square root, no division.
+/// where w is the distance of the wall from the slot's centre. The velocities are those of the
+/// material at P. The effective radius is R, because the wall is flat. Cost: no square root, no
+/// division.
 /// @param slider body 1, whose centre is the pad's centre of curvature
 /// @param pad_radius R [m], > 0
 /// @param slot body 2
-/// @param face_normal n, unit, world frame, from the slider into the wall
-/// @param face_distance w [m], wall minus slot centre along n
+/// @param face_normal unit normal n from the slider into the wall, world frame
+/// @param face_distance distance w [m] of the wall from the slot's centre along n
 inline PlaneContact plane_contact(const BodyMotion& slider, double pad_radius,
                                   const BodyMotion& slot, const Vector3& face_normal,
                                   double face_distance) {

@@ -9,8 +9,8 @@
 
 namespace statejump::kernel {
 
-/// Memory of a contact between steps. The caller stores it, rotates force and axis with the contact
-/// (transport() in frame.hpp) and default-constructs it for a new contact.
+/// Memory of a contact between steps. The caller stores it, rotates its force and axis with the
+/// contact (transport() in frame.hpp), and default-constructs it for a new contact.
 struct ContactHistory {
   Vector3 tangential_force = Vector3::Zero();  ///< spring force on body 1 [N]; no viscous part
   double tangential_stiffness = 0.0;  ///< k_t [N/m] when that force was stored; 0: new contact
@@ -19,7 +19,8 @@ struct ContactHistory {
   PartialSlipMemory memory{};                 ///< only for a law with partial slip
 };
 
-/// Elastic energy [J] of a contact's friction: of the memory if there is one, else of the spring.
+/// Elastic energy [J] of a contact's friction: that of the partial-slip memory if it exists,
+/// otherwise that of the spring.
 inline double elastic_energy(const ContactHistory& history) {
   if (history.memory.size() > 0) return elastic_energy(history.memory);
   const double stiffness = history.tangential_stiffness;
@@ -58,11 +59,10 @@ struct MindlinEnergy {
 /// has three parts, with F0 and k0 from the history, the current stiffness k and the slide u of
 /// this step:
 ///
-///  1. The stiffness follows the normal load. Loading (k >= k0): the new annulus of contact carries
-///     no
-///    traction yet, the force stays, F' = F0. Unloading (k < k0): the slide s stays, F' = F0 k/k0.
-///    Either way the spring loses the energy 1/2 F0^2/k0 - 1/2 F'^2/k >= 0 as micro-slip at the
-///    rim. Keeping F0 during unloading would create energy (Thornton, Cummins and Cleary, 2013).
+///  1. The stiffness follows the normal load. Loading (k >= k0): the new annulus of contact has no
+///    traction, so the force stays, F' = F0. Unloading (k < k0): the slide s stays, F' = F0 k/k0.
+///    Either way the spring loses the energy 1/2 F0^2/k0 - 1/2 F'^2/k >= 0 by micro-slip at the
+///    rim. If unloading kept F0, it would create energy (Thornton, Cummins and Cleary, 2013).
 ///  2. Stick: trial force T = F' - k u.
 ///  3. Coulomb: if |T| exceeds the limit, F1 = limit T/|T|; the excess slip = (|T| - limit)/k is
 ///    plastic. Otherwise F1 = T.
@@ -80,15 +80,16 @@ struct MindlinEnergy {
 ///    slip          1/2 (F' . T/|T| + limit) slip     (limit * slip in steady sliding)
 ///
 /// So the energy balance closes to rounding in every step, with one exception. If the force
-/// reverses within one step while the normal load decreases, the mean of the two end forces is
-/// below the true work. D would be negative by a term of second order in the step; D is then 0.
+/// reverses within a step while the normal load decreases, the mean of the two end forces
+/// underestimates the work. The identity would give a negative D of second order in the step, so D
+/// is set to 0.
 ///
 /// Cost: one square root and three divisions in a slip step, two divisions in a stick step.
-/// @param stiffness k [N/m]; <= 0: contact lost, all spring energy is released and counted as loss
-/// @param limit mu F_N [N]; <= 0: no friction, the force is exactly zero
+/// @param stiffness k [N/m]; <= 0 means that contact is lost; all spring energy then counts as loss
+/// @param limit mu F_N [N]; <= 0 means no friction; the force is then exactly zero
 /// @param slide u, tangential slide of 1 relative to 2 in this step [m]
-/// @param history in: F0 (already in the current tangent plane), k0; out: F1, k. A force stored
-///        with k0 = 0 is dropped.
+/// @param history on input F0 (in the current tangent plane) and k0, on output F1 and k. A force
+///     stored with k0 = 0 is ignored.
 /// Limits: a single spring for the whole contact; Mindlin and Deresiewicz's partial-slip loops
 /// below the limit are not resolved. A cyclic normal load reduces a stuck force, because loading
 /// keeps it and unloading scales it down.

@@ -28,7 +28,7 @@ class PartialSlipStep {
         tracks_energy_(memory.tracks_energy()),
         smallest_(1e-15 * slope_ * square_) {}
 
-  /// Loss of annuli whose pressure decreases uniformly to zero during a step [J].
+  /// Loss [J] of annuli whose pressure decreases uniformly to zero during a step.
   static double released(const Tangent& slide, PartialSlipMemory& memory) {
     const PartialSlipStep step(memory.edge() * 1e-9, 0.0, slide, memory);
     double sum = 0.0;
@@ -58,7 +58,7 @@ class PartialSlipStep {
   }
 
  private:
-  /// A point of the trial state: the old profile and its change in the step.
+  /// A point of the trial state: the old profile and its change in this step.
   struct Knot {
     double x;
     Tangent old;
@@ -70,8 +70,8 @@ class PartialSlipStep {
 
   /// Number of points, counted from the centre, that certainly stick and hence only move with the
   /// slide. Slip starts at the rim, so these are nearly all points of a sticking contact. The count
-  /// stops `neighbours` points before the first point that changes: the rest is projected and
-  /// merged. While the prefix is valid, its points are not visited.
+  /// ends `neighbours` points before the first point that may slip. The remaining points are
+  /// projected and merged. While the prefix is valid, its points are not visited.
   int count_stuck() {
     constexpr int neighbours = 2;
     const int most = old_.size() - neighbours + 1;
@@ -109,7 +109,7 @@ class PartialSlipStep {
     return size > 0.0 ? (k.bound / size) * k.trial : Tangent{};
   }
 
-  /// Makes the knots between which all functions are linear in x^2. Annuli that leave the contact
+  /// Creates knots, between which all functions are linear in x^2. Annuli that leave the contact
   /// lose their energy.
   void make_trial() {
     if (old_.size() == 0) push(knot(0.0, {}, 1.0));
@@ -135,8 +135,8 @@ class PartialSlipStep {
     return a.u + ((x - a.x) * (x + a.x) / ((b.x - a.x) * (b.x + a.x))) * (b.u - a.u);
   }
 
-  /// Loss of annuli that leave the contact during the step, while the square of its edge decreases
-  /// linearly in time.
+  /// Adds the loss of annuli that leave the contact during the step. The square of the edge radius
+  /// decreases linearly in time.
   void add_leaving_loss(const PartialSlipMemory::Point& a, const PartialSlipMemory::Point& b) {
     if (!tracks_energy_) return;
     const double fall = (old_edge_ - edge_) * (old_edge_ + edge_);
@@ -170,7 +170,7 @@ class PartialSlipStep {
     return size > 0.0 ? (1.0 / size) * v : Tangent{1.0, 0.0};
   }
 
-  /// Adds the piece between two knots: annuli outside the bound are projected onto it.
+  /// Adds the piece between two knots. Annuli outside the bound are projected onto it.
   void add_piece(const Knot& a, const Knot& b) {
     if (a.outside && b.outside && is_chord_of_bound(a, b)) {
       slip(a, b);
@@ -196,9 +196,10 @@ class PartialSlipStep {
     }
   }
 
-  /// Fraction of the distance in x^2, from a knot outside the bound to another, where |U| reaches
-  /// the bound; 2 if it does not. |U| - bound is convex there, so Newton's method does not
-  /// overshoot. If U has one direction, the first Newton step is exact.
+  /// Position where |U| reaches the bound, as a fraction of the distance in x^2 from a knot outside
+  /// the bound to another one; 2 if |U| does not reach it. The function |U| - bound is convex
+  /// there, so Newton's method does not overshoot. If U has one direction, the first Newton step is
+  /// exact.
   double crossing(const Knot& out, const Knot& other) const {
     const Tangent span = other.trial - out.trial;
     const double fall = other.bound - out.bound;
@@ -229,8 +230,9 @@ class PartialSlipStep {
     return k;
   }
 
-  /// A piece that slips as a whole. If the old direction differs from the slide, the direction
-  /// changes along the piece. Chords approximate it, each within chord_tolerance() in this step.
+  /// Adds a piece that slips as a whole. If its old direction differs from the slide, the direction
+  /// changes along the piece. Chords then approximate it, each within chord_tolerance() in this
+  /// step.
   void slip(const Knot& a, const Knot& b, int depth = 0) {
     if (!(b.x > a.x)) return;
     const double cross = a.trial.a * b.trial.b - a.trial.b * b.trial.a;
@@ -238,7 +240,8 @@ class PartialSlipStep {
     const bool turns = std::abs(cross) > straight * std::abs(along) || along < 0.0;
     if (turns && depth < most_divisions && knots_left()) {
       const Knot middle = knot_at(a, b, 0.5);
-      // an annulus in the middle with the mean |U| of both ends, as close to its bound as they are
+      // annulus in the middle: its |U| is the mean of both ends, so it is as close to its bound as
+      // they are
       Knot annulus = middle;
       annulus.old = (0.5 * (a.old.norm() + b.old.norm())) * direction(middle.old);
       annulus.trial = annulus.old + annulus.fraction * slide_;
@@ -265,8 +268,8 @@ class PartialSlipStep {
     add(b.x, projected(b), true);
   }
 
-  /// Largest change of force caused by one chord in this step [N]. During the slide that erases the
-  /// memory, the changes sum to `chord` times the limit, for any number of steps.
+  /// Allowed change of force by one chord in this step [N]. During the slide that erases the
+  /// memory, these changes sum to `chord` times the limit, for any number of steps.
   double chord_tolerance() const {
     return chord * edge_ * std::min(slope_ * square_, slide_.norm());
   }
@@ -277,9 +280,9 @@ class PartialSlipStep {
     return cross * cross > straight * straight * (a.squared() * b.squared());
   }
 
-  /// Whether the piece is a chord of the bound: the annuli between two knots slipped, in directions
-  /// between those of the knots. The chord itself lies inside the bound, so without this test its
-  /// annuli would seem to stick.
+  /// Returns whether the piece is a chord of the bound: the annuli between the two knots slipped,
+  /// in directions between those of the knots. The chord itself lies within the bound, so without
+  /// this test its annuli would seem to stick.
   bool is_chord_of_bound(const Knot& a, const Knot& b) const {
     constexpr double near = 0.8;  // cosine; slipping chords are divided at much smaller angles, a
                                   // kink is not such a chord
@@ -288,8 +291,8 @@ class PartialSlipStep {
            on_old_bound(a) && on_old_bound(b);
   }
 
-  /// Mean of U at both ends of the step, times the slip: the loss of annuli that slip during the
-  /// whole step, as they do on a chord of the bound. With it the energies balance.
+  /// Loss of annuli that slip during the whole step, as they do on a chord of the bound: the mean
+  /// of U at both ends of the step, times the slip. With this value the energies balance.
   static double loss_of_chord(const Knot& a, const Knot& b) {
     const auto mean = [](const Knot& k) { return 0.5 * (k.old + projected(k)); };
     const auto slipped = [](const Knot& k) { return k.trial - projected(k); };
@@ -299,21 +302,21 @@ class PartialSlipStep {
                              w.weight_ab * (mean(a).dot(slipped(b)) + mean(b).dot(slipped(a))));
   }
 
-  /// Whether the arrays have room to divide a chord. Each remaining piece may add three points, and
-  /// each half of a chord under division one.
+  /// Returns whether the arrays have room to divide a chord. Each remaining piece may add three
+  /// points, each half of a divided chord one point.
   bool knots_left() const {
     return stuck_ + size_ + 3 * pieces_left_ + 2 * most_divisions < largest;
   }
 
-  /// Adds a point of the new profile. @param on_bound whether the piece that ends here follows the
-  /// bound
+  /// Adds a point of the new profile.
+  /// @param on_bound whether the piece that ends at this point follows the bound
   void add(double x, const Tangent& u, bool on_bound) {
     add_checked(x, u, on_bound);
     turns_ =
         size_ > 1 && differ_in_direction(point_[static_cast<std::size_t>(size_ - 2)].u, last().u);
   }
 
-  /// Adds a point inside the bound after at least one other point. Usually it needs no comparison
+  /// Adds a point within the bound after at least one other point. It usually needs no comparison
   /// with earlier points.
   void add_stuck(double x, const Tangent& u) {
     if (turns_ || !(x > last().x) || differ_in_direction(last().u, u)) {
@@ -330,7 +333,7 @@ class PartialSlipStep {
       return;
     }
     if (on_bound && follows_ && size_ > 1) {
-      // two adjacent pieces that follow the bound in one direction are one piece
+      // two adjacent pieces on the bound with the same direction become one piece
       const Tangent& p = last().u;
       const Tangent& q = point_[static_cast<std::size_t>(size_ - 2)].u;
       const double cross = p.a * q.b - p.b * q.a;
@@ -343,7 +346,7 @@ class PartialSlipStep {
       }
     }
     if (size_ > 1) {
-      // drop the last point if this changes the force by less than a chord is allowed to
+      // drop the last point if its removal changes the force by less than the tolerance of a chord
       const PartialSlipMemory::Point& before = point_[static_cast<std::size_t>(size_ - 2)];
       if ((turns_ || differ_in_direction(last().u, u)) &&
           point_removal(before, last(), {x, u}).force() <= 0.25 * chord_tolerance()) {
@@ -358,12 +361,13 @@ class PartialSlipStep {
 
   PartialSlipMemory::Point& last() { return point_[static_cast<std::size_t>(size_ - 1)]; }
 
-  /// Writes the new profile. Removes points without effect; if too many remain, merges those that
-  /// change the force least.
+  /// Writes the new profile. Removes points without effect. If too many points remain, merges those
+  /// that change the force least.
   void store_memory() {
     double merged = old_.merged();
-    // When the contact grows, its old edge lies on a line if the path is straight, and near one in
-    // small steps of a curve. The limit is a thousandth of the least merged change.
+    // When the contact grows, its old edge lies on a line between neighbours if the path is
+    // straight, and near one in small steps of a curve. The threshold is a thousandth of the least
+    // merged change.
     const double nothing = edge_ > old_edge_ ? 1e-3 * least_merged * limit() : 0.0;
     for (int i = size_ - 2; i > 0 && i >= size_ - 3; --i) {
       const auto j = static_cast<std::size_t>(i);
@@ -380,9 +384,9 @@ class PartialSlipStep {
     old_.append(point_.data(), size_);
   }
 
-  /// Extends the prefix: the first points, whose common motion is stored once. The prefix gains the
-  /// points that would still stick after `steps` steps like this one. The change costs a pass over
-  /// all points, so it needs a gain of at least `least` points.
+  /// Extends the prefix, i.e. the first points, whose common motion is stored once. Points are
+  /// added if they would still stick after `steps` steps like this one. The extension visits all
+  /// points, so it must gain at least `least` points.
   void update_prefix() {
     constexpr int least = 4;
     constexpr int loose = 2;  // neighbours of the changing points, which often change with them
@@ -410,7 +414,8 @@ class PartialSlipStep {
     if (end >= least) old_.set_prefix(end, bound(0.0) - room, bound(old_[end - 1].x) - room);
   }
 
-  /// Merges points that change the force least into chords. @return sum of the force changes [N]
+  /// Replaces points that change the force least by chords.
+  /// @return sum of the force changes [N]
   double merge() {
     old_.flush_prefix();
     std::copy_backward(point_.begin(), point_.begin() + size_, point_.begin() + stuck_ + size_);
@@ -482,8 +487,8 @@ class PartialSlipStep {
 /// Then Hertz's sphere is w = 3/2 C x^2 and F_N = C x^3, with C = F_N/k^3 and k = 8 G* a. The same
 /// punches, moved sideways by s(x) dw, carry the tractions s(x) times the pressure increments.
 /// Every partial-slip solution from Cattaneo's on is one s(x) with |s| <= mu (Jaeger, Arch. Appl.
-/// Mech. 65, 1995; Ciavarella, J. Appl. Mech. 65, 1998). All annuli inside x move with the punches
-/// around them, U(x) = integral of s dw from x to k. Then
+/// Mech. 65, 1995; Ciavarella, J. Appl. Mech. 65, 1998). Each annulus moves with all punches that
+/// contain it, so its displacement is U(x) = integral of s dw from x to k. Then
 ///
 ///    force       T = integral of s dF_N = integral of U dx
 ///    energy      E = 1/2 integral of U^2 dx
@@ -500,16 +505,16 @@ class PartialSlipStep {
 ///
 /// During a step with straight slide and approach, the bound moves uniformly. Each annulus ends at
 /// U + slide or, if that exceeds the bound, on the bound. So the step is exact for any length and
-/// any state, loss of annuli included. U stays linear in x^2 between points. A reversal adds a
-/// point, a closed loop removes it. A curved path under growing load adds one point per step.
-/// Beyond PartialSlipMemory::capacity, points that change the force least are replaced by chords;
-/// merged() sums these changes. Curved paths are approximated by straight steps, with an error of
-/// second order in the step.
+/// state, also if annuli leave the contact. U stays linear in x^2 between points. A reversal adds a
+/// point, a closed loop removes it. A curved path under growing load adds one point per step. Above
+/// PartialSlipMemory::capacity points, chords replace those that change the force least; merged()
+/// sums these changes. Curved paths are approximated by straight steps, with an error of second
+/// order in the step.
 ///
 /// Energy. The loss of a slipping annulus is its bound times its slip, integrated over time and,
 /// with three Gauss points, over x: exact under constant load. No term is negative. The work of T
 /// along the path equals the change of E plus the loss. An integrator that uses the mean of T at
-/// both ends of the step differs from that work at second order, as it does for the normal force.
+/// both ends of a step has a second-order error in this work, as in that of the normal force.
 ///
 /// In the plane, U and slide are vectors; a slipping annulus returns to its bound radially. The row
 /// of springs then only approximates the half-space, whose annuli interact perpendicular to the
@@ -517,12 +522,12 @@ class PartialSlipStep {
 /// erases the memory, each chord changes the force by at most 1e-4 of the limit. The loss of such a
 /// piece is the mean of U times its slip. A rare negative value counts as zero.
 ///
-/// @param stiffness k = 8 G* a [N/m], a the contact radius at the end of the step; <= 0: the
-///        contact is lost
-/// @param limit mu F_N [N]; <= 0: no friction. If F_N includes viscous damping, all pressures are
-///        scaled by the same factor.
-/// @param slide of body 1 relative to body 2 in this step [m]
-/// @param memory of this contact; updated. If tracks_energy() is false, both energies are 0.
+/// @param stiffness k = 8 G* a [N/m], with the contact radius a at the end of the step; <= 0 means
+///     that contact is lost
+/// @param limit mu F_N [N]; <= 0 means no friction. If F_N includes viscous damping, all pressures
+///        are scaled by the same factor.
+/// @param slide slide of body 1 relative to body 2 in this step [m]
+/// @param memory memory of this contact, updated; if its tracks_energy() is false, energies are 0
 /// Limits: identical materials (or both incompressible), else normal and tangential tractions are
 /// coupled; half-space, a << R; quasi-static; mu constant over the area. The small slip
 /// perpendicular to the slide, caused by Poisson's ratio, is neglected, as in all these sources.

@@ -9,8 +9,8 @@
 
 namespace statejump::kernel {
 
-/// Force of one partial_slip_step() in one direction, with derivatives. Implicit solvers evaluate
-/// it for many end points before they accept a step.
+/// Force of one partial_slip_step() along a line, with derivatives. Implicit solvers evaluate it
+/// for many end points before they accept a step.
 struct PartialSlipLine {
   double force = 0.0;         ///< force on body 2 along the slide [N]
   double by_slide = 0.0;      ///< derivative by the slide [N/m], from 0 (all annuli slip) to the
@@ -20,14 +20,15 @@ struct PartialSlipLine {
   double centre = 0.0;        ///< U of the innermost annulus, the last one to slip, if it stuck [m]
   double bound =
       0.0;  ///< bound of U there, the last annulus to slip, in the direction of `centre` [m]
-  /// Numbers of sticking pieces and of pieces slipping in either direction. The law is smooth as
-  /// long as these numbers do not change.
+  /// Numbers of pieces that stick, slip in plus and slip in minus direction. The law is smooth
+  /// while these numbers do not change.
   int stuck = 0, plus = 0, minus = 0;
 };
 
 namespace detail {
 
-/// End of a piece over which all functions are linear in x^2. U has one component or two.
+/// End of a piece over which all functions are linear in x^2. The displacement U has one or two
+/// components.
 template <class Displacement>
 struct SlipKnot {
   double x;
@@ -44,8 +45,8 @@ struct SlipKnot {
 };
 using LineKnot = SlipKnot<double>;
 
-/// Passes the pieces at the end of a step to `sum`, from the centre to the edge.
-/// @param of returns the displacement of a memory point, as a Displacement
+/// Passes all pieces at the end of a step to `sum`, from the centre to the edge.
+/// @param of function that returns the displacement of a memory point
 /// @return the knot at the centre
 template <class Displacement, class Of, class Sum>
 SlipKnot<Displacement> add_pieces(double edge, double slope, const Displacement& slide,
@@ -120,7 +121,7 @@ class LineSum {
  private:
   bool sticks(const LineKnot& k) const { return std::abs(k.trial) <= k.bound + smallest_; }
 
-  /// @param sense slip direction of the piece, +1 or -1; 0: it sticks
+  /// @param sense slip direction of the piece, +1 or -1, or 0 if it sticks
   void add(const LineKnot& a, const LineKnot& b, double sense) {
     const ProductWeights w(a.x, b.x);
     const auto integral = [&](double at_a, double at_b) {
@@ -148,8 +149,8 @@ class LineSum {
 }  // namespace detail
 
 /// Force and derivatives at the end of a step along one direction. The force equals that of
-/// partial_slip_step() to rounding, apart from merged points. An annulus that just reaches its
-/// bound counts as sticking in the derivatives. A contact that neither grows nor shrinks has the
+/// partial_slip_step() up to rounding and merged points. An annulus that just reaches its bound
+/// counts as sticking in the derivatives. A contact that neither grows nor shrinks has the
 /// derivatives of a shrinking one.
 ///
 /// Derivation. T = integral of U dx over the annuli. U = start + slide where an annulus sticks, and
@@ -157,10 +158,11 @@ class LineSum {
 /// the derivative of T contains only dU, no boundary terms. If the contact grows from an edge e, a
 /// new annulus x takes part in the fraction (k^2 - x^2)/(k^2 - e^2) of the slide.
 ///
-/// @param stiffness 8 G* a at the end of the step [N/m]; <= 0: no contact, all results are 0
-/// @param limit mu F_N there [N]; <= 0: all results are 0
-/// @param slide of body 1 relative to body 2 in the step, along the first tangent [m]
-/// @param memory at the start of the step; displacements perpendicular to the slide are ignored
+/// @param stiffness 8 G* a at the end of the step [N/m]; <= 0 means no contact, all results are 0
+/// @param limit mu F_N at the end of the step [N]; <= 0 gives zeros
+/// @param slide slide of body 1 relative to body 2 in the step, along the first tangent [m]
+/// @param memory memory at the start of the step; displacements perpendicular to the slide are
+///     ignored
 inline PartialSlipLine partial_slip_line(double stiffness, double limit, double slide,
                                          const PartialSlipMemory& memory) {
   PartialSlipLine line;

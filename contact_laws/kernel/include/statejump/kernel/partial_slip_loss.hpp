@@ -9,7 +9,7 @@
 
 namespace statejump::kernel::detail {
 
-/// Quantities of one annulus during a step, as components along its slip direction.
+/// Quantities of one annulus in a step. Displacements are components along its slip direction.
 struct SlipAnnulus {
   double start;          ///< U before the step [m]
   double slide;          ///< of the two bodies while the annulus is in contact [m]
@@ -19,7 +19,7 @@ struct SlipAnnulus {
   double stick() const { return std::max(0.0, before - start); }  ///< slide until slip
   double speed() const { return slide - change(); }  ///< rate at which U approaches the bound
   double slip() const { return std::max(0.0, start + slide - after); }
-  /// Loss per unit of x: slip times the mean of the bound during the slip.
+  /// Loss per unit of x: the slip times the mean of the bound during slip.
   double loss() const {
     const double sticks = stick();
     const double met = sticks > 0.0 ? before + change() * std::min(1.0, sticks / speed()) : before;
@@ -31,8 +31,8 @@ struct SlipAnnulus {
 inline constexpr std::array<double, 3> gauss_point{0.1127016653792583, 0.5, 0.8872983346207417};
 inline constexpr std::array<double, 3> gauss_weight{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
 
-/// Loss of a piece that slips in one direction [J]. The members of SlipAnnulus are linear in x^2
-/// between the ends. The loss is then a polynomial and the Gauss rule exact, except if annuli stick
+/// Loss [J] of a piece that slips in one direction. Between its ends, the members of SlipAnnulus
+/// are linear in x^2. So the loss is a polynomial and the Gauss rule is exact, unless annuli stick
 /// until they reach a moving bound.
 inline double loss(double xa, const SlipAnnulus& a, double xb, const SlipAnnulus& b) {
   const bool moves = a.change() != 0.0 || b.change() != 0.0;

@@ -25,16 +25,16 @@ struct Tangent {
 /// Memory of a contact with partial slip: the elastic displacement U of its annuli, piecewise
 /// linear in x^2; see partial_slip_step().
 ///
-/// In a sticking contact nearly all annuli move equally. The first points may therefore form a
-/// ShiftedPrefix: the stored values of its points are not updated; their common shift, force and
-/// energy are stored separately. A step then needs no pass over these points.
+/// In a sticking contact nearly all annuli move equally. So the first points may form a
+/// ShiftedPrefix, whose common shift, force and energy are stored separately while the stored
+/// values of its points stay unchanged. A step then needs no pass over these points.
 class PartialSlipMemory {
  public:
   struct Point {
     double x;   ///< 8 G* r [N/m], r the radius of the annulus
     Tangent u;  ///< elastic displacement of that annulus [m]
   };
-  /// Data of the first points as long as they only move by a common shift.
+  /// Data of the first points while they only move by a common shift.
   struct ShiftedPrefix {
     int count = 0;           ///< number of points; 0: none, the other members are not used
     Tangent shift{};         ///< displacement common to all points since they were stored [m]
@@ -44,7 +44,7 @@ class PartialSlipMemory {
     double at_last = 0.0;    ///< value of that upper bound at the last point of the prefix [m]
   };
   /// Largest number of points. A path of straight parts with nested reversals needs two points per
-  /// reversal. A smooth curve under growing load is approximated by chords, see merged().
+  /// reversal. Chords approximate a smooth curve under growing load, see merged().
   static constexpr int capacity = 48;
 
   PartialSlipMemory() = default;
@@ -59,18 +59,19 @@ class PartialSlipMemory {
     const Tangent u{point[1], point[2]};
     return {point[0], i < prefix_.count ? u + prefix_.shift : u};
   }
-  /// Stiffness 8 G* a [N/m] of the contact at its last step; 0: no contact.
+  /// Stiffness 8 G* a [N/m] of the contact at its last step; 0 without contact.
   double edge() const { return points_.empty() ? 0.0 : points_.back()[0]; }
   /// Slope of the bound on |U| with respect to x^2 [m^3/N^2].
   double slope() const { return slope_; }
-  /// Sum of the absolute force changes by merged points since the contact began [N]: an upper bound
-  /// on the error of the force.
+  /// Sum of the absolute force changes [N] due to merged points since the contact began. It is an
+  /// upper bound of the force error.
   double merged() const { return merged_; }
   const ShiftedPrefix& prefix() const { return prefix_; }
-  /// Whether steps compute energies; they take a third of the time of a step.
+  /// Returns whether steps compute energies, which takes a third of their time.
   bool tracks_energy() const { return tracks_energy_; }
   void set_tracks_energy(bool tracks_energy) { tracks_energy_ = tracks_energy; }
-  /// x [N/m] and both components of U [m]; points of the prefix are without its shift.
+  /// Each point holds x [N/m] and both components of U [m]. Points of the prefix do not include its
+  /// shift.
   const std::vector<Vector3>& points() const { return points_; }
   /// Moves the points out; the memory is then empty.
   std::vector<Vector3> take_points() {
@@ -94,7 +95,7 @@ class PartialSlipMemory {
       points_[j] = {points->x, points->u.a, points->u.b};
     }
   }
-  /// Keeps the first points, displaced by a slide [m], and removes the others.
+  /// Keeps the first `count` points, displaced by a slide [m], and removes the others.
   /// @param count at least the number of points in the prefix
   void keep(int count, const Tangent& slide, double slope, double merged) {
     if (prefix_.count > 0) prefix_.shift = prefix_.shift + slide;
@@ -104,8 +105,8 @@ class PartialSlipMemory {
     merged_ = merged;
   }
 
-  /// Whether all points of the prefix stay inside a bound after a slide. The bound is linear in
-  /// x^2, with the given values at x = 0 and at the last point of the prefix [m].
+  /// Returns whether all points of the prefix stay within a bound after a slide. The bound is
+  /// linear in x^2; its values at x = 0 and at the last point of the prefix are given [m].
   bool prefix_fits(const Tangent& slide, double at_centre, double at_last) const {
     const double room = std::min(at_centre - prefix_.at_centre, at_last - prefix_.at_last);
     return prefix_.count > 0 && room >= 0.0 && (prefix_.shift + slide).squared() <= room * room;
@@ -115,8 +116,9 @@ class PartialSlipMemory {
     move(0, prefix_.count, prefix_.shift);
     prefix_.count = 0;
   }
-  /// Makes the first `count` points the prefix. The prefix must be empty.
-  /// @param at_centre, at_last upper bound of |U|, linear in x^2 [m]
+  /// Makes the first `count` points the prefix, which must be empty.
+  /// @param at_centre, at_last upper bound of |U|, linear in x^2, at the centre and the last point
+  ///     [m]
   void set_prefix(int count, double at_centre, double at_last);
 
  private:
@@ -144,7 +146,7 @@ struct PartialSlipResponse {
 
 namespace detail {
 
-/// Weights of the integral of f g over x from xa to xb, where f and g are linear in x^2.
+/// Weights for the integral over x of f g from xa to xb, where f and g are linear in x^2.
 struct ProductWeights {
   double weight_aa, weight_ab, weight_bb;  ///< for f_a g_a; for f_a g_b and f_b g_a; for f_b g_b
   ProductWeights(double xa, double xb) {
@@ -157,20 +159,20 @@ struct ProductWeights {
   }
 };
 
-/// Effect of removing a point b between its neighbours a and c.
+/// Effect of removing a memory point b between its neighbours a and c.
 struct PointRemoval {
   double squared_offset;  ///< squared distance of the point from the chord a c [m^2]
   double x_a, x_b, x_c;   ///< of the point b and its neighbours [N/m]
 
-  /// Change of force [N]: the offset times the mean base of the triangle over x, with the weights
-  /// of the two pieces at b.
+  /// Change of force [N]: the offset times the mean base of the triangle over x. The mean uses the
+  /// weights of the two pieces at b.
   double force() const {
     const double base = (x_b - x_a) * (2.0 * x_b + x_a) / (3.0 * (x_b + x_a)) +
                         (x_c - x_b) * (2.0 * x_c + x_b) / (3.0 * (x_c + x_b));
     return std::sqrt(squared_offset) * std::abs(base);
   }
-  /// Whether force() exceeds a limit >= 0. Rarely evaluates force(), because the base is at least
-  /// half the distance of the neighbours.
+  /// Returns whether force() exceeds a limit >= 0. It rarely evaluates force(), because the base is
+  /// at least half the distance between the neighbours.
   bool exceeds(double limit) const {
     const double half = 0.5 * (1.0 - 1e-12) * (x_c - x_a);
     return squared_offset * (half * half) > limit * limit || force() > limit;
@@ -186,15 +188,15 @@ inline PointRemoval point_removal(const PartialSlipMemory::Point& a,
   return {off.squared(), a.x, b.x, c.x};
 }
 
-/// Integrals over x of U [N] and of U^2 [J], summed over the pieces.
+/// Integrals of U [N] and of U^2 [J] over x, summed over the pieces.
 struct SlipSums {
   Tangent force{};
   double squares = 0.0;
 
-  /// On a piece U = U_a + theta (U_b - U_a), with theta from 0 to 1, linear in x^2. The integrals
-  /// of theta and theta^2 over dx follow from ProductWeights: d (1/2 - q/6) and d (1/3 - q/6 +
-  /// q^2/30).
-  /// @tparam both whether to compute the squares, too
+  /// On a piece, U = U_a + theta (U_b - U_a), where theta from 0 to 1 is linear in x^2. The
+  /// integrals of theta and theta^2 over dx follow from ProductWeights: d (1/2 - q/6) and d (1/3 -
+  /// q/6 + q^2/30).
+  /// @tparam both whether the squares are computed as well
   template <bool both>
   void add(const PartialSlipMemory::Point& a, const PartialSlipMemory::Point& b) {
     const double d = b.x - a.x;
@@ -236,7 +238,7 @@ inline double elastic(const SlipSums& sums) {
   return std::max(0.0, 0.5 * sums.squares);
 }
 
-/// Force, energy and the given loss of a memory after a step.
+/// Force and energy of a memory after a step, together with the given loss.
 inline PartialSlipResponse response_of(const PartialSlipMemory& memory, double loss,
                                        bool slipping) {
   if (!memory.tracks_energy()) return {sums_of<false>(memory).force, 0.0, 0.0, slipping};

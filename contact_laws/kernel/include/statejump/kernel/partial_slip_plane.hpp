@@ -41,7 +41,7 @@ class PlaneSum {
       stick(a, b);
       return;
     }
-    // |U| equals its bound between a and b where q0 + 2 q1 s + q2 s^2 = 0.
+    // Between a and b, |U| equals its bound where q0 + 2 q1 s + q2 s^2 = 0.
     const Tangent span = b.trial - a.trial;
     const double fall = b.bound - a.bound;
     const double q0 = a.trial.squared() - a.bound * a.bound;
@@ -95,8 +95,8 @@ class PlaneSum {
     by_edge_ = by_edge_ + (at_a * a.by_growth + at_b * b.by_growth) * slide_;
   }
 
-  /// Adds a piece that slips. Each annulus ends at bound U/|U|. Gauss points in each of `parts`
-  /// subintervals integrate it: the sum is continuous, and exact if the direction is constant.
+  /// Adds a piece that slips, whose annuli end at bound U/|U|. Gauss points in each of `parts`
+  /// subintervals integrate it. The sum is continuous, and exact if the direction is constant.
   void slip(const PlaneKnot& a, const PlaneKnot& b) {
     constexpr int parts = 4;
     ++slips_;
@@ -136,11 +136,10 @@ class PlaneSum {
 }  // namespace detail
 
 /// Force and derivatives at the end of a step in the plane. If the slip direction of a piece
-/// changes, partial_slip_step() approximates it by chords (1e-4 of the limit) and its force has
-/// jumps of that size; here the piece is integrated. Along one direction the result is that of
-/// partial_slip_line().
+/// changes, partial_slip_step() uses chords, and its force has jumps of 1e-4 of the limit. This
+/// function integrates the piece instead. Along one direction it equals partial_slip_line().
 /// @param stiffness, limit, memory as in partial_slip_line()
-/// @param slide of body 1 relative to body 2 in the step [m]
+/// @param slide slide of body 1 relative to body 2 in the step [m]
 inline PartialSlipPlane partial_slip_plane(double stiffness, double limit, const Tangent& slide,
                                            const PartialSlipMemory& memory) {
   PartialSlipPlane plane;

@@ -8,11 +8,12 @@
 
 namespace statejump::kernel {
 
-/// An argument out of range, as fields. what() is "[item: ]name = value, allowed is range".
+/// An argument out of range, with its data as fields. what() is "[item: ]name = value, allowed is
+/// range".
 class OutOfRange : public std::invalid_argument {
  public:
-  /// @param item that the argument belongs to, for example "slider 'J3'"; may be empty
-  /// @param name of the argument, @param value its value, @param range allowed range, with its unit
+  /// @param item object that the argument belongs to, for example "slider 'J3'"; may be empty
+  /// @param name name of the argument, @param value its value, @param range allowed range with unit
   OutOfRange(std::string item, std::string name, double value, std::string range)
       : OutOfRange(std::move(item), std::move(name), true, value, digits(value), std::move(range)) {
   }
@@ -55,9 +56,9 @@ class OutOfRange : public std::invalid_argument {
 };
 
 /// Rejects an argument out of range.
-/// @param holds the condition; nothing happens when it is true
-/// @param name of the argument, @param value its value, @param range allowed range, with its unit
-/// @throws OutOfRange
+/// @param holds whether the argument is in its range
+/// @param name name of the argument, @param value its value, @param range allowed range with unit
+/// @throws OutOfRange unless `holds`
 inline void require(bool holds, const char* name, double value, const char* range) {
   if (!holds) throw OutOfRange("", name, value, range);
 }

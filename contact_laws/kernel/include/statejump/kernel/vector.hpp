@@ -5,7 +5,7 @@
 
 namespace statejump::kernel {
 
-/// Vector in the world frame; each use documents its unit. Not over-aligned, so any class can
+/// Vector in the world frame; each use documents its unit. It is not over-aligned, so any class can
 /// contain it without an aligned allocator.
 using Vector3 = Eigen::Vector3d;
 

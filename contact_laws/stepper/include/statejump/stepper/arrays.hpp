@@ -14,13 +14,14 @@
 
 namespace statejump::stepper {
 
-/// Thermal strain shared by bodies that have the same strain now and that the same engines set.
+/// Thermal strain shared by all bodies that currently have this strain and are heated by the same
+/// engines.
 struct Strain {
   double strain = 0;  ///< [-]
   double rate = 0;    ///< rate over the last step [1/s]
 };
 
-/// Sets thermal strains to expansion coefficient times temperature change, like a
+/// Sets each thermal strain to the expansion coefficient times the temperature change, like a
 /// ThermalExpansionEngine.
 struct Heater {
   struct Target {
@@ -52,7 +53,7 @@ struct Contact {
   double stable_stiffness = 0;  ///< stable_stiffness() of the physics [N/m]
 };
 
-/// A link with its program and the constants computed before the first step.
+/// A link with the index of its program and with constants that are computed before the first step.
 struct LinkEntry {
   Link link;
   std::size_t program;            ///< index in Scene::programs
@@ -72,14 +73,14 @@ struct Guide {
   Vector3 normal;
 };
 
-/// Links of one engine. If a link rotates its tip, the engine sums the forces of all bodies
-/// before it adds its own forces.
+/// Links of one engine. If a link rotates its tip, the engine sums the forces of all bodies before
+/// it adds forces.
 struct Links {
   std::vector<LinkEntry> links;
   bool needs_moments = false;
 };
 
-/// Stages that add forces after the contacts, one per engine, in the order of the engines.
+/// Stages that add forces after the contact forces, one per engine, in the order of the engines.
 using Stage =
     std::variant<Links, std::vector<TorsionEntry>, std::vector<Prismatic>, std::vector<Guide>>;
 
@@ -124,7 +125,7 @@ const std::vector<Entry>& entries(const std::vector<Entry>& stage) {
 }
 
 inline Vector3 axis_of(const Quaternion& q) {
-  // Local z axis in the world: orientation * (0, 0, 1) without the products with zero. Adding +0
+  // Local z axis in the world frame: orientation * (0, 0, 1) without products with zero. Adding +0
   // removes a negative zero, so the axis has the same bits after any rotation about z.
   return {2 * (q.x() * q.z() + q.w() * q.y()) + 0.0, 2 * (q.y() * q.z() - q.w() * q.x()) + 0.0,
           1 - 2 * (q.x() * q.x() + q.y() * q.y())};

@@ -37,14 +37,15 @@ class Batches {
   explicit Batches(const BatchedArrays& arrays) : arrays_(arrays) {}
 
   /// @param hertz_mindlin whether all contacts have the Hertz–Mindlin law
-  /// @param nothing_between whether the integrator is the first engine to sum the forces
+  /// @param nothing_between whether no engine between the contacts and the integrator sums the
+  ///     forces
   void fill(bool hertz_mindlin, bool nothing_between);
 
   /// Whether fill() found contacts or bodies for a batch.
   bool useful() const { return useful_; }
 
   /// Steps all contacts in their order.
-  /// @param one function that steps a single contact, by index; it returns false if it cannot
+  /// @param one function that steps the contact with a given index; it returns false if it cannot
   template <class One>
   bool step_contacts(const One& one) {
     if (arrays_.uses_avx2) {
@@ -63,7 +64,7 @@ class Batches {
   void unload();
 
  private:
-  // Consecutive contacts that form one batch or are stepped one by one.
+  // Consecutive contacts, which either form one batch or are stepped one by one.
   struct ContactRun {
     bool is_batch;
     std::size_t first, count;  // if is_batch, `first` is the index in contacts_
@@ -74,7 +75,8 @@ class Batches {
            contact.joint != Joint::bore && contact.physics.slipMemory.empty() &&
            !(contact.joint == Joint::revolute && contact.tilted);
   }
-  // Contacts of a batch. A mover exists if their first bodies have no other interaction.
+  // Contacts of a batch. It has a mover (a batch of bodies) if the contacts' first bodies have no
+  // other interaction.
   struct Batch {
     ContactLanes contacts;
     std::size_t mover;  // index in movers_, or `none`
@@ -167,8 +169,8 @@ inline void Batches::fill(bool hertz_mindlin, bool nothing_between) {
       ++first;
     }
   }
-  // Energies of the motion are summed body by body, so movers require that damping and gravity are
-  // zero or that energies are off.
+  // Kinetic energies are summed body by body, so batches of bodies require zero damping and
+  // gravity, or no energy tracking.
   const bool is_simple =
       nothing_between &&
       (!arrays_.tracks_energy || (arrays_.newton.damping == 0 && arrays_.newton.gravity.isZero(0)));
@@ -277,8 +279,8 @@ inline void Batches::load(ContactLanes& batch, std::size_t lane) {
   put(batch.velocity_2, lane, two.motion.velocity);
   put(batch.spin_1, lane, one.motion.angular_velocity);
   put(batch.spin_2, lane, two.motion.angular_velocity);
-  // Without spins, products with a spin are 0 and change at most the sign of a 0 in a sum. A
-  // velocity that is not -0 never becomes -0.
+  // Without spins, every product with a spin is 0 and can change only the sign of a zero sum. A
+  // velocity that is not -0 never becomes -0 in this way.
   for (const Body* body : {&one, &two}) {
     for (int i = 0; i < 3; ++i) {
       const double velocity = body->motion.velocity[i];
@@ -355,7 +357,8 @@ bool Batches::act(ContactLanes& batch, const LanesStep& step, const One& one) {
   return true;
 }
 
-// apply() through the scene arrays, for bodies moved with this batch. @param added forces [N]
+// Like apply(), but through the scene arrays, for bodies moved with this batch.
+// @param added forces [N]
 template <bool tracks_energy, class One>
 bool Batches::apply_via_arrays(ContactLanes& batch, BodyLanes& bodies, const LanesStep& step,
                                const One& one, Pack3& added) {

@@ -35,23 +35,24 @@ struct Body {
   double inverse_mass = 0;            ///< [1/kg], 0 for a body that cannot move
   unsigned blocked = all_dofs;
   bool damped = true;
-  // Forces added since the last sum, by any thread as in YADE, and their sums.
+  // Forces since the last sum (`added_...`), from any thread as in YADE, and the sums.
   Vector3 added_force = Vector3::Zero(), added_torque = Vector3::Zero();
   Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
   Vector3 permanent_force = Vector3::Zero(), permanent_torque = Vector3::Zero();
-  // The collider must run again when the body has moved by bound_reach from here [m].
+  // When the body is farther than bound_reach [m] from this position, the collider must run again.
   Vector3 bound_position = Vector3::Zero();
   double bound_reach = 0;
   bool bounded = false;
   bool rotates = false;  ///< its orientation changes or can change
   bool moves = false;    ///< any part of its state changes or can change
-  // A link that rotates its tip in the plane overwrites the tip's orientation; it needs only the
-  // half space of the old quaternion. So the integrator may skip the rotation.
+  // A link that rotates its tip in the plane overwrites the tip's orientation. It uses only the
+  // half space of the old quaternion, so the integrator may skip the rotation.
   bool rotation_deferrable = false;  ///< only such a link and round joints read the orientation
   bool rotation_deferred = false;    ///< the rotation of the last step was skipped
 };
 
-/// Adds the new forces to the sums. @param first whether this is the first sum of the step
+/// Adds the new forces to the force sums.
+/// @param first whether this is the first sum of the step
 inline void sum_forces(Body& body, bool first) {
   if (first) {
     body.force = body.added_force + body.permanent_force;
@@ -77,7 +78,8 @@ inline void damp(double damping, double time_step, const Vector3& velocity, Vect
   }
 }
 
-/// Whether normalization, all that a rotation without spin does, keeps the orientation.
+/// Returns whether normalization leaves the orientation unchanged. A rotation without spin only
+/// normalizes.
 inline bool is_normalized(const Quaternion& orientation) {
   Quaternion normalized = orientation;
   normalized.normalize();
@@ -86,7 +88,7 @@ inline bool is_normalized(const Quaternion& orientation) {
 
 }  // namespace detail
 
-/// Whether no part of the body's state changes unless another object rotates it.
+/// Returns whether the body's state cannot change unless another object rotates the body.
 inline bool is_at_rest(const Body& body) {
   return body.blocked == all_dofs && body.motion.velocity.isZero(0) &&
          body.motion.angular_velocity.isZero(0) && detail::is_normalized(body.orientation);
@@ -97,7 +99,7 @@ inline bool can_rotate(const Body& body) {
          !body.motion.angular_velocity.isZero(0) || !detail::is_normalized(body.orientation);
 }
 
-/// Whether the collider would run again because of the body's current position.
+/// Returns whether the collider would run again because of the body's current position.
 inline bool left_bound(const Body& body) {
   if (!body.bounded) return false;
   const Vector3 moved = body.motion.position - body.bound_position;
@@ -106,8 +108,9 @@ inline bool left_bound(const Body& body) {
   return most != 0 && !(most < body.bound_reach);
 }
 
-/// Rotates a body by its spin, as the last part of a step. Not inlined: otherwise the caller loads
-/// the data of the body before it knows whether the rotation can be deferred. @param time_step [s]
+/// Rotates a body by its spin, as the last part of a step. The function is not inlined: otherwise
+/// the caller loads the body's data before it knows whether the rotation can be deferred.
+/// @param time_step [s]
 [[gnu::noinline]] inline void turn(Body& body, double time_step) {
   const Vector3& spin = body.motion.angular_velocity;
   const double speed_squared = spin.squaredNorm();
@@ -119,9 +122,9 @@ inline bool left_bound(const Body& body) {
   body.orientation.normalize();
 }
 
-/// Whether the integrator may skip the rotation of this step, because a link overwrites it. All
-/// rotations must be about z, so that the axis stays fixed. The rotation must be small, so that the
-/// quaternion stays in its half space.
+/// Returns whether the integrator may skip the rotation of this step, because a link overwrites it.
+/// The rotation must be about z, so that the axis stays fixed, and small, so that the quaternion
+/// stays in its half space.
 inline bool can_defer_rotation(const Body& body, double time_step) {
   const Quaternion& lies = body.orientation;
   const Vector3& spin = body.motion.angular_velocity;
@@ -129,7 +132,8 @@ inline bool can_defer_rotation(const Body& body, double time_step) {
          spin.y() == 0 && std::abs(spin.z()) * time_step < 0.1;
 }
 
-/// One leapfrog step with the current force sums. @param time_step [s]
+/// Makes one leapfrog step with the current force sums.
+/// @param time_step [s]
 /// @param last whether other code may read the body before its next step
 inline void move(Body& body, const Newton& newton, double time_step, bool last = true) {
   if (body.blocked != all_dofs) {

@@ -57,8 +57,9 @@ namespace detail {
 
 }  // namespace detail
 
-/// One step. @param added forces since the last step [N]
-/// @return lanes whose body has left its bound
+/// Makes one step.
+/// @param added forces since the last step [N]
+/// @return lanes whose body has left its collider bound
 [[gnu::always_inline]] inline Mask move_lanes(BodyLanes& at, const Pack3& added,
                                               const Newton& newton, double time_step) {
   const Pack3 force = added + at.permanent_force;

@@ -21,7 +21,7 @@
 
 namespace statejump::stepper {
 
-/// Geometry of one of several contacts of a pair; the attributes of JointGeom.
+/// Geometry of one of several contacts of a pair. The members are the attributes of JointGeom.
 struct BoreContactGeometry : ContactGeometry {
   Vector3 contactPoint = Vector3::Zero();  ///< [m]
   double refR1 = 0.0, refR2 = 0.0;  ///< radii [m]; refR2 is the magnitude of the wall's radius
@@ -37,12 +37,13 @@ struct BoreGeometry {
   double refR1 = 0.0, refR2 = 0.0;
 };
 
-/// Physics of a pair; the attributes of BorePhys. Forces and stiffnesses are sums.
+/// Physics of a pair. The members are the attributes of BorePhys. Forces and stiffnesses are sums
+/// over contacts.
 struct BorePhysics : ContactPhysics {
   std::vector<ContactPhysics> contacts;
 };
 
-/// Data of a contact with a meshed bore that Contact does not hold.
+/// Data of a contact with a meshed bore that Contact does not contain.
 struct Bore {
   const geometry::BoreMesh* mesh = nullptr;
   bool is_ball = false;
@@ -106,16 +107,16 @@ Entry new_contact() {
   }
 }
 
-/// Whether the angle between the axes of journal and bore exceeds `allowed` [rad] (small angle).
+/// Returns whether the small angle between the axes of journal and bore exceeds `allowed` [rad].
 inline bool tilted_in_bore(const Vector3& journal_axis, const geometry::BoreMesh& mesh,
                            const Quaternion& orientation, double allowed) {
   return !(journal_axis.cross(orientation * mesh.axis()).squaredNorm() <= allowed * allowed);
 }
 
-/// Updates the pair's contact list with the contacts found in this step. A continuing contact keeps
-/// its label. A contact that has just ended stays for one step, so that the law can complete its
-/// energy balance.
-/// @param touches whether a found position is in contact
+/// Updates the pair's contact list with the contacts found in this step. A continued contact keeps
+/// its label. A contact that has just ended stays in the list for one step, so that the law can
+/// complete its energy balance.
+/// @param touches returns whether a found contact has overlap
 /// @param turn rotation from the mesh axes to the world axes
 template <class Pair, class Touches>
 void list_contacts(const std::vector<geometry::FollowedContact>& found, const Touches& touches,
@@ -163,11 +164,11 @@ void list_contacts(const std::vector<geometry::FollowedContact>& found, const To
 }
 
 /// Finds all contacts of a journal or ball (body 1) with a bore (body 2).
-/// @param centres from the centre of body 2 to that of body 1 [m]
+/// @param centres vector from the centre of body 2 to that of body 1 [m]
 /// @param keep whether the pair is already in contact; @param time_step [s]
-/// @param make returns the geometry of the pair and creates it if necessary. It persists without
-///        contact, because it stores the known wall geometry.
-/// @throws what follow_contacts() and the kernel throw
+/// @param make returns the geometry of the pair and creates it if necessary. The geometry persists
+///     without contact, because it stores the known shape of the wall.
+/// @throws any exception of follow_contacts() and the kernel
 template <class CreatePhysics>
 BoreStep find_in_bore(const BoreProbe& probe, const BoreWall& wall,
                       const kernel::BodyMotion& motion_1, const kernel::BodyMotion& motion_2,
@@ -213,8 +214,8 @@ BoreStep find_in_bore(const BoreProbe& probe, const BoreWall& wall,
     here.arm_2 = centres + here.arm_1;
     here.relative_velocity = kernel::material_velocity(motion_1, here.arm_1) -
                              kernel::material_velocity(motion_2, here.arm_2);
-    // Expansion alone moves the wall point along the normal and changes the depth. The clearance is
-    // the sum of these changes only, so that motion along an uneven wall does not count as thermal
+    // Thermal expansion moves the wall point along the normal and changes the depth. `clearance`
+    // sums only these changes, so that motion along an uneven wall does not count as thermal
     // expansion.
     const double reach = foot.dot(one.normal);
     const double clearance_rate = wall.strain_rate * reach - probe.radius_rate;
@@ -240,7 +241,8 @@ BoreStep find_in_bore(const BoreProbe& probe, const BoreWall& wall,
   return {keep || next > 0 ? BoreSearch::contact : BoreSearch::apart};
 }
 
-/// Applies the law at every contact of a pair. Physics get the order of the geometries.
+/// Applies the law at every contact of a pair. First brings the list of physics into the order of
+/// the geometries.
 /// @param step steps one contact from its geometry and physics; returns false if it is open
 /// @return whether any contact touches
 template <class Geometry, class Physics, class Step>
@@ -276,8 +278,8 @@ bool bore_law_step(const Geometry& geometry, Physics& pair, Step&& step) {
   for (std::size_t i = 0; i < count; ++i) {
     const auto& here = contact_of(geometry.contacts[i]);
     auto& physics = contact_of(pair.contacts[i]);
-    // Only thermal expansion counts as a change of this radius, not motion to a wall point of
-    // another radius.
+    // Only thermal expansion counts as a change of this radius; motion to a wall point with another
+    // radius does not.
     physics.previousBearingRadius = here.bearingRadius * (1 - geometry.strain_change);
     if (!step(here, physics)) continue;
     touching = true;

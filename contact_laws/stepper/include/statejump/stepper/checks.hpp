@@ -34,7 +34,7 @@ inline const char* range_text(ValueRange allowed) {
                                            : "0 or above";
 }
 
-/// A number of an object: its public name, member, allowed range and unit.
+/// A number of an object, with its public name, its member, its allowed range and its unit.
 template <class Object>
 struct Quantity {
   const char* name;
@@ -46,7 +46,7 @@ struct Quantity {
 template <class Object, std::size_t size>
 using Quantities = std::array<Quantity<Object>, size>;
 
-/// The first quantity of an object out of range; null if there is none.
+/// Returns the first quantity of an object that is out of range, or null.
 template <class Object, std::size_t size>
 const Quantity<Object>* first_invalid(const Quantities<Object, size>& quantities,
                                       const Object& object) {
@@ -65,7 +65,7 @@ constexpr Quantities<Link, 6> link_quantities = {
      {"dampingRatio", &Link::dampingRatio, ValueRange::not_negative, "-"},
      {"pinDamping", &Link::pinDamping, ValueRange::not_negative, "N m s/rad"}}};
 
-/// Parameters of an active torsion spring. If frictionLimit > 0, frictionStiffness must be > 0.
+/// Parameters of an active torsion spring. A frictionLimit > 0 requires a frictionStiffness > 0.
 constexpr Quantities<Torsion, 8> torsion_quantities = {
     {{"stiffness", &Torsion::stiffness, ValueRange::not_negative, "N m/rad"},
      {"freeAngle", &Torsion::freeAngle, ValueRange::finite, "rad"},
@@ -80,8 +80,8 @@ inline bool has_friction_without_stiffness(const Torsion& spring) {
   return spring.frictionLimit > 0 && !(spring.frictionStiffness > 0);
 }
 
-/// Parameters of a slider between two bodies. With a friction limit or stops, their stiffness must
-/// be > 0. Clearances are >= 0, and infinite without a stop.
+/// Parameters of a slider between two bodies. A friction limit or a stop requires a stiffness > 0.
+/// Clearances are >= 0, and infinite without a stop.
 constexpr Quantities<Prismatic, 9> prismatic_quantities = {
     {{"stiffnessAcross", &Prismatic::stiffnessAcross, ValueRange::not_negative, "N/m"},
      {"frictionLimit", &Prismatic::frictionLimit, ValueRange::not_negative, "N"},
@@ -121,14 +121,14 @@ inline bool is_finite(const kernel::BodyMotion& motion) {
          is_finite(motion.angular_velocity);
 }
 
-/// Fast check in every step: all components are finite. It may return false for finite components
-/// whose sum overflows.
+/// Fast check in every step that all components are finite. It may return false for finite
+/// components if their sum overflows.
 inline bool is_finite_fast(const Vector3& v) {
   const double sum = v[0] + v[1] + v[2];
   return sum - sum == 0;
 }
 
-/// Whether a body with this linear thermal strain [-] has a positive length.
+/// Returns whether a body with this linear thermal strain [-] has a positive length.
 inline bool is_strain(double strain) {
   return 1 + strain > 0 && std::isfinite(strain);
 }
@@ -138,16 +138,17 @@ inline bool is_small_strain(double strain) {
   return std::abs(strain) < 1;
 }
 
-/// Whether the step exceeds the stability limit omega dt = 2 of the stiffest contact alone;
-/// leapfrog is then unstable, whatever the other forces are.
+/// Returns whether the step exceeds the stability limit omega dt = 2 of this contact alone.
+/// Leapfrog is then unstable, whatever the other forces are.
 /// @param stiffness [N/m]; @param time_step [s]
 template <class Physics>
 bool step_is_too_long(double stiffness, const Physics& physics, double time_step) {
   return time_step * time_step * stiffness > 4 * physics.effectiveMass && physics.effectiveMass > 0;
 }
 
-/// Fast check in every step of a touching contact: its stiffness is positive and the step is
-/// stable. False if a modulus, depth, mass or time step is NaN, and if both bodies are fixed.
+/// Fast check in every step of a touching contact that its stiffness is positive and the step
+/// stable. It returns false if a modulus, depth, mass or time step is NaN, and if both bodies are
+/// fixed.
 template <class Physics>
 bool is_stable_stiffness(double stiffness, const Physics& physics, double time_step) {
   const double rate = time_step * stiffness;
@@ -155,7 +156,8 @@ bool is_stable_stiffness(double stiffness, const Physics& physics, double time_s
 }
 
 /// Largest normal stiffness [N/m] for which is_stable_stiffness() holds, computed once per run and
-/// reduced by a margin for rounding. NaN for invalid parameters: every comparison with it is false.
+/// reduced by a margin for rounding. It is NaN for invalid parameters, so that every comparison
+/// with it is false.
 template <class Physics>
 double stable_stiffness(const Physics& physics, double time_step) {
   if (!(time_step > 0) || first_invalid(contact_quantities<Physics>, physics)) {
@@ -165,15 +167,16 @@ double stable_stiffness(const Physics& physics, double time_step) {
   return less * 4 * physics.effectiveMass / time_step / time_step;
 }
 
-/// Largest |temperature change| [K] for which the thermal expansion leaves every length positive,
-/// computed once per run and reduced by a margin for rounding; 0 for a NaN coefficient. @param
-/// expansion [1/K]
+/// Largest |temperature change| [K] for which thermal expansion leaves every length positive. It is
+/// computed once per run and reduced by a margin for rounding. It is 0 for a NaN coefficient.
+/// @param expansion [1/K]
 inline double safe_temperature_change(double expansion) {
   constexpr double less = 1 - 8 * std::numeric_limits<double>::epsilon();
   return std::isfinite(expansion) ? less / std::abs(expansion) : 0;
 }
 
-/// Fast check in every step against a bound of the run. False if either is NaN.
+/// Fast comparison in every step with a bound computed once per run. It returns false if a number
+/// is NaN.
 inline bool is_below(double value, double bound) {
   return value < bound;
 }
@@ -181,7 +184,7 @@ inline bool is_below(double value, double bound) {
 /// Result of the detailed check of a response.
 enum class ResponseCheck : unsigned char { valid, step_is_too_long, not_finite };
 
-/// @param stiffness of the normal contact [N/m]; @param force on body 1 [N]
+/// @param stiffness normal stiffness of the contact [N/m]; @param force force on body 1 [N]
 template <class Physics>
 ResponseCheck check_response(double stiffness, const Vector3& force, const Physics& physics,
                              double time_step) {
@@ -193,7 +196,7 @@ ResponseCheck check_response(double stiffness, const Vector3& force, const Physi
                                                          : ResponseCheck::valid;
 }
 
-/// Fast check in every step of a link: its stress-free length is positive and its force is finite.
+/// Fast check in every step of a link that its stress-free length is positive and its force finite.
 inline bool is_finite_fast(const LinkStep& step, const Vector3& force) {
   return step.stress_free_length > 0 && is_finite_fast(force);
 }

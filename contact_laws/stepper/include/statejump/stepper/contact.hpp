@@ -81,7 +81,8 @@ struct ThermalLength {
   double expanded() const { return length * thermal_stretch; }
 };
 
-/// Energies of one contact in one step [J]; elastic is stored, the others are increments.
+/// Energies of one contact in one step [J]: `elastic` is the stored energy, all others are
+/// increments.
 struct ContactEnergy {
   double elastic;
   double friction;
@@ -97,7 +98,7 @@ enum class ContactSearch {
   tilted    ///< error: the axes are not parallel
 };
 
-/// Stores the contact geometry of this step.
+/// Stores the contact geometry of this step in `geometry`.
 /// @param motion_1, motion_2 motion of the two bodies; @param time_step [s]
 template <class Geometry>
 void update(const kernel::JointContact& contact, const kernel::BodyMotion& motion_1,
@@ -110,14 +111,14 @@ void update(const kernel::JointContact& contact, const kernel::BodyMotion& motio
   geometry.relativeVelocity = contact.relative_velocity;
   geometry.arm1 = contact.arm_1;
   geometry.arm2 = contact.arm_2;
-  // The history rotates with the mean spin of both bodies about the normal.
+  // The friction history rotates with the mean spin of both bodies about the normal.
   geometry.twistAngle =
       0.5 * time_step *
       (motion_1.angular_velocity + motion_2.angular_velocity).dot(geometry.normal);
 }
 
 /// Finds the contact of a journal (body 1) in a bearing (body 2).
-/// @param axis unit, of the bearing; @param keep whether the contact already exists
+/// @param axis unit axis of the bearing; @param keep whether the contact already exists
 /// @param tilted returns whether the axes are tilted by more than the allowed angle
 /// @param make returns the geometry to fill; a new geometry starts with the given normal
 template <class Tilted, class CreatePhysics>
@@ -168,9 +169,9 @@ ContactSearch find_ball(const ThermalLength& ball, const ThermalLength& socket,
   return ContactSearch::contact;
 }
 
-/// Two balls in external contact; otherwise as find_revolute(). The stored second radius is
-/// negative, as for a bearing turned inside out. @return closed if the centre of one ball is inside
-/// the other, where no contact is defined
+/// Finds the external contact of two balls; parameters as in find_revolute(). The second radius is
+/// stored as negative, as for a bearing turned inside out.
+/// @return closed if the centre of one ball is inside the other ball, where no contact is defined
 template <class CreatePhysics>
 ContactSearch find_outer_balls(const ThermalLength& ball_1, const ThermalLength& ball_2,
                                const kernel::BodyMotion& motion_1,
@@ -199,8 +200,9 @@ ContactSearch find_outer_balls(const ThermalLength& ball_1, const ThermalLength&
   return ContactSearch::contact;
 }
 
-/// Pad of a slider (body 1) on a face of its slot (body 2); otherwise as find_revolute().
-/// @param normal unit, world, from the slider into the face
+/// Finds the contact of a slider's pad (body 1) with a face of its slot (body 2); parameters as in
+/// find_revolute().
+/// @param normal unit normal from the slider into the face, world frame
 template <class CreatePhysics>
 ContactSearch find_plane(const ThermalLength& pad, const ThermalLength& face,
                          const kernel::BodyMotion& motion_1, const kernel::BodyMotion& motion_2,
@@ -227,8 +229,9 @@ kernel::ContactParameters contact_parameters(const Physics& physics) {
           physics.effectiveMass};
 }
 
-/// Friction history, rotated into the tangent plane of this step. YADE stores forces on body 2, the
-/// kernel uses forces on body 1. The memory is moved in, not copied, and moved back on destruction.
+/// Friction history, rotated into the tangent plane of this step. YADE stores forces on body 2,
+/// whereas the kernel uses forces on body 1. The memory is moved into this object, not copied, and
+/// moved back on destruction.
 template <class Physics>
 class ScopedHistory {
  public:
@@ -283,11 +286,11 @@ void store(const kernel::ContactResponse& response, const kernel::ContactHistory
 }
 
 /// Energies of one contact. Thermal expansion does work through the clearance c and the radii. With
-/// V(delta, radii) and delta = eccentricity - c, this work is the part of dV without body motion:
-/// -F dc plus the change of V by the radii at fixed depth. The trapezoidal rule integrates it over
-/// the step, as it does the work of the motion.
+/// V(delta, radii) and delta = eccentricity - c, this work is the change of V at fixed bodies: -F
+/// dc plus the change of V by the radii at fixed depth. The trapezoidal rule integrates it over the
+/// step, as the work of the motion.
 /// @param dissipation_force force of the dissipation law [N]
-/// @param radius [m] that is stored as physics.previousRadius
+/// @param radius current radius [m], which is stored as physics.previousRadius
 /// @param add_radius_work adds the work of the changing radii [J] to its argument
 template <class Geometry, class Physics, class AddRadiusWork>
 ContactEnergy account(const kernel::ContactResponse& response, double dissipation_force,
@@ -314,14 +317,12 @@ ContactEnergy account(const kernel::ContactResponse& response, double dissipatio
 /// Functions that the laws require of the caller (Host):
 ///  time_step() [s], tracks_energy(), add(ContactEnergy)
 ///  apply(wrench)              adds forces to the two bodies
-///  checks_response            true: the response is checked before its forces act; false: the
-///  caller
-///                             checks the stored state afterwards
-///  accepts(k, force, physics) only if checks_response: decides on a response that fails the fast
-///  check,
-///                             with normal stiffness k [N/m] and force on body 1 [N]
+///  checks_response            true: the response is checked before its forces act;
+///                             false: the caller checks the stored state afterwards
+///  accepts(k, force, physics) only if checks_response: decides on a response that fails the
+///                             fast check, by normal stiffness k [N/m], force on body 1 [N]
 ///
-/// Whether the forces of this response may be applied.
+/// Returns whether the forces of this response may be applied.
 template <class Physics, class Host>
 [[gnu::always_inline]] inline bool is_usable(const kernel::ContactResponse& response,
                                              const Physics& physics, Host&& host) {
@@ -334,8 +335,9 @@ template <class Physics, class Host>
   }
 }
 
-/// Step with the Hertz–Mindlin law. @return false if the contact is open; true if it touches, also
-/// after a failed check, which applies no forces
+/// Makes one step with the Hertz–Mindlin law.
+/// @return false if the contact is open, true if it touches. After a failed check it is true, but
+///     no forces are applied.
 template <class Geometry, class Physics, class Host>
 bool hertz_mindlin_step(const Geometry& geometry, Physics& physics, Host&& host) {
   ScopedHistory scoped(geometry, physics);
@@ -384,9 +386,9 @@ Misfit misfit(const Named<Law>& named, const Geometry& geometry) {
   return named.needs_axis && geometry.axis.isZero() ? Misfit::no_axis : Misfit::none;
 }
 
-/// Begins a contact and returns its start time [s]. In the last step the bodies moved uniformly,
-/// with the velocity of the half step, and the clearance changed by clearanceRate dt. The contact
-/// starts when the linearly interpolated depth is 0.
+/// Begins a contact and returns its start time [s]. In the last step the bodies moved with the
+/// constant half-step velocity, and the clearance changed by clearanceRate dt. The contact starts
+/// when the linearly interpolated depth is 0.
 template <class Geometry, class Physics>
 double begin(const Geometry& geometry, Physics& physics, double time, double time_step) {
   physics.begun = true;
@@ -413,9 +415,10 @@ struct FirstTouch {
   }
 };
 
-/// Step with named laws. The contact must have no Misfit and, if it touches, must have begun.
-/// @return false if the contact is open; true if it touches, also after a failed check, which
-///         applies no forces
+/// Makes one step with named laws. The contact must have no Misfit. If it touches, begin() must
+/// have been called.
+/// @return false if the contact is open, true if it touches. After a failed check it is true, but
+///     no forces are applied.
 /// @throws std::domain_error outside the range of a law
 template <class Law, class Geometry, class Physics, class Host>
 bool joint_law_step(const Law& law, const Geometry& geometry, Physics& physics,
@@ -462,7 +465,7 @@ bool joint_law_step(const Law& law, const Geometry& geometry, Physics& physics,
   if (!touches) return false;
   store(contact, history, geometry.normal, physics);
   host.apply(response.wrench);
-  // For a law without memory, the force is not part of the history.
+  // A law without memory computes a force that is not part of the history.
   if (!(physics.ks > 0)) physics.shearForce = -contact.tangential_force;
   physics.dissipationSlope = response.dissipation_slope;
   physics.frictionSlope = response.friction_slope;

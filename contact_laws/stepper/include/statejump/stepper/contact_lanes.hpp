@@ -15,7 +15,7 @@
 
 namespace statejump::stepper {
 
-/// Up to four contacts of one joint type and their state. Unused lanes repeat the first contact.
+/// State of up to four contacts of one joint type. Unused lanes repeat the first contact.
 struct ContactLanes {
   std::size_t first;  ///< index in Scene::contacts; the contacts are consecutive
   std::size_t count;
@@ -36,7 +36,7 @@ struct ContactLanes {
   Mask slipping;
   Pack elastic_force, elastic_energy, clearance, radius;  // of the last step
 
-  /// Loads the state of a contact. The other members do not change between steps.
+  /// Loads the state of a contact into a lane. The other members do not change between steps.
   void load(std::size_t lane, const Contact& contact) {
     const ContactPhysics& physics = contact.physics;
     real[lane] = contact.real ? -1 : 0;
@@ -59,7 +59,7 @@ struct ContactLanes {
     radius[lane] = physics.previousRadius;
   }
 
-  /// Writes back the state that the next scalar step of the contact needs.
+  /// Writes the state of a lane that the next scalar step needs back to its contact.
   void unload(std::size_t lane, Contact& contact) const {
     if (!contact.real) return;
     ContactPhysics& physics = contact.physics;
@@ -120,7 +120,9 @@ struct LanesGeometry {
   Pack eccentricity, depth, radius;  ///< [m]
 };
 
-/// As find_revolute(), find_ball(), find_plane(). @param deferred gains contacts that begin or fail
+/// Finds the geometry of four contacts, as find_revolute(), find_ball() and find_plane() do for
+/// one.
+/// @param deferred on return includes contacts that begin or fail
 [[gnu::always_inline]] inline LanesGeometry find_lanes(const ContactLanes& at, const Pack3& centres,
                                                        const Pack& length_1, const Pack& length_2,
                                                        Mask& deferred) {
@@ -169,14 +171,15 @@ struct LanesNormal {
   Pack damping_power;         ///< [W]
 };
 
-/// As hertz() and the normal part of contact_step(). @param deferred gains unstable contacts
+/// Normal forces of four contacts, as by hertz() and contact_step().
+/// @param deferred on return includes unstable contacts
 [[gnu::always_inline]] inline LanesNormal normal_lanes(const ContactLanes& at,
                                                        const LanesGeometry& geometry,
                                                        const Pack3& velocity, Mask& deferred) {
   LanesNormal normal;
   normal.contact_radius = root(geometry.radius * geometry.depth);
   const Pack stiffness = 2.0 * at.young * normal.contact_radius;
-  // The root is not positive without overlap. A stable stiffness implies both moduli > 0.
+  // Without overlap the root is not positive. A stable stiffness implies that both moduli are > 0.
   deferred |=
       at.real & ~((normal.contact_radius > 0.0) & are_below(stiffness, at.stable_stiffness));
   normal.elastic_force = 2.0 / 3.0 * stiffness * geometry.depth;
@@ -203,8 +206,9 @@ struct LanesFriction {
   Mask slipping;
 };
 
-/// As mindlin_step(). @param step receives the friction loss; its deferred gains contacts whose
-/// normal reverses
+/// Friction of four contacts, as by mindlin_step().
+/// @param step receives the friction loss; its `deferred` on return includes contacts whose normal
+///     reverses
 template <bool tracks_energy>
 [[gnu::always_inline]] inline LanesFriction friction_lanes(const ContactLanes& at,
                                                            const Pack3& normal,
@@ -254,7 +258,8 @@ template <bool tracks_energy>
   return friction;
 }
 
-/// As the tangential part of contact_step(). @param damping_loss set if energy is tracked [J]
+/// Tangential force of four contacts, as by contact_step().
+/// @param damping_loss set if energy is tracked [J]
 /// @return tangential force with its viscous part [N]
 template <bool tracks_energy>
 [[gnu::always_inline]] inline Pack3 damp_lanes(const ContactLanes& at,
@@ -296,7 +301,7 @@ template <bool tracks_energy>
 
 /// One step of four contacts. Touching lanes receive their new state; deferred lanes keep the old
 /// one.
-/// @param length_1, length_2 current radii; for a plane, pad radius and face distance [m]
+/// @param length_1, length_2 current radii [m]; for a plane contact, pad radius and face distance
 template <bool tracks_energy>
 [[gnu::always_inline]] inline LanesStep step_lanes(ContactLanes& at, const MotionLanes& one,
                                                    const MotionLanes& two, const Pack& length_1,

@@ -51,7 +51,8 @@ inline Span span_of(const Vector3& root, const Vector3& tip) {
   return span;
 }
 
-/// c = 2 zeta sqrt(k m) [N s/m], with the stiffness at the reference temperature.
+/// Damping coefficient c = 2 zeta sqrt(k m) [N s/m] with the link's stiffness at the reference
+/// temperature.
 /// @param inverse_mass 1/m1 + 1/m2 [1/kg]
 inline double damping_coefficient(const Link& link, double inverse_mass) {
   if (!(link.dampingRatio > 0) || !(inverse_mass > 0)) return 0;
@@ -63,8 +64,8 @@ inline double damping_coefficient(const Link& link, double inverse_mass) {
 ///  N = k_T e + c (L' - l_T'), k_T = E A / l_T, and
 ///  N L' = d(k_T e^2 / 2)/dt + c (L' - l_T')^2 + [N + k_T e^2 / (2 l_T)] l_T',
 /// so the thermal work on the link is -integral of [N + k_T e^2 / (2 l_T)] dl_T. A cable (tension
-/// only) shorter than l_T is slack: e = 0 and no force. While a cable shortens, the dashpot force
-/// is limited to the tension of the spring, so N >= 0.
+/// only) shorter than l_T is slack, with e = 0 and no force. While a cable shortens, the dashpot
+/// force is limited to the tension of the spring, so N >= 0.
 struct LinkStep {
   Span span;
   Vector3 relative_velocity;  ///< tip relative to root [m/s]
@@ -84,7 +85,8 @@ inline double stress_free_length(const Link& link, double temperature_change) {
   return link.stressFreeLength * (1 + link.thermalExpansion * temperature_change);
 }
 
-/// @param temperature_rate returns T' at this time [K/s]; only the first step calls it
+/// @param temperature_rate returns the rate T' of the temperature change [K/s]; only the first step
+///     calls it
 /// @param damping damping_coefficient() [N s/m]; @param time [s]
 template <class Rate>
 LinkStep link_step(Link& link, const Span& span, const Vector3& root_velocity,
@@ -96,8 +98,9 @@ LinkStep link_step(Link& link, const Span& span, const Vector3& root_velocity,
   const double length_rate = step.relative_velocity.dot(span.direction);
   link.temperatureChange = temperature_change;
   step.stress_free_length = stress_free_length(link, temperature_change);
-  // Mean rate over the last step, consistent with the half-step velocities. At a corner of the
-  // program, the instantaneous rate would damp against a speed that the tip does not have yet.
+  // Mean rate of the stress-free length over the last step, consistent with the half-step
+  // velocities. At a corner of the program, the instantaneous rate would damp against a speed that
+  // the tip does not have yet.
   const double since = time - link.previousTime;
   const double stress_free_rate =
       link.previousStressFreeLength > 0 && since > 0
@@ -115,33 +118,37 @@ LinkStep link_step(Link& link, const Span& span, const Vector3& root_velocity,
     step.tension = 0;
   }
   link.axialForce = -step.tension;
-  // The pin moment acts as a transverse force at the tip and the opposite force at the root.
+  // The damping moment of the pin acts as a transverse force on the tip and the opposite force on
+  // the root.
   step.damping_across = link.pinDamping / (span.length * span.length);
   step.velocity_across = step.relative_velocity - length_rate * span.direction;
   return step;
 }
 
-/// Largest stable time step [s] of the link alone. @param inverse_mass 1/m1 + 1/m2 [1/kg], > 0
+/// Largest stable time step [s] of a link without other forces.
+/// @param inverse_mass 1/m1 + 1/m2 [1/kg], > 0
 inline double stable_step(const LinkStep& step, double inverse_mass) {
   return std::min(kernel::critical_time_step(1 / inverse_mass, step.stiffness, step.damping),
                   kernel::critical_time_step(1 / inverse_mass, 0, step.damping_across));
 }
 
-/// Force of the link alone on the tip [N]; the root gets the opposite.
+/// Force [N] of the link on its tip, from tension and pin damping; the root gets the opposite
+/// force.
 inline Vector3 force_on_tip(const LinkStep& step) {
   return -step.tension * step.span.direction - step.damping_across * step.velocity_across;
 }
 
-/// The smallest rotation from one unit vector to another, as a quaternion of any length.
+/// The smallest rotation from one unit vector to another. The quaternion is not normalized.
 inline Quaternion smallest_rotation(const Vector3& from, const Vector3& to) {
   Quaternion turn;
-  // (1 + cos, sin axis) is the quaternion, not normalized. For nearly opposite vectors the rounding
-  // error 1e-16 exceeds half of the digits of 1 + cos.
+  // (1 + cos, sin axis) is the quaternion before normalization. For nearly opposite vectors, 1 +
+  // cos loses more than half of its digits to the rounding error 1e-16.
   constexpr double opposite = 1e-8;
   const double scalar = 1 + from.dot(to);
   if (!(scalar > opposite)) {
-    // (2 cos(angle/2), 2 sin(angle/2) axis); for opposite vectors any perpendicular axis is valid.
-    // Eigen's FromTwoVectors decomposes a matrix here, which is slow to compile.
+    // The quaternion is (2 cos(angle/2), 2 sin(angle/2) axis); for opposite vectors any
+    // perpendicular axis is valid. Eigen's FromTwoVectors would decompose a matrix, which is slow
+    // to compile.
     const Vector3 sum = from + to, difference = to - from;
     Vector3 axis = sum.cross(difference);
     if (!(axis.squaredNorm() > 0)) axis = difference.unitOrthogonal();
@@ -154,21 +161,21 @@ inline Quaternion smallest_rotation(const Vector3& from, const Vector3& to) {
   return turn;
 }
 
-/// Whether orientation, tip direction and new direction are all in the plane, so that the tip only
-/// rotates about z.
+/// Returns whether the tip only rotates about z, because its orientation, its direction and the new
+/// direction are in the plane.
 inline bool rotates_in_plane(const Link& link, const Vector3& direction,
                              const Quaternion& orientation) {
   return orientation.x() == 0 && orientation.y() == 0 && link.tipDirection.z() == 0 &&
          direction.z() == 0;
 }
 
-/// The rotation about z from one unit vector in the plane to another. Of q and -q, the result is
-/// the one in the same half space as `same_half`.
+/// The rotation about z from one unit vector in the plane to another. Of the equivalent quaternions
+/// q and -q, it returns the one in the half space of `same_half`.
 inline Quaternion rotation_in_plane(const Vector3& from, const Vector3& to,
                                     const Quaternion& same_half) {
   const double cosine = from.x() * to.x() + from.y() * to.y();
   const double sine = from.x() * to.y() - from.y() * to.x();
-  // tan(a/2) = sin/(1 + cos) = (1 - cos)/sin; at least one of the two suffers no cancellation.
+  // tan(a/2) = sin/(1 + cos) = (1 - cos)/sin. At least one of these fractions has no cancellation.
   const double w = cosine >= 0 ? 1 + cosine : sine;
   const double z = cosine >= 0 ? sine : 1 - cosine;
   const double length = std::sqrt(w * w + z * z);
@@ -178,9 +185,10 @@ inline Quaternion rotation_in_plane(const Vector3& from, const Vector3& to,
 
 /// Rotates the tip with its link and returns the force on the tip [N] that carries its moment.
 ///
-/// The contacts of this step load the tip with a moment M. A couple of forces +-(M x u) / L
-/// replaces it, except for its part along the link: u L x (M x u) / L = M - (M.u) u.
-/// @param moment M [N m]; @param orientation, spin in/out: of the tip
+/// The contacts of this step load the tip with a moment M. A couple of forces +-(M x u) / L at the
+/// ends of the link replaces it, except for the component along the link: u L x (M x u) / L = M -
+/// (M.u) u.
+/// @param moment M [N m]; @param orientation, spin of the tip, updated
 inline Vector3 rotate_tip(Link& link, const LinkStep& step, const Vector3& moment,
                           Quaternion& orientation, Vector3& spin) {
   const Vector3& direction = step.span.direction;
@@ -197,7 +205,7 @@ inline Vector3 rotate_tip(Link& link, const LinkStep& step, const Vector3& momen
   return carrying;
 }
 
-/// Energies of one link in one step [J]; elastic is the stored energy, the others are increments.
+/// Energies of one link in one step [J]: `elastic` is the stored energy, all others are increments.
 struct LinkEnergy {
   double elastic;
   double damping;
@@ -206,7 +214,7 @@ struct LinkEnergy {
   bool works;  ///< whether thermal_work is valid: false in the first step
 };
 
-/// Decrease of the spring energy per increase of the stress-free length [N]: k_T e^2 / (2 l_T).
+/// Decrease of the spring's energy per increase of its stress-free length [N]: k_T e^2 / (2 l_T).
 inline double softening(double elastic_energy, double stress_free_length) {
   return elastic_energy / stress_free_length;
 }
@@ -245,10 +253,10 @@ inline void keep(Link& link, const LinkStep& step, double time) {
   link.previousTime = time;
 }
 
-/// A torsion spring; the attributes of TorsionSpring. The stretch s is the angle minus the free
-/// angle. The moment is M0 + K_M (s - clamp(s; -a, a)) + M_f. The friction moment M_f is that of a
-/// spring k_f in series with a friction slider: M_f = clamp(k_f (s - s_f); -M_c, M_c); during slip
-/// s_f follows such that |M_f| = M_c.
+/// A torsion spring. The members are the attributes of TorsionSpring. The stretch s is the angle
+/// minus the free angle. The moment is M0 + K_M (s - clamp(s; -a, a)) + M_f. The friction moment
+/// M_f is that of a spring k_f in series with a friction slider: M_f = clamp(k_f (s - s_f); -M_c,
+/// M_c). During slip s_f changes such that |M_f| = M_c.
 struct Torsion {
   double stiffness = 0;  ///< K_M [N m/rad]
   double freeAngle = 0;  ///< [rad]
@@ -263,8 +271,9 @@ struct Torsion {
   double slipAngle = 0;          ///< s_f [rad]
 };
 
-/// Largest component of a link's unit direction along the axis for which the spring counts as
-/// planar. Rounding in a rotated plane is far smaller; neglected terms are its square.
+/// Largest component of a link's unit direction along the spring's axis with which a spring counts
+/// as planar. Rounding in a rotated plane is far smaller. Neglected terms are of order of its
+/// square.
 constexpr double largest_tilt = 1e-6;
 
 inline bool is_planar(const Span& span, const Vector3& axis) {
@@ -276,7 +285,7 @@ inline double largest_stiffness(const Torsion& spring) {
   return spring.frictionLimit > 0 ? spring.stiffness + spring.frictionStiffness : spring.stiffness;
 }
 
-/// Energies of one spring in one step [J]; elastic is the stored energy, friction an increment.
+/// Energies of one spring in one step [J]: `elastic` is the stored energy, `friction` an increment.
 struct TorsionEnergy {
   double elastic;
   double friction;
@@ -298,7 +307,7 @@ inline TorsionEnergy torsion_step(Torsion& spring, const Span& first, const Span
   if (std::abs(friction) > spring.frictionLimit) {
     friction = std::copysign(spring.frictionLimit, friction);
     const double slid_to = stretch - friction / spring.frictionStiffness;
-    // Leapfrog does work with the mean of the moments of two successive steps.
+    // Leapfrog does work with the mean of two successive moments.
     energy.friction = 0.5 * (friction + spring.frictionMoment) * (slid_to - spring.slipAngle);
     spring.slipAngle = slid_to;
   }
@@ -308,13 +317,13 @@ inline TorsionEnergy torsion_step(Torsion& spring, const Span& first, const Span
   return energy;
 }
 
-/// Inverse moment of inertia of a link under a couple on its two ends [1/(kg m2)].
+/// Inverse moment of inertia [1/(kg m2)] of a link under a couple of forces at its ends.
 /// @param inverse_mass 1/m1 + 1/m2 [1/kg]
 inline double inverse_inertia(const Span& span, double inverse_mass) {
   return inverse_mass / (span.length * span.length);
 }
 
-/// Force on the tip [N] of a link loaded by a moment [N m]; the root gets the opposite force.
+/// Force [N] on the tip of a link loaded by a moment [N m]. The root gets the opposite force.
 inline Vector3 couple(const Span& span, const Vector3& axis, double moment) {
   const Vector3 across = axis.cross(span.direction);
   return moment / span.length * across;

@@ -17,7 +17,8 @@
 namespace statejump::stepper {
 
 constexpr std::size_t lanes = 4;
-// Aligned explicitly: without AVX the compiler aligns them to half of their size only.
+// The alignment is explicit, because without AVX the compiler aligns these vectors to half of their
+// size only.
 using Pack [[gnu::vector_size(lanes * sizeof(double)), gnu::aligned(lanes * sizeof(double))]] =
     double;
 /// Lanes are 0 (false) or -1 (true).
@@ -25,7 +26,7 @@ using Mask
     [[gnu::vector_size(lanes * sizeof(std::int64_t)), gnu::aligned(lanes * sizeof(std::int64_t))]] =
         std::int64_t;
 
-/// Whether the processor has AVX2; always false for processors other than x86-64.
+/// Returns whether the processor has AVX2. False for all processors other than x86-64.
 inline bool has_avx2() {
 #ifdef __x86_64__
   return __builtin_cpu_supports("avx2") != 0;
@@ -65,7 +66,7 @@ struct Pack3 {
 [[gnu::always_inline]] inline Pack3 operator*(const Pack3& a, double b) {
   return {a.x * b, a.y * b, a.z * b};
 }
-/// Sums in the order in which Eigen adds three numbers, for equal bits.
+/// Adds products in the order of Eigen's sum of three numbers, for equal bits.
 [[gnu::always_inline]] inline Pack dot(const Pack3& a, const Pack3& b) {
   return a.x * b.x + (a.y * b.y + a.z * b.z);
 }

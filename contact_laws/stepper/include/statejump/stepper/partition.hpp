@@ -15,7 +15,8 @@
 
 namespace statejump::stepper {
 
-/// Bodies per subscene, such that they fit into a processor's first-level cache.
+/// Number of bodies per subscene, chosen such that they fit into the first-level cache of a
+/// processor.
 constexpr std::size_t bodies_per_subscene = 32;
 
 namespace detail {
@@ -41,7 +42,7 @@ class DisjointSets {
 
 }  // namespace detail
 
-/// A scene split into subscenes. A body at rest may be in several of them.
+/// A scene divided into subscenes. A body at rest may belong to several of them.
 class Partition {
  public:
   /// @param whole after Scene::prepare()
@@ -51,8 +52,8 @@ class Partition {
 
   /// Runs all subscenes as Scene::run() does; several threads call `make`.
   long run(long steps, const Scene::CreatePhysics& make);
-  /// Copies the results into a scene with the same bodies and contacts as the original one. All
-  /// subscenes must have made equally many steps.
+  /// Copies the results into `whole`, a scene with the bodies and contacts of the original one. All
+  /// subscenes must have made the same number of steps.
   void collect(Scene& whole) const;
 
  private:
@@ -113,7 +114,7 @@ inline void Partition::split() {
     subscenes_.emplace_back();
     subscenes_.back().stages.resize(whole_.stages.size());
   }
-  // Objects that act only on bodies at rest go to the first subscene.
+  // An object whose bodies are all at rest belongs to the first subscene.
   const auto subscene_with = [&](const auto& ids) -> Subscene& {
     for (const int id : ids) {
       if (moves(id)) return subscenes_[subscene_of[groups.of(static_cast<std::size_t>(id))]];

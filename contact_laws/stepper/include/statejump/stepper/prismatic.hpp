@@ -15,20 +15,20 @@ namespace statejump::stepper {
 
 using kernel::Vector3;
 
-/// A slider between two bodies; the attributes of PrismaticJoint. Body 1 slides relative to body 2
-/// along an axis fixed in space. With the slide s = (x1 - x2 - offset) . axis, friction and stop
-/// act on body 1 opposite to the axis:
+/// A slider between two bodies. The members are the attributes of PrismaticJoint. Body 1 slides
+/// relative to body 2 along an axis fixed in space. With the slide s = (x1 - x2 - offset) . axis,
+/// friction and stop act on body 1 opposite to the axis:
 ///
 ///    friction  F_f = clamp(k_t b; -f, f), a spring in series with a friction slider at s_f;
 ///    stop      K d^1.5 (Hertz) + k_s d, where d is the excess of s over a clearance.
 ///
 /// The spring deflection b is the part of s - s_f beyond half of the play w: b = (s - s_f) -
-/// clamp(s - s_f; -w/2, w/2). Within the play only stops resist.
+/// clamp(s - s_f; -w/2, w/2). Within the play only the stops resist.
 ///
 /// A spring k_n resists relative displacement perpendicular to the axis. Forces act at the bodies'
 /// centres and do not rotate them. Each spring has a dashpot with the damping ratio. The dashpot of
 /// the friction spring acts during stick, within the friction limit. The dashpot of a stop or of a
-/// closed play acts only while the total force pushes.
+/// closed play acts only while its total force is compressive.
 struct Prismatic {
   int id1 = -1;
   int id2 = -1;
@@ -65,7 +65,7 @@ struct PrismaticStep {
   double largest_step;  ///< stable time step of the joint alone [s]
 };
 
-/// Depth of the slide beyond its stop [m]; negative if the stop is open.
+/// Depth [m] by which the slide exceeds its stop; negative if the stop is open.
 inline double stop_depth(const Prismatic& joint) {
   return joint.slide > 0 ? joint.slide - joint.clearancePlus : -joint.slide - joint.clearanceMinus;
 }
@@ -79,12 +79,13 @@ inline double largest_stiffness(const Prismatic& joint) {
   return std::max(joint.stiffnessAcross, sticks + stop);
 }
 
-/// Damping coefficient [N s/m] at largest_stiffness(). @param mass 1/(1/m1 + 1/m2) [kg]
+/// Damping coefficient [N s/m] that belongs to largest_stiffness().
+/// @param mass 1/(1/m1 + 1/m2) [kg]
 inline double largest_damping(const Prismatic& joint, double mass) {
   return kernel::viscous_damping(joint.dampingRatio, mass, largest_stiffness(joint));
 }
 
-/// Deflection b of the friction spring: part of s - s_f beyond the play [m].
+/// Deflection b of the friction spring [m]: the part of s - s_f that exceeds half of the play.
 inline double friction_bend(const Prismatic& joint) {
   const double bend = joint.slide - joint.slipPosition;
   return bend - std::clamp(bend, -0.5 * joint.play, 0.5 * joint.play);
@@ -116,7 +117,7 @@ inline PrismaticStep prismatic_step(Prismatic& joint, const PrismaticMotion& mot
       friction = std::copysign(limit, friction);
       const double slid_to =
           slide - friction / joint.frictionStiffness - std::copysign(0.5 * joint.play, friction);
-      // Leapfrog does work with the mean of the forces of two successive steps.
+      // Leapfrog does work with the mean of two successive forces.
       step.friction = 0.5 * (friction + joint.frictionForce) * (slid_to - joint.slipPosition);
       joint.slipPosition = slid_to;
       along = friction;

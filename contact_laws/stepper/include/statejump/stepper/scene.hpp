@@ -50,19 +50,20 @@ class Scene {
   FirstTouch begun, begun_in_bores;
   bool any_contact = false;  ///< a contact was computed since the arrays were filled
 
-  /// Creates the physics of a contact that begins, by its index; empty for invalid materials.
+  /// Creates the physics of the contact with a given index when it begins; nothing for invalid
+  /// materials.
   using CreatePhysics = std::function<std::optional<ContactPhysics>(std::size_t)>;
 
-  /// Called in the last step of a run, between forces and motion. Positions, forces and contacts
-  /// then belong to the same time; velocities are half a step older.
+  /// Function called in the last step of a run, between forces and motion. Positions, forces and
+  /// contacts then belong to the same time; velocities are half a step older.
   using Observe = std::function<void()>;
 
   /// Computes derived data, such as which bodies rest or move; call it after filling the arrays.
   void prepare();
 
-  /// Makes steps until one cannot be done here. Reasons: a failure, which YADE's own loop reports,
-  /// or a body that leaves its bound, after which the collider must run. That step is left
-  /// incomplete: fill the arrays again and repeat the complete steps.
+  /// Makes steps until YADE must make one itself. Reasons: a failure, which YADE's own loop
+  /// reports, or a body that leaves its bound, so that the collider must run. That step is left
+  /// incomplete; the caller then fills the arrays again and repeats the complete steps.
   /// @param observe called in the last step; may be empty
   /// @return number of complete steps
   long run(long steps, const CreatePhysics& make, const Observe& observe = {});
@@ -98,7 +99,7 @@ class Scene {
     static constexpr bool checks_response = false;  // step_contact() checks afterwards
   };
 
-  // Whether the angle between the axes of a journal and its bearing exceeds largest_tilt.
+  // Returns whether the angle between the axes of a journal and its bearing exceeds largest_tilt.
   bool is_tilted(const Body& journal, const Vector3& axis) const {
     return !(axis_of(journal.orientation).cross(axis).squaredNorm() <= largest_tilt * largest_tilt);
   }
@@ -198,7 +199,7 @@ inline bool Scene::sums_before_moving() const {
   });
 }
 
-// Calls act with the contact law, in its static type if that is precompiled.
+// Calls `act` with the contact law, as its static type if this is precompiled.
 template <class Act>
 decltype(auto) Scene::with_law(Act&& act) const {
   const auto* named = std::get_if<NamedLaw>(&law);
@@ -216,7 +217,7 @@ inline long Scene::run(long steps, const CreatePhysics& make, const Observe& obs
       Batches batches({bodies, contacts, stages, strains, energies, newton, time_step,
                        tracks_energy, uses_avx2});
       batches.fill(std::is_same_v<decltype(one), const HertzMindlin&>, !sums_before_moving());
-      // The last step is not batched, so that it leaves all data in the arrays.
+      // The last step is made without batches, so that all data are in the arrays afterwards.
       while (done < steps - 1 && batches.useful() &&
              step([&] { return batches.step_contacts(contact); },
                   [&] { return batches.move() && move_all(batches.others(), false); })) {

@@ -63,7 +63,7 @@ bool Scene::step_contact(const Law& one, std::size_t index, const CreatePhysics&
     contact.made = iteration;
   }
   any_contact = true;
-  // The check follows the computation, which is faster; a failed step is left incomplete anyway. A
+  // It is faster to check after the computation, because a failed step is left incomplete anyway. A
   // NaN force persists in the state, where has_finite_state() detects it after the steps.
   if constexpr (std::is_same_v<Law, HertzMindlin>) {
     const ContactPhysics& physics = contact.physics;
@@ -93,8 +93,9 @@ bool Scene::step_named(const Named<Law>& named, const Contact& contact,
   return !touches || is_stable_stiffness(physics.kn, physics, time_step) || accepts(physics);
 }
 
-// Returns `undefined` for tilted axes and if the wall's geometry or the kernel throws: YADE's own
-// loop then repeats the step and reports the error, as for every result except apart and contact.
+// Finds the contacts with a bore. Returns `undefined` for tilted axes and if the wall's geometry or
+// the kernel throws. YADE's own loop repeats the step for every result except `apart` and
+// `contact`, and reports the error.
 inline BoreSearch Scene::find(const Contact& contact, Bore& bore) {
   const Body& one = body(contact.body_1);
   const Body& two = body(contact.body_2);

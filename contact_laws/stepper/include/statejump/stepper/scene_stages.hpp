@@ -11,8 +11,9 @@
 
 namespace statejump::stepper {
 
-// Measures all links at the start of a step, before any body moves. The square roots and quotients
-// depend only on positions, so out-of-order execution can overlap them with each other.
+// Measures all links at the start of a step, before any body moves. Their square roots and
+// quotients depend only on positions, so the processor can compute them in parallel (out-of-order
+// execution).
 inline void Scene::measure_links() {
   for (Stage& stage : stages) {
     auto* links = std::get_if<Links>(&stage);

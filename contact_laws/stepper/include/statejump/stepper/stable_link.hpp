@@ -5,9 +5,9 @@
 
 namespace statejump::stepper {
 
-/// Whether a time step is at most stable_step(): dt <= 4 m / (c + sqrt(c^2 + 4 m k)) is equivalent
-/// to (k dt + 2 c) dt <= 4 m. The fast check needs no roots and quotients. Near the limit, where
-/// rounding matters, stable_step() itself decides.
+/// Returns whether a time step is at most stable_step(). The condition dt <= 4 m / (c + sqrt(c^2 +
+/// 4 m k)) is equivalent to (k dt + 2 c) dt <= 4 m, which needs no roots and quotients. Near the
+/// limit, where rounding matters, stable_step() itself decides.
 /// @param inverse_mass 1/m1 + 1/m2 [1/kg], > 0; @param time_step [s]
 inline bool is_stable(const LinkStep& step, double inverse_mass, double time_step) {
   const double almost_4 = 4 - 1e-6, mobility_time = time_step * inverse_mass;

@@ -30,7 +30,7 @@
 #include <string>
 #include <vector>
 
-// YADE's Eigen settings. They determine the size and the alignment of every vector member.
+// YADE's Eigen settings, which determine the size and alignment of every vector member.
 #ifndef EIGEN_DONT_ALIGN
 #error "compile with -DEIGEN_DONT_ALIGN -DEIGEN_DONT_VECTORIZE, as YADE was"
 #endif
@@ -41,7 +41,7 @@
 #error "STATEJUMP_YADE_VARIANT is set by the build: the interface variant of the YADE that it found"
 #endif
 
-// A class template of YADE in the global namespace; instance() is exported.
+// A class template of YADE in the global namespace. Its function instance() is exported.
 template <class T>
 class Singleton {
  public:
@@ -65,8 +65,8 @@ using Se3r = Se3<Real>;
 
 class Scene;
 
-// Bytes of unused members. Where the plugin constructs the object, zeros equal YADE's defaults
-// (null pointers); elsewhere YADE constructs it.
+// Bytes of members that the plugin does not use. In objects of the plugin, zeros equal YADE's
+// defaults (null pointers); YADE fills those of its own objects.
 template <std::size_t size, std::size_t alignment = alignof(void*)>
 struct alignas(alignment) Unused {
   std::array<char, size> bytes{};
@@ -100,9 +100,9 @@ class Serializable : public Factorable {
   void serialize(Archive& archive, unsigned int version);
 };
 
-// Multiple dispatch: each derived class has a static index, assigned once in its constructor. YADE
-// does not export the vtable of this class, so its functions are defined here. Every derived class
-// overrides them.
+// Base for multiple dispatch. Each derived class has a static index, assigned once in its
+// constructor. YADE does not export the vtable of this class, so its functions are defined here.
+// Every derived class overrides them.
 class Indexable {
   [[noreturn]] static void no_dispatch_index() {
     throw std::logic_error("class without a dispatch index");

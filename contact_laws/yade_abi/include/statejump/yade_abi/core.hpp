@@ -60,7 +60,8 @@ class Bound : public Serializable, public Indexable {
   void incrementMaxCurrentlyUsedClassIndexOfKin() override;
 };
 
-// Only constructed by Aabb's exported constructor, because YADE exports no function of Bound.
+// Objects are only constructed by Aabb's exported constructor, because YADE exports no function of
+// Bound.
 class Aabb : public Bound {
  public:
   Aabb();
@@ -179,8 +180,8 @@ class IGeom : public Serializable, public Indexable {
   void incrementMaxCurrentlyUsedClassIndexOfKin() override;
 };
 
-// YADE's time stepper and recorders cast every interaction geometry to this type without a check,
-// so the plugin's geometries derive from it.
+// YADE's time stepper and recorders cast every interaction geometry to this type without a check.
+// The plugin's geometries therefore derive from it.
 class GenericSpheresContact : public IGeom {
  public:
   Vector3r normal = Vector3r::Zero();
@@ -349,7 +350,8 @@ class InteractionContainer : public Serializable {
 
 class EnergyTracker : public Serializable {
  public:
-  // id is -1 before the first call; reset: the entry is set to zero at the start of every step.
+  // `id` is -1 before the first call. With `reset`, YADE sets the entry to zero at the start of
+  // every step.
   void add(const Real& value, const std::string& name, int& id, bool reset);
   EnergyTracker(const EnergyTracker&) = delete;
   ~EnergyTracker() override;

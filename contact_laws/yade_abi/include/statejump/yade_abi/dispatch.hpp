@@ -27,8 +27,8 @@ class Functor : public Serializable {
   virtual std::vector<std::string> getFunctorTypes() const;
 };
 
-// Virtual overloads of go and goReverse for each number of arguments up to seven. Arguments beyond
-// the end of the list have the type that boost::mpl returns there.
+// Virtual overloads of go and goReverse for each number of arguments up to seven. boost::mpl
+// determines the type of arguments beyond the end of the list.
 template <class Result, class Arguments>
 class FunctorWrapper {
   template <int i>
@@ -138,10 +138,10 @@ class LawFunctor
   void pyRegisterClass(boost::python::object scope) override;
 };
 
-// The renderer passes it to the functors; the plugin does not use it.
+// The renderer passes a GLViewInfo to the functors. The plugin does not use it.
 class GLViewInfo;
 
-// Draws a shape in YADE's 3-D view, relative to the body's position.
+// Base of functors that draw a shape in YADE's 3-D view, relative to the body's position.
 class GlShapeFunctor
     : public Functor1D<Shape, void,
                        boost::mpl::vector<const shared_ptr<Shape>&, const shared_ptr<State>&, bool,
@@ -160,8 +160,8 @@ class GlShapeFunctor
   virtual void initgl();
 };
 
-// The 3-D view. When YADE's user interface starts, it searches once for drawing functors. After the
-// flag is reset, it searches again before the next picture.
+// The 3-D view. When YADE's user interface starts, it searches once for drawing functors. If
+// initDone is reset, it searches again before the next picture.
 class OpenGLRenderer {
  public:
   static bool initDone;

@@ -26,7 +26,7 @@ struct DeclaredMember {
 struct DeclaredInterface {
   std::vector<DeclaredClass> classes;
   std::vector<DeclaredMember> members;
-  // Classes whose vtable is compared, each with the mangled name of an empty derived class.
+  // Classes whose vtable is compared. Each has an empty derived class, given by its mangled name.
   struct Table {
     std::string class_name, mangled_child;
   };
@@ -38,7 +38,8 @@ struct DeclaredInterface {
   const DeclaredMember* find_member(const std::string& class_name, const std::string& name) const;
 };
 
-// Built from the declarations, or from YADE's own headers if the plugin is compiled with those.
+// Built from the plugin's declarations, or from YADE's own headers if the plugin is compiled with
+// them.
 DeclaredInterface declared_interface();
 
 // Demangled type name; the name itself if it is not mangled.

@@ -20,8 +20,8 @@ static_assert(sizeof(yade::Factorable) == 24);
 static_assert(sizeof(yade::Serializable) == 24);
 static_assert(sizeof(yade::Indexable) == 8);
 
-// The build generates measured_layout.inc from variants/<variant>_members.csv. Macros, because
-// offsetof needs the names of class and member.
+// The build generates measured_layout.inc from variants/<variant>_members.csv. It uses macros,
+// because offsetof needs the names of class and member.
 #define STATEJUMP_CLASS(Class, bytes, allocated) static_assert(sizeof(yade::Class) == (bytes));
 #define STATEJUMP_MEMBER(Class, member, place, bytes, getter) \
   static_assert(offsetof(yade::Class, member) == (place));    \

@@ -15,15 +15,15 @@
 
 namespace statejump::kernel::laws {
 
-/// One contact without bodies, driven along a path of depth and slide.
+/// A single contact without bodies. Its depth and slide are prescribed along a path.
 struct DrivenContact {
   JointLaw law;             ///< tangential_velocity is ignored: the path prescribes the slide
   ElasticPair elastic;      ///< E*, G* [Pa], > 0
   NormalGeometry geometry;  ///< see driven_geometry()
 };
 
-/// End point of one step. The step is a straight line from the current point, and the laws
-/// receive it as a single increment.
+/// End point of one step. The path to it is a straight line, which the laws receive as a single
+/// increment.
 struct DrivenTarget {
   double depth = 0.0;                      ///< delta [m]; <= 0: the contact is open
   std::optional<double> normal_force;      ///< F_N [N], >= 0; if given, the depth follows from it
@@ -50,23 +50,23 @@ struct DrivenState {
   ContactHistory history;     ///< of the friction law
 };
 
-/// Radii with the given effective radius R = R1 R2/(R2 - R1) and clearance c = R2 - R1: R1^2 + c R1
-/// = R c. An infinite clearance is a flat wall, R1 = R.
+/// Radii R1 and R2 with the given effective radius R = R1 R2/(R2 - R1) and clearance c = R2 - R1.
+/// R1 is the root of R1^2 + c R1 = R c. An infinite clearance is a flat wall, R1 = R.
 /// @param effective_radius R [m], > 0, @param radial_clearance c [m], > 0
-/// @param contact_length [m], > 0, of a line contact
+/// @param contact_length length [m], > 0, of a line contact
 inline NormalGeometry driven_geometry(double effective_radius, double radial_clearance,
                                       double contact_length) {
   require(std::isfinite(effective_radius) && effective_radius > 0.0, "effective_radius",
           effective_radius, "(0, inf) m");
   require(radial_clearance > 0.0, "radial_clearance", radial_clearance, "(0, inf] m");
   if (std::isinf(radial_clearance)) return {effective_radius, radial_clearance, contact_length};
-  // 2 R c/(c + sqrt(c^2 + 4 R c)): the root without cancellation
+  // root R1 = 2 R c/(c + sqrt(c^2 + 4 R c)), written without cancellation
   const double journal_radius =
       2.0 * effective_radius / (1.0 + std::sqrt(1.0 + 4.0 * effective_radius / radial_clearance));
   return {journal_radius, journal_radius + radial_clearance, contact_length};
 }
 
-/// Checks a driven contact; call it whenever it is set.
+/// Checks a driven contact. Call it whenever the contact is set.
 /// @throws std::invalid_argument that names the field, its value and its range, or the law that
 ///        needs a missing field
 inline void validate(const DrivenContact& contact) {
@@ -123,11 +123,12 @@ inline double depth_at_force(const DrivenContact& contact, double force) {
 }  // namespace detail
 
 /// Drives a contact along a straight path. An open contact carries no force and has no history.
-/// When it closes again, a new contact begins, with the slide from depth 0 on.
+/// When it closes again, a new contact begins; only slide after the depth passed 0 counts.
 ///
 /// A given tangential force determines the slide. The friction force does not decrease with the
 /// slide, so bisection finds the smallest slide that reaches the force, to the last bit.
-/// @param before state after the previous step; default-constructed: no contact yet
+/// @param before state after the previous step; a default-constructed state means that there was no
+///     contact
 /// @throws std::domain_error for a depth outside the range of the normal law, or a force that
 ///        friction cannot reach
 inline DrivenState drive(const DrivenContact& contact, const DrivenState& before,
@@ -152,8 +153,8 @@ inline DrivenState drive(const DrivenContact& contact, const DrivenState& before
   after.damping_dissipation += (after.normal_force - normal.force) * rate * duration;
 
   const double stiffness = tangential_stiffness(contact.elastic, normal.stiffness);
-  // The contact slides only while it touches: after it closes or before it opens within the step.
-  // The slide is scaled by the fraction of the step with positive depth.
+  // The contact slides only while it touches: in a step that closes it, afterwards; in a step that
+  // opens it, before. The slide is scaled by the fraction of the step with positive depth.
   const double one = std::max(before.depth, after.depth);
   const double other = std::min(before.depth, after.depth);
   const double fraction = one > 0.0 && other < 0.0 ? one / (one - other) : 1.0;
@@ -179,7 +180,7 @@ inline DrivenState drive(const DrivenContact& contact, const DrivenState& before
     const auto reaches = [&](double slide_x) { return side * (at(slide_x) - force) >= -margin; };
     after.slide_x = before.slide_x;
     if (!reaches(after.slide_x)) {
-      // Start with half the elastic slide force/k_t; give up at 1000 journal radii.
+      // The search starts at half the elastic slide force/k_t and gives up at 1000 journal radii.
       double far = stiffness > 0.0 ? 0.5 * std::max(std::abs(force), limit) / stiffness : 0.0;
       const double beyond = 1e3 * contact.geometry.journal_radius;
       while (far > 0.0 && far < beyond && !reaches(before.slide_x + side * far)) far *= 2.0;

@@ -20,7 +20,7 @@ struct FrictionParameters {
   double v1 = parameter::v1.default_value;  ///< [m/s]; ambrosio: full friction for v >= v1
 };
 
-/// Checks friction parameters; call it whenever they are set.
+/// Checks friction parameters. Call it whenever they are set.
 /// @throws std::invalid_argument that names the field, its value and its range
 inline void validate(const FrictionParameters& parameters) {
   check(parameter::friction_coefficient, parameters.friction_coefficient);
@@ -45,10 +45,11 @@ struct FrictionResponse {
   double dissipation;     ///< of this step [J], >= 0
 };
 
-/// A friction law is one of two types. A law with a memory (Trait::has_memory) receives the slide
-/// of the step, as velocity times time step. A law without one is a function of the current
+/// A friction law is one of two types. A law with memory (Trait::has_memory) receives the slide of
+/// the step, as velocity times time step. A law without memory is a function of the current
 /// velocity, smooth enough for an adaptive integrator. `largest_slope()` returns the largest slope
-/// of force over velocity [N s/m]: a viscous damper that an explicit integrator has to resolve.
+/// of force over velocity [N s/m]. It acts as a viscous damper that an explicit integrator has to
+/// resolve.
 
 /// No friction; the force is exactly zero.
 struct NoFriction {
@@ -67,8 +68,8 @@ struct NoFriction {
 ///
 /// directed opposite to v_t, which the paper does not state. The dissipation of a step is F_T v dt
 /// [J].
-/// Limits: zero up to v0, so it cannot hold a static load. Under a tangential load T a joint creeps
-/// at v0 + (v1 - v0) T/(mu F_N). Stores no energy, has no history.
+/// Limits: the force is zero up to v0, so it cannot hold a static load. Under a tangential load T,
+/// a joint creeps at v0 + (v1 - v0) T/(mu F_N). The law stores no energy and has no history.
 struct AmbrosioFriction {
   static double largest_slope(const FrictionParameters& parameters, double normal_force) {
     return parameters.friction_coefficient * normal_force / (parameters.v1 - parameters.v0);
@@ -94,9 +95,10 @@ struct AmbrosioFriction {
   }
 };
 
-/// Mindlin's history spring under Coulomb's limit: mindlin_step() with limit mu F_N. The caller
-/// rotates the history with the contact, see transport(). Holds a static load up to mu F_N. k_t = 8
-/// G* a is the stiffness of a circular contact; for a line contact the caller supplies k_t.
+/// Mindlin's history spring under Coulomb's limit: mindlin_step() with the limit mu F_N. The caller
+/// rotates the history with the contact, see transport(). The spring holds a static load up to mu
+/// F_N. Its stiffness in a circular contact is k_t = 8 G* a; for a line contact the caller supplies
+/// k_t.
 struct MindlinFriction {
   static double largest_slope(const FrictionParameters&, double) { return 0.0; }
   static constexpr LawInfo info{"mindlin",
@@ -114,8 +116,8 @@ struct MindlinFriction {
   }
 };
 
-/// Hertz contact with partial slip, which starts at the rim: partial_slip_step() with k = k_t,
-/// limit mu F_N. The caller rotates axis and force of the history with the contact.
+/// Hertz contact with partial slip, which starts at the rim. It calls partial_slip_step() with k =
+/// k_t and the limit mu F_N. The caller rotates axis and force of the history with the contact.
 struct MindlinDeresiewiczFriction {
   static double largest_slope(const FrictionParameters&, double) { return 0.0; }
   static constexpr LawInfo info{
@@ -147,9 +149,10 @@ struct MindlinDeresiewiczFriction {
     if (history.memory.size() == 0) first = Vector3::Zero();
     return {history.tangential_force, response.elastic, response.dissipation};
   }
-  /// History of a contact that was loaded with a constant ratio of tangential to normal force: no
-  /// annulus has slipped, the slide is 3/2 F_T/k_t.
-  /// @param force_on_1 [N], at most mu F_N; @param under kinematics; its velocity is ignored
+  /// History of a contact that was loaded with a constant ratio of tangential to normal force. Then
+  /// no annulus has slipped, and the slide is 3/2 F_T/k_t.
+  /// @param force_on_1 tangential force on body 1 [N], at most mu F_N
+  /// @param under kinematics of the contact; its velocity is ignored
   ContactHistory preloaded(const FrictionParameters& parameters, const Vector3& force_on_1,
                            FrictionKinematics under) const {
     under.tangential_velocity = -1.5 / under.tangential_stiffness * force_on_1;
@@ -160,8 +163,8 @@ struct MindlinDeresiewiczFriction {
   }
 
  private:
-  /// A unit vector perpendicular to another: the coordinate axis with the smallest component, made
-  /// orthogonal.
+  /// A unit vector perpendicular to `normal`: the coordinate axis along which `normal` is smallest,
+  /// made orthogonal.
   static Vector3 perpendicular(const Vector3& normal) {
     Eigen::Index least = 0;
     normal.cwiseAbs().minCoeff(&least);

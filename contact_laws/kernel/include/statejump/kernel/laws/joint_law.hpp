@@ -11,7 +11,8 @@
 
 namespace statejump::kernel::laws {
 
-/// The four laws of one clearance joint and their parameters. A plain value; call validate() once.
+/// The four laws of one clearance joint and their parameters, as plain values. Call validate()
+/// once.
 struct JointLaw {
   NormalLaw normal = HertzInternal{};
   DissipationLaw dissipation = NoDissipation{};
@@ -19,10 +20,10 @@ struct JointLaw {
   TangentialVelocityLaw tangential_velocity = MaterialVelocity{};
   FrictionParameters friction_parameters;                     ///< mu, v0, v1
   double restitution = parameter::restitution.default_value;  ///< e [-], see restitution_of()
-  /// Lower bound of the impact speed in the dissipation law [m/s], > 0. Without it, a contact that
-  /// begins slowly, for example by thermal expansion, would have unbounded damping.
+  /// Lower bound of the impact speed in the dissipation law [m/s], > 0. Without it, damping would
+  /// be unbounded in a contact that begins slowly, for example by thermal expansion.
   double smallest_impact_speed = parameter::smallest_impact_speed.default_value;
-  /// Axial length of a line contact [m], > 0; point laws ignore it.
+  /// Axial length of a line contact [m], > 0. Laws of point contacts ignore it.
   double contact_length = parameter::contact_length.default_value;
 };
 
@@ -34,7 +35,7 @@ struct JointLawNames {
   std::string tangential_velocity = MaterialVelocity::info.name;
 };
 
-/// The laws with these names, with default parameters.
+/// Returns the laws with these names and default parameters.
 /// @throws std::invalid_argument that lists the known names
 inline JointLaw joint_law(const JointLawNames& names) {
   JointLaw law;
@@ -53,7 +54,8 @@ inline std::string incompatibility(const JointLaw& law) {
          names_with<NormalLaw>(Trait::point_contact) + ", not '" + law_info(law.normal).name + "'";
 }
 
-/// Checks the parameters and whether the laws are compatible; call it whenever they are set.
+/// Checks the parameters and whether the laws are compatible. Call it whenever they are
+/// set.
 /// @throws std::invalid_argument that names the field, its value and its range
 inline void validate(const JointLaw& law) {
   if (const std::string wrong = incompatibility(law); !wrong.empty()) {
@@ -65,16 +67,17 @@ inline void validate(const JointLaw& law) {
   check(parameter::contact_length, law.contact_length);
 }
 
-/// Tangential stiffness for any normal law, k_t = 4 (G*/E*) k_n [N/m]. This is Mindlin's ratio of
-/// the two stiffnesses. It is exact for a circular contact, where k_n = 2 E* a and k_t = 8 G* a.
-/// For a line contact it is a choice: the tangential compliance of an infinite cylinder has the
-/// same logarithm as the normal one.
-/// @param normal_stiffness dF_N/d(delta) [N/m], elastic
+/// Tangential stiffness for any normal law, k_t = 4 (G*/E*) k_n [N/m], by Mindlin's ratio of the
+/// two stiffnesses. The ratio is exact for a circular contact, where k_n = 2 E* a and k_t = 8 G* a.
+/// For a line contact it is a choice, because tangential and normal compliance of an infinite
+/// cylinder contain the same logarithm.
+/// @param normal_stiffness elastic stiffness dF_N/d(delta) [N/m]
 inline double tangential_stiffness(const ElasticPair& elastic, double normal_stiffness) {
   return 4.0 * elastic.effective_shear_modulus / elastic.effective_young_modulus * normal_stiffness;
 }
 
-/// chi/K [s/m] of a contact that began at this approach speed [m/s]; see damped_force().
+/// Damping ratio chi/K [s/m] of a contact that began at the given approach speed [m/s]; see
+/// damped_force().
 template <class Law>
 double damping_ratio(const Law& law, double impact_speed) {
   return damping_ratio(

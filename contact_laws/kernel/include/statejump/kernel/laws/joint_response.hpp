@@ -12,7 +12,7 @@
 
 namespace statejump::kernel::laws {
 
-/// Kinematics of the two bodies of a joint in this step. The inner loop does not check them.
+/// Kinematics of the two bodies of a joint in one step. The inner loop does not check them.
 struct JointKinematics {
   JointContact contact;     ///< from revolute_contact() or plane_contact()
   NormalGeometry geometry;  ///< R1, R2 at the current temperature, contact length. R2 = +infinity
@@ -39,7 +39,8 @@ struct JointResponse {
 
 namespace detail {
 
-/// Catalogue laws as the Laws of contact_step(). Members are set once: this is the inner loop.
+/// Implements the Laws of contact_step() with laws of the catalogue. Members are set once, because
+/// this is the inner loop.
 template <class Law>
 struct CatalogueLaws {
   const Law& law;
@@ -91,15 +92,17 @@ struct CatalogueLaws {
 
 }  // namespace detail
 
-/// contact_step() with any joint law and k_t = tangential_stiffness(). The viscous part c_t belongs
+/// One contact_step() with any joint law and k_t = tangential_stiffness(). The dashpot c_t belongs
 /// to the history spring, so friction laws without a spring (none, ambrosio) have no c_t.
 /// hertz_internal + none + mindlin + material equals hertz_mindlin() up to rounding of k_t.
 ///
-/// Velocity and wrench come from the same tangential velocity law. Energy: as in hertz_mindlin().
-/// @param law a JointLaw or a StaticJointLaw. Its friction coefficient is ignored; `parameters` has
-///        the one that applies.
+/// Velocity and wrench come from the same tangential velocity law. Energies are defined as in
+/// hertz_mindlin().
+/// @param law a JointLaw or a StaticJointLaw. Its friction coefficient is ignored; that of
+///     `parameters` applies.
 /// @param parameters see validate(); not checked here
-/// @param history of this contact, rotated into the current tangent plane by the caller; updated
+/// @param history memory of this contact, updated; the caller has rotated it into the current
+///     tangent plane
 /// @throws std::domain_error when the depth is outside the range of the normal law
 template <class Law>
 JointResponse joint_response(const Law& law, const ContactParameters& parameters,
@@ -117,9 +120,9 @@ JointResponse joint_response(const Law& law, const ContactParameters& parameters
 
 /// Change of the potential V(delta, R1, R2) of the normal law when only the radii change, at fixed
 /// depth [J]. The effect of the radii on the depth, -F dc, is not included. The change in one time
-/// step is too small to subtract, so a central difference along the change is used. Its step is
-/// 1e-5 of the smaller of clearance and R1. Relative error about 1e-9.
-/// @param before, after radii [m]; @param depth [m]
+/// step is too small to subtract two values of V. A central difference along the change is used,
+/// with a step of 1e-5 of the smaller of clearance and R1. Its relative error is about 1e-9.
+/// @param depth [m]; @param before, after radii at both ends of the step [m]
 template <class Law>
 double radius_energy_change(const Law& law, const NormalMaterial& material, double depth,
                             const NormalGeometry& before, const NormalGeometry& after) {

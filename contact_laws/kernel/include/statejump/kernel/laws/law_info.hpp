@@ -11,21 +11,22 @@
 
 namespace statejump::kernel::laws {
 
-/// Properties of a law besides its numbers. Code that depends on a capability of a law reads its
-/// traits, never its name or type.
+/// Properties of a law besides its numbers. Code that depends on such a property reads the traits,
+/// never the name or type of the law.
 enum class Trait : unsigned {
-  /// a body at rest can remain at rest under a load on this law
+  /// a body under a load can remain at rest on a contact with this law
   holds_static_load = 1U << 0,
   /// no force at all
   frictionless = 1U << 1,
-  /// receives the slide of the step and keeps a history; otherwise a function of the velocity
+  /// receives the slide of the step and keeps a history; without this trait, a function of the
+  /// velocity
   has_memory = 1U << 2,
-  /// needs the axis of a bearing: not available in a socket or on a flat face
+  /// needs the axis of a bearing, so it is not available in a socket or on a flat face
   needs_axis = 1U << 3,
   /// accepts a negative bearing radius (a bulging wall): uses signed curvature
   accepts_bulging_wall = 1U << 4,
-  /// Hertz's point contact F = 4/3 E* sqrt(R) delta^1.5, with 1/R = 1/R1 - 1/R2 if
-  /// accepts_bulging_wall is set and 1/R = 1/R1 + 1/R2 otherwise
+  /// Hertz's point contact F = 4/3 E* sqrt(R) delta^1.5. Its curvature is 1/R = 1/R1 - 1/R2 if
+  /// accepts_bulging_wall is set, otherwise 1/R = 1/R1 + 1/R2.
   point_contact = 1U << 5,
   /// valid only under a normal law that is a point_contact
   needs_point_contact = 1U << 6,
@@ -46,7 +47,7 @@ constexpr Traits operator|(Trait a, Trait b) {
   return Traits(a) | Traits(b);
 }
 
-/// A parameter of a law. All checks and listings use this one range and default.
+/// A parameter of a law. All checks and listings use its range and default.
 struct LawParameter {
   const char* name;  ///< name of the field in the parameter struct
   const char* unit;  ///< "-" for a ratio
@@ -73,7 +74,7 @@ struct LawParameter {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 };
 
-/// Checks a parameter; call it whenever it is set.
+/// Checks a parameter. Call it whenever it is set.
 /// @throws std::invalid_argument that names the parameter, its value and its range
 inline void check(const LawParameter& parameter, double value) {
   if (parameter.allows(value)) return;

@@ -40,7 +40,8 @@ struct NormalState {
   double elastic_energy;  ///< integral of F over delta [J], >= 0
 };
 
-/// Checks geometry and material; call it whenever they are set, because the laws do not check them.
+/// Checks geometry and material. Call it whenever they are set, because the laws do not
+/// check them.
 /// @throws std::invalid_argument that names the field, its value and its range
 inline void validate(const NormalGeometry& geometry, const NormalMaterial& material) {
   const auto positive = [](double value, const char* name, const char* range) {
@@ -53,10 +54,11 @@ inline void validate(const NormalGeometry& geometry, const NormalMaterial& mater
   positive(material.effective_young_modulus, "effective_young_modulus", "(0, inf) Pa");
 }
 
-/// A penetration depth outside the range of a normal law, as fields.
+/// Error for a penetration depth outside the range of a normal law, with its data as fields.
 class DepthOutOfRange : public std::domain_error {
  public:
-  /// @param law its name, @param depth [m], @param limit the smallest depth that is not allowed [m]
+  /// @param law name of the law, @param depth [m], @param limit smallest depth that is not allowed
+  ///     [m]
   DepthOutOfRange(std::string law, double depth, double limit)
       : std::domain_error(sentence(law, depth, limit)),
         law_(std::move(law)),
@@ -99,17 +101,17 @@ inline NormalState from_hertz(const HertzState& state) {
 /// Line contact with delta = f/(pi E*) u, u = s + ln(4 pi E* dR/f), f = F/L. The constant s is -1
 /// in Johnson's formula and +1 in ESDU's.
 ///
-/// With y = delta/(4 dR) the relation is u e^-u = y e^-s. So u = -W(-y e^-s) on the lower branch of
-/// Lambert's W, where u > 1: a closed form. Then
+/// With y = delta/(4 dR) the relation is u e^-u = y e^-s. So u has the closed form -W(-y e^-s),
+/// with the lower branch of Lambert's W, where u > 1. Then
 ///
 ///    dF/d(delta) = pi E* L/(u - 1)
 ///    integral of F d(delta) = F f/(4 pi E*) (2u - 1)
 ///
-/// At u = 1 (delta = 4 dR e^(s-1)) the stiffness is infinite: F(delta) has its turning point.
+/// At u = 1 (delta = 4 dR e^(s-1)) F(delta) has its turning point, where the stiffness is infinite.
 inline NormalState logarithmic_line_contact(double depth, const NormalGeometry& geometry,
                                             const NormalMaterial& material, double scaled_limit) {
   const double modulus = pi * material.effective_young_modulus;
-  // scaled_limit = 4 dR e^s, so that depth/scaled_limit < 1/e inside the range.
+  // With scaled_limit = 4 dR e^s, depth/scaled_limit < 1/e holds within the range of the law.
   const double argument = std::max(depth / scaled_limit, std::numeric_limits<double>::min());
   const double u = -boost::math::lambert_wm1(-argument);
   const double line_force = modulus * depth / u;
@@ -123,9 +125,9 @@ inline NormalState logarithmic_line_contact(double depth, const NormalGeometry& 
 }  // namespace detail
 
 /// Hertz as printed in the paper, eqs (6) to (8): F = 4/3 E* sqrt(R) delta^1.5 with R = R1 R2/(R1 +
-/// R2) [m], the radius of two balls in external contact. A pin in a hole needs R2 - R1 instead;
-/// with the data of Table 2 this makes the joint ten times too soft. Kept for comparison with the
-/// paper. Limits: see hertz().
+/// R2) [m], the effective radius of two balls in external contact. A pin in a hole needs R2 - R1
+/// instead of R1 + R2, so with the data of Table 2 this law is ten times too soft. It is kept for
+/// comparison with the paper. Limits: see hertz().
 struct HertzPaper {
   static constexpr LawInfo info{
       "hertz_paper",
@@ -148,7 +150,8 @@ struct HertzPaper {
 
 /// Hertz with the curvature of a pin in a hole, R = R1 R2/(R2 - R1) [m]: F = 4/3 E* sqrt(R)
 /// delta^1.5 (Johnson 1985, eqs 4.14, 4.22, 4.23). See hertz(), internal_effective_radius().
-/// Limits: a point contact, a = sqrt(R delta) << R1; a real cylinder in a bore touches on a line.
+/// Limits: a point contact with a = sqrt(R delta) << R1, whereas a real cylinder in a bore touches
+/// along a line.
 struct HertzInternal {
   static constexpr LawInfo info{
       "hertz_internal",
@@ -175,11 +178,11 @@ struct HertzInternal {
 ///
 /// Each body contributes f (1 - nu^2)/(pi E) (2 ln(4 R_i/a) - 1), with depths measured from its
 /// centre (Johnson 1985, eq. 5.57). With the half width of the Hertz line contact a^2 = 4 f R/(pi
-/// E*), R = R1 R2/dR (eq. 4.43), the sum is the formula. Pereira, Ramalho and Ambrosio, Nonlinear
-/// Dyn. 63, 2011, use it in this form. Units: m, N, Pa.
-/// Limits: F(delta) turns over at f = 4 pi E* dR/e^2, delta = 4 dR/e^2; from that depth on the law
-/// reports an error. The half-plane assumption fails earlier: at the turning point a is 1.47 R1.
-/// Valid for a << R1, delta << dR; for deeper contacts use persson.
+/// E*), R = R1 R2/dR (eq. 4.43), the sum of both contributions is this formula. Pereira, Ramalho
+/// and Ambrosio, Nonlinear Dyn. 63, 2011, use it in this form. Units: m, N, Pa.
+/// Limits: F(delta) has a turning point at f = 4 pi E* dR/e^2, delta = 4 dR/e^2. From that depth on
+/// the law reports an error. The half-plane assumption fails earlier: at the turning point a is
+/// 1.47 R1. The law is valid for a << R1 and delta << dR; use `persson` for deeper contacts.
 struct Johnson {
   static constexpr LawInfo info{
       "johnson",
@@ -207,12 +210,12 @@ struct Johnson {
 ///
 ///     delta = f (sigma1 + sigma2) (ln(4 dR/(f (sigma1 + sigma2))) + 1),   f = F/L,
 ///
-/// that is delta = f/(pi E*) (ln(4 pi E* dR/f) + 1): Johnson's logarithm with another reference
-/// depth, a softer contact. Units: m, N, Pa. (Texts that define sigma without 1/pi print other
+/// that is delta = f/(pi E*) (ln(4 pi E* dR/f) + 1). Johnson's formula has -1 instead of +1, so
+/// this contact is softer. Units: m, N, Pa. (Texts that define sigma without 1/pi print other
 /// factors. The coefficient 1/(pi E*) of f ln f follows from elasticity, so it is used here.)
-/// Limits: F(delta) turns over at f = 4 pi E* dR, delta = 4 dR; from that depth on the law reports
-/// an error. The half width is 4 R1 there, so the half-plane assumption fails much earlier: a < R1
-/// needs f < pi E* dR/4.
+/// Limits: F(delta) has a turning point at f = 4 pi E* dR, delta = 4 dR. From that depth on the law
+/// reports an error. At that point the half width a is 4 R1, so the half-plane assumption fails
+/// much earlier: a < R1 requires f < pi E* dR/4.
 struct Esdu78035 {
   static constexpr LawInfo info{
       "esdu_78035",
@@ -233,14 +236,15 @@ struct Esdu78035 {
 
 namespace detail {
 
-/// Persson's contact at t = tan(epsilon/2)^2, in units of E* dR (line force) and dR (depth).
+/// Persson's contact at t = tan(epsilon/2)^2. Line forces are in units of E* dR, depths in units of
+/// dR.
 struct PerssonPoint {
   double load_divisor;  ///< X; f = 2 pi t (1 + t)/X
   double compliance;    ///< C = pi d(delta)/df
   double offset;        ///< omega - 1; delta = C f/pi + omega - 1
 };
 
-/// Largest t, at X = 0: infinite load or no clearance; epsilon = 84.83 degrees.
+/// Largest t, where X = 0. The load is infinite or the clearance zero, and epsilon = 84.83 degrees.
 constexpr double persson_largest_t = 0.83461524547765723156;
 
 inline PerssonPoint persson_point(double t) {
@@ -261,16 +265,16 @@ inline PerssonPoint persson_point(double t) {
 /// without the half-plane assumption. The contact may cover a large arc with half angle epsilon, t
 /// = tan(epsilon/2)^2.
 ///
-/// Gap with the journal moved by dR + delta: dR - (dR + delta) cos phi + u(phi). A pressure sum p_n
-/// cos(n phi) opens u_n = (2R/E*) n/(n^2 - 1) p_n, n >= 2, and u_0 = (R/E*) p_0 (Michell's series
-/// for disc and hole, equal materials). Applying d^2/dphi^2 + 1 to the zero gap on the arc gives a
-/// Cauchy singular equation in tan(phi/2). Its bounded solution is Persson's load (1964; Ciavarella
-/// and Decuzzi, Int. J. Solids Struct. 38, 2001, elastic similarity)
+/// When the journal has moved by dR + delta, the gap is dR - (dR + delta) cos phi + u(phi). A
+/// pressure sum p_n cos(n phi) opens u_n = (2R/E*) n/(n^2 - 1) p_n, n >= 2, and u_0 = (R/E*) p_0
+/// (Michell's series for disc and hole, equal materials). Applying d^2/dphi^2 + 1 to the zero gap
+/// on the arc gives a Cauchy singular equation in tan(phi/2). Its bounded solution is Persson's
+/// load (1964; Ciavarella and Decuzzi, Int. J. Solids Struct. 38, 2001, elastic similarity)
 ///
 ///    f/(E* dR) = 2 pi t (1 + t)/X,   X = 2 - ln(1 + t) - 2 t^2,   f = F/L.
 ///
 /// Depth: the first harmonic is a rigid translation, which a plane problem leaves undetermined (a
-/// point load sinks infinitely deep in an infinite plane). It is fixed here by a choice: at light
+/// point load sinks infinitely deep in an infinite plane). This law chooses it such that at light
 /// load the depth tends to Johnson's, delta -> f/(pi E*) (ln(4 pi E* dR/f) - 1). The reciprocal
 /// theorem between the contact and its increment then gives, in units of dR,
 ///
@@ -280,8 +284,8 @@ inline PerssonPoint persson_point(double t) {
 ///    C = ln(4(1 + t)/t) - 2 - (omega - 1)/2 + t (2 + 5t/2 + (1 + 2t) X/N)/(1 + t)^2
 ///        + (1 + 2t)^2 ln(1 + t)/((1 + t) N).
 ///
-/// Boost's toms748 solves for t(delta); no constant is fitted. The energy is half the integral of p
-/// u:
+/// Boost's toms748 solves delta(t) = delta for t; no constant is fitted. The energy is half the
+/// integral of p u:
 /// 1/2 f (delta - dR (ln(1 + t) - t + t^2)/(t (1 + t))) L. The contact width is the arc R1 epsilon.
 /// Units: m, N, Pa.
 /// Limits: delta < R1, else an error; small strain; equal elastic constants of both bodies (only E*
@@ -302,19 +306,21 @@ struct Persson {
     detail::require_depth(depth, largest_depth(geometry), info.name);
     const double clearance = geometry.clearance();
     const double scaled = std::max(depth / clearance, 1e-290);
-    // (C f/pi + omega - 1 - delta) X: smooth, with one sign change up to the largest arc
+    // (C f/pi + omega - 1 - delta) X is smooth and has one sign change up to the largest arc
     const auto residue = [scaled](double t) {
       const detail::PerssonPoint p = detail::persson_point(t);
       return 2.0 * t * (1.0 + t) * p.compliance + p.load_divisor * (p.offset - scaled);
     };
-    // t = delta/u with 1 < u < 800 while delta is small; the upper end holds for any depth
+    // lower end: t = delta/u with 1 < u < 800 while delta is small; the upper end holds for any
+    // depth
     std::uintmax_t iterations = 200;
     const auto bracket = boost::math::tools::toms748_solve(
         residue, std::min(scaled, 0.1) / 800.0, std::min(scaled, detail::persson_largest_t),
         boost::math::tools::eps_tolerance<double>(52), iterations);
     const double t = 0.5 * (bracket.first + bracket.second);
     const detail::PerssonPoint p = detail::persson_point(t);
-    // computed from the depth, not from t: well conditioned where X tends to zero
+    // the force is computed from the depth, not from t, and thus well conditioned where X tends to
+    // zero
     const double line_force = detail::pi * material.effective_young_modulus * clearance *
                               (scaled - p.offset) / p.compliance;
     const double force = line_force * geometry.length;

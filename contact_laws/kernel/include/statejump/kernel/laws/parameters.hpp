@@ -3,7 +3,7 @@
 
 #include "statejump/kernel/laws/law_info.hpp"
 
-/// Parameters shared by the laws of a joint; each law lists the ones that it reads.
+/// Parameters shared by the laws of a joint. Each law lists those that it reads.
 namespace statejump::kernel::laws::parameter {
 
 inline constexpr LawParameter friction_coefficient{
@@ -30,7 +30,7 @@ inline constexpr LawParameter v1{
     "Chen, Li, Tang, Wang, Mech. Sci. 12, 2021, eq. 10; value: choice"};
 inline constexpr LawParameter restitution{"restitution", "-", 0.0,           1.0,
                                           true,          1.0, "requested e", "choice: no loss"};
-/// Range of restitution for a law that also covers impacts without rebound.
+/// Range of the restitution e for a law that also covers e = 0, an impact without rebound.
 inline constexpr LawParameter restitution_from_zero{
     "restitution", "-", 0.0, 1.0, false, 1.0, "requested e", "choice: no loss"};
 inline constexpr LawParameter smallest_impact_speed{

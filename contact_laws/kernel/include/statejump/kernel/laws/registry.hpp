@@ -18,8 +18,9 @@
 
 namespace statejump::kernel::laws {
 
-/// The catalogue. To add a law, write one type with an `info` and add it here; names, listing and
-/// look-up use these lists. The last type of each list holds user laws, see user_law.hpp.
+/// The catalogue of laws. To add a law, write one type with an `info` and add it to its list;
+/// look-up and listing use these lists. The last type of each list holds user laws, see
+/// user_law.hpp.
 using NormalLaw =
     std::variant<HertzPaper, HertzInternal, Johnson, Esdu78035, Persson, UserNormalLaw>;
 using DissipationLaw = std::variant<NoDissipation, LankaraniNikravesh, HuntCrossley,
@@ -134,8 +135,7 @@ const LawInfo& info_of(const Law& law) {
 
 }  // namespace detail
 
-/// Law with that name.
-/// @throws std::invalid_argument that lists the known names, or explains why a loaded law is
+/// Returns the law with that name.
 /// @throws std::invalid_argument that lists the known names, or states why a loaded law is unusable
 inline NormalLaw normal_law(const std::string& name) {
   return detail::Catalogue<NormalLaw>::find("normal_law", name);
@@ -159,14 +159,14 @@ std::vector<LawInfo> law_infos() {
   return detail::Catalogue<Law>::infos();
 }
 
-/// Names of one kind, in the order of the catalogue, e.g. law_names<FrictionLaw>(). Unusable loaded
-/// laws are included, because looking them up reports the problem.
+/// Names of the laws of one kind in the order of the catalogue, e.g. law_names<FrictionLaw>().
+/// Unusable loaded laws are included, because looking them up reports the problem.
 template <class Law>
 std::vector<std::string> law_names() {
   return detail::Catalogue<Law>::names();
 }
 
-/// Reason why the loaded law with that name is unusable; empty if it is usable or not loaded.
+/// Reason why the loaded law with this name is unusable. Empty if the law is usable or not loaded.
 template <class Law>
 std::string law_problem(const std::string& name) {
   return detail::Catalogue<Law>::problem(name);
@@ -181,7 +181,7 @@ inline constexpr bool is_variant<std::variant<Types...>> = true;
 
 }  // namespace detail
 
-/// Calls act with the law held by a variant, or with a law of a known type directly.
+/// Calls `act` with the law that a variant holds, or directly with a law of known type.
 template <class Law, class Act>
 decltype(auto) visit_law(const Law& law, Act&& act) {
   if constexpr (detail::is_variant<Law>) {
@@ -203,8 +203,8 @@ bool has(const Law& law, Trait trait) {
   return visit_law(law, [&](const auto& l) { return detail::info_of(l).has(trait); });
 }
 
-/// Names of the laws of one kind with, or without, a trait. They are in the order of the catalogue
-/// and formatted for a sentence: "'hertz_paper' or 'hertz_internal'".
+/// Names of the laws of one kind with, or without, a trait. The names are in the order of the
+/// catalogue and formatted for a sentence: "'hertz_paper' or 'hertz_internal'".
 template <class Law>
 std::string names_with(Trait trait, bool present = true) {
   std::vector<const char*> names;
@@ -219,7 +219,8 @@ std::string names_with(Trait trait, bool present = true) {
   return sentence;
 }
 
-/// Range of e of a dissipation law; the default range if the law does not read e.
+/// Allowed range of the restitution e for a dissipation law; the default range if the law does not
+/// read e.
 inline const LawParameter& restitution_of(const DissipationLaw& law) {
   for (const LawParameter* each : law_info(law).parameters) {
     if (each && std::string(each->name) == parameter::restitution.name) return *each;
@@ -227,7 +228,7 @@ inline const LawParameter& restitution_of(const DissipationLaw& law) {
   return parameter::restitution;
 }
 
-/// Whether two laws of a joint are compatible: a friction law may need a point contact.
+/// Returns whether two laws of a joint are compatible: some friction laws need a point contact.
 inline bool are_compatible(const NormalLaw& normal, const FrictionLaw& friction) {
   return !has(friction, Trait::needs_point_contact) || has(normal, Trait::point_contact);
 }
@@ -238,7 +239,8 @@ double largest_slope(const Law& law, const FrictionParameters& parameters, doubl
   return visit_law(law, [&](const auto& l) { return l.largest_slope(parameters, normal_force); });
 }
 
-/// Normal contact by any law. @param depth delta [m], <= 0 gives zeros
+/// Normal contact by any law.
+/// @param depth delta [m]; a depth <= 0 gives zeros
 /// @throws std::domain_error outside the law's range
 template <class Law>
 NormalState evaluate(const Law& law, double depth, const NormalGeometry& geometry,
@@ -257,7 +259,8 @@ double damping_ratio(const Law& law, const ImpactParameters& impact) {
   return visit_law(law, [&](const auto& l) { return l(impact); });
 }
 
-/// Precomputes the coefficient for this e, for laws that are evaluated in every step.
+/// Precomputes the coefficient of a law for the restitution e, because the law is evaluated in
+/// every step.
 inline void prepare(DissipationLaw& law, double restitution) {
   std::visit(
       [&](auto& l) {
@@ -266,9 +269,10 @@ inline void prepare(DissipationLaw& law, double restitution) {
       law);
 }
 
-/// History of a contact that is loaded at the start: from the law if it defines `preloaded`,
-/// otherwise that of a spring.
-/// @param force_on_1 [N], at most mu F_N; @param under kinematics; its velocity is ignored
+/// History of a contact that is loaded at the start: `preloaded` of the law if it defines this
+/// function, otherwise the history of a spring.
+/// @param force_on_1 tangential force on body 1 [N], at most mu F_N
+/// @param under kinematics of the contact; its velocity is ignored
 inline ContactHistory preloaded_history(const FrictionLaw& law,
                                         const FrictionParameters& parameters,
                                         const Vector3& force_on_1,

@@ -9,8 +9,8 @@
 
 namespace statejump::kernel::laws {
 
-/// A JointLaw whose four laws are known at compile time. A contact step is one inlined function
-/// without type dispatch. The results equal those of the JointLaw, bit for bit.
+/// A JointLaw whose four laws are known at compile time, so a contact step is one inlined function
+/// without type dispatch. The results equal those of the JointLaw to the last bit.
 template <class Normal, class Dissipation, class Friction, class TangentialVelocity>
 struct StaticJointLaw {
   Normal normal;
@@ -41,7 +41,8 @@ struct StaticJointLaw {
         contact_length(law.contact_length) {}
 };
 
-/// Precompiled combinations: the default laws of the cases. Each adds the code of one contact step.
+/// Precompiled combinations of laws: the defaults of case files. Each combination adds the code of
+/// one contact step.
 using PrecompiledJointLaws =
     std::tuple<StaticJointLaw<HertzInternal, NoDissipation, MindlinFriction, MaterialVelocity>>;
 
@@ -60,7 +61,8 @@ decltype(auto) with_precompiled_law(const JointLaw& law, Act&& act) {
 
 }  // namespace detail
 
-/// Calls act with the law as one of PrecompiledJointLaws, or with `law` itself if it is none.
+/// Calls `act` with the law as one of PrecompiledJointLaws, or with `law` itself if no combination
+/// matches.
 template <class Act>
 decltype(auto) with_precompiled_law(const JointLaw& law, Act&& act) {
   return detail::with_precompiled_law<0>(law, act);

@@ -9,16 +9,17 @@
 namespace statejump::kernel::laws {
 
 /// A tangential velocity law has two parts. The first is the velocity v of body 1 (journal)
-/// relative to body 2 (bearing) [m/s] that friction uses. The second are the forces and moments on
-/// the two centres caused by a contact force F. They are transposes of each other: for all motions
+/// relative to body 2 (bearing) [m/s] that friction uses. The second is the wrench, the forces and
+/// moments on the two centres caused by a contact force F. Both parts are transposes of each other:
+/// for all motions
 ///
 ///    F . v = force_1 . v_C + torque_1 . omega_1 + force_2 . v_D + torque_2 . omega_2,
 ///
-/// so a friction force opposite to v only takes power from the bodies. Never combine the parts of
+/// so a friction force opposite to v never adds power to the bodies. Never combine the parts of
 /// different laws.
 
 /// Velocity of the material at the contact point, v_C + omega_1 x arm_1 - v_D - omega_2 x arm_2,
-/// and moments arm x F, as for two rough surfaces. Forces and moments balance. See
+/// with the moments arm x F, as for two rough surfaces. Forces and moments balance. See
 /// revolute_contact(), contact_wrench().
 struct MaterialVelocity {
   static constexpr LawInfo info{"material",
@@ -42,15 +43,15 @@ struct MaterialVelocity {
 ///
 ///    v = d' - c dn/dt = (d'.n) n + (delta/|d|) d'_t.
 ///
-/// The spins are absent: a journal that rotates in place slides without friction. The tangential
+/// The spins are absent, so a journal that rotates in place slides without friction. The tangential
 /// part is the relative velocity of the centres times delta/|d|, a few hundredths in a joint with
 /// play.
-/// The transpose, by virtual power, is force_1 = F_n n + (delta/|d|) F_t on C, the opposite on D,
-/// and no moment on either body. (F_t and R x F_t on the bodies, combined with this velocity, would
+/// By virtual power, the wrench is force_1 = F_n n + (delta/|d|) F_t on C, the opposite on D, and
+/// no moment on either body. (F_t and R x F_t on the bodies, combined with this velocity, would
 /// create power.)
 /// Limits: the two forces are |d| apart and leave a moment delta n x F_t unbalanced, as do the two
-/// points of eq. (14). v is not zero when the whole joint rotates as one body. Axial motion is
-/// ignored. Concentric bodies have no tangential part.
+/// points of eq. (14). When the whole joint rotates as one body, v is not zero. Axial motion is
+/// ignored. For concentric bodies v has no tangential part.
 struct PaperVelocity {
   static constexpr LawInfo info{
       "paper",
@@ -69,7 +70,7 @@ struct PaperVelocity {
   }
 
  private:
-  /// n n^T + (delta/|d|) (1 - n n^T), symmetric: its own transpose.
+  /// Applies n n^T + (delta/|d|) (1 - n n^T), a symmetric matrix, i.e. its own transpose.
   static Vector3 across(const JointContact& contact, const Vector3& v) {
     const double fraction =
         contact.eccentricity > 0.0 ? contact.penetration_depth / contact.eccentricity : 0.0;

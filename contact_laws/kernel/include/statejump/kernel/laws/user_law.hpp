@@ -18,19 +18,19 @@
 
 /// Laws that are compiled separately and found by name at run time.
 ///
-/// A law is one type, as in the catalogue: `info`, and the call operator of its kind. A tangential
-/// velocity law has velocity() and wrench() instead. The shared object contains a table of
-/// functions generated from that type; the program stores values that point to such a table.
+/// A law is one type, as in the catalogue, with `info` and the call operator of its kind. A
+/// tangential velocity law has velocity() and wrench() instead. The shared object contains a table
+/// of functions generated from that type; the program stores values that point to such a table.
 namespace statejump::kernel::laws {
 
 enum class LawKind : std::uint32_t { normal, dissipation, friction, tangential_velocity };
 
-/// nullptr or an error text, valid until the next call in the same thread.
+/// nullptr if there is no error, otherwise its text, valid until the next call in the same thread.
 using ErrorText = const char*;
 
 /// Interface of a shared object. Functions of other kinds are null.
 struct UserLawTable {
-  // The position of the first four fields never changes, so that a program can identify an object
+  // The first four fields never change their positions, so that a program can identify an object
   // compiled for another version.
   std::uint32_t version;  ///< user_law_version of the object
   LawKind kind;
@@ -93,7 +93,8 @@ constexpr LawKind kind_of() {
                        : LawKind::tangential_velocity;
 }
 
-/// Calls a function of the law; returns the text of its exception, which must not leave the object.
+/// Calls a function of the law and returns the text of its exception. No exception may leave the
+/// shared object.
 template <class Function>
 ErrorText guarded(Function&& function) {
   thread_local std::string text;
@@ -110,7 +111,7 @@ ErrorText guarded(Function&& function) {
 
 }  // namespace detail
 
-/// The table for a law type.
+/// Function table of a law type.
 /// @param kernel hash of the kernel headers
 template <class Law>
 const UserLawTable* user_law_table(const char* kernel) {
@@ -157,7 +158,7 @@ const UserLawTable* user_law_table(const char* kernel) {
 
 // ---- in the program
 
-/// A loaded law, or a law that could not be loaded but is known by name.
+/// A loaded law, or a law whose name is known but that could not be loaded.
 struct LoadedLaw {
   LawKind kind{};
   std::string name;
@@ -167,7 +168,7 @@ struct LoadedLaw {
   const UserLawTable* table = nullptr;  ///< null if `problem` is not empty
 };
 
-/// All loaded laws. The loader fills them before laws are looked up; entries keep their address.
+/// All loaded laws. The loader adds them before the first look-up. Entries keep their addresses.
 inline std::deque<LoadedLaw>& loaded_laws() {
   static std::deque<LoadedLaw> laws;
   return laws;
@@ -186,7 +187,8 @@ class UserLawValue {
   void throw_if(ErrorText error) const {
     if (error) fail(error);
   }
-  /// Rejects a result that is not finite or not `good`, for example not positive.
+  /// Rejects a result that is not finite or for which `good` is false, for example a negative
+  /// stiffness.
   void require_result(bool good, const char* what, double value) const {
     if (good && std::isfinite(value)) return;
     char text[96];
