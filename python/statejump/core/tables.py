@@ -110,8 +110,7 @@ def html_table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
 
 def write_markdown(path: Path, lines: Sequence[str]) -> Path:
-    """Write lines of Markdown and return the path. Markdown passes HTML through, so the beginning of an element is
-    escaped."""
+    """Write lines of Markdown and return the path. Because Markdown passes HTML through, ``<`` of tags is escaped."""
     return write_text(path, [re.sub("<(?=[A-Za-z/!?])", "&lt;", line) for line in lines])
 
 
@@ -124,12 +123,12 @@ def write_text(path: Path, lines: Sequence[str]) -> Path:
 
 @dataclass(frozen=True)
 class Shown:
-    """A table for people.
+    """A table to be shown to people.
 
-    :param title: above the table
+    :param title: title of the table
     :param header: names of the columns with their units
     :param rows: cells as texts
-    :param left: names of the columns that are aligned to the left
+    :param left: names of the columns with left alignment
     """
 
     title: str
@@ -139,9 +138,9 @@ class Shown:
 
 
 def check_columns(columns: Mapping[str, np.ndarray]) -> None:
-    """Raise an error unless all columns contain finite numbers, one for every row.
+    """Raise an error unless all columns consist of finite numbers and have the same length.
 
-    :raises StatejumpError: they differ in length, or have a missing or infinite number
+    :raises StatejumpError: columns differ in length, or a column has a missing or infinite number
     """
     if len({len(values) for values in columns.values()}) > 1:
         raise StatejumpError(code="columns_of_other_length",
