@@ -63,7 +63,7 @@ class Creak:
         return libraries.frame(getattr(self, table))
 
     def plot(self) -> Figure:
-        """Draw the slips of joints over time, the acceleration of the node, and its spectrum."""
+        """Draw the slips of the joints over time, and the acceleration of the node with its spectrum."""
         with figures.style():
             figure, places = figures.panels(3, 1, (9.5, 9.0), height_ratios=(1.4, 1, 1))
             self._raster(places[0])

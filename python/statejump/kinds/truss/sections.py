@@ -136,7 +136,7 @@ Tables = section_class(
 
 
 def sections_in_files() -> tuple[str, ...]:
-    """Return the lists that may be in files beside the case file."""
+    """Return the lists of a truss whose items may be in files beside the case file."""
     return tuple(fields_of(Tables))
 
 
@@ -255,5 +255,5 @@ class TrussSections(ElementLists, JointLists, TrussParts):
         return [self.thermal, *self.program, *of_members]
 
     def returns_s(self) -> Numbers:
-        """Return the times [s] at which all items have their first temperature again."""
+        """Return the times [s] at which the temperatures of all items have their initial values again."""
         return returns_s(self.programs, self.period_s)
