@@ -49,7 +49,7 @@ def compare(first: Run, second: Run) -> Comparison:
 def statics(case: Case, friction_coefficient: float | None = None) -> RestSets:
     """Return the rest positions of a loaded joint: a ``statics`` case, or the block of a ``spring_slider`` case.
 
-    :param friction_coefficient: friction coefficient to use instead of that of the case [-]
+    :param friction_coefficient: replaces the friction coefficient of the case
     :raises StatejumpError: this kind of case has no rest positions, or the mesh of the case is unusable
     """
     return require(case, JointStatics).statics(case, friction_coefficient)

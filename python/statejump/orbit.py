@@ -136,8 +136,8 @@ def temperatures(
 
 
 def _needed(time_s: Numbers, values: Numbers, within: float, corners: np.ndarray) -> list[int]:
-    """Return the indices (n) of those rows of values (n, m) that linear interpolation needs for the allowed error.
-    After each kept row, the farthest row that keeps the error is next. Corners are always kept."""
+    """Return the rows (n) of values (n, m) that linear interpolation with the allowed error needs: after each row the
+    farthest admissible one. Corners are kept."""
     kept, fixed = [0], set(corners.tolist())
     last = 1
     for row in range(2, len(time_s)):

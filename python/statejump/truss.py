@@ -106,11 +106,11 @@ def answers(
     """Answer the design questions of a truss: jumps, whether they settle, contributions of joints, sensitivities.
 
     :param case: a case of kind ``truss``
-    :param output: the output whose jump is divided among the joints: ``node`` (the node that moves most),
-        ``node:NAME``, or ``rms`` or ``tilt`` of the reflector
-    :param cycles: number of cycles to use instead of that of the case
+    :param output: the output whose jump is divided among the joints: ``node`` (that moves most), ``node:NAME``, or
+        ``rms`` or ``tilt`` of the reflector
+    :param cycles: number of cycles that replaces that of the case
     :param each: whether to compute also the sensitivity to every single item
-    :param step: relative change of each parameter for the sensitivities
+    :param step: relative change of each parameter
     :param sensitivity: whether to compute sensitivities
     :param progress: True: show it on standard error; or a function that receives the finished fraction of each part
     :raises StatejumpError: the case is of another kind, the output does not exist, or the solver finds no path
@@ -132,12 +132,12 @@ def control(
     :param case: a case of kind ``truss``
     :param node: name of the node; None: the node that moves most
     :param jump_below: largest allowed jump over all cycles [m]; None: half of the jump of the case
-    :param add_spring: pairs of nodes between which a spring may be added; it is unloaded in the reference configuration
+    :param add_spring: pairs of nodes between which a spring may be added, unloaded in the reference configuration
     :param scale: keys whose values may be scaled: ``section.item.key``, or ``section.*.key`` for all items. Without any
         candidate, all keys that may affect a jump
     :param progress: True: show it on standard error; or a function that receives the finished fraction, 0 to 1
-    :return: the study: ``sentences`` and ``remarks`` state the result as text, ``recommendation`` as numbers;
-        ``frame()`` has the whole scan
+    :return: ``sentences`` and ``remarks`` state the result as text, ``recommendation`` as numbers; ``frame()`` has the
+        whole scan
     :raises StatejumpError: the case is of another kind, a node or key does not exist, or the solver finds no path
     """
     kind = require(case, ControlStudy)

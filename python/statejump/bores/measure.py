@@ -216,9 +216,9 @@ CURES = {"inside_out": ("; {} turns it", "flip=True"), "too_large": (" Then use 
 
 
 class NoBore(StatejumpError):
-    """The content of a file or its mesh is not a bore that can be measured.
+    """A file or its mesh is not a bore that can be measured.
 
-    :param what: reason why the bore cannot be measured
+    :param what: the reason
     :param fault: the kind of failure
     """
 
@@ -260,7 +260,7 @@ def check_journal(key: str, radius_m: float | None) -> None:
 def measure(mesh: _engine.BoreMesh, name: str, journal_radius_m: float | None = None) -> Bore:
     """Measure a bore in SECTIONS sections.
 
-    :raises NotAllowed: the journal is invalid
+    :raises NotAllowed: the radius of the journal is invalid
     :raises NoBore: the wall has gaps, or its radius differs too much from that of the journal
     """
     check_journal("journal_radius_m", journal_radius_m)

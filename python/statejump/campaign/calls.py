@@ -26,9 +26,9 @@ def sweep(
         ``section.*.key`` or ``section.joint*.key`` of all matching items. A value is a list, or the fields of a
         ``[[vary]]`` table: ``{"start": 0.1, "stop": 1, "count": 10, "spacing": "log"}``
     :param model: ``reduced`` or ``dem``
-    :param workers: number of processes; None: one for each core, or only the calling process if the grid is small
-    :param outputs: further outputs to record of every run, for example ``jump:displacement_m[P].x``. An output is the
-        end, jump, maximum, minimum or range of a column of the run at one item; see :mod:`statejump.campaign.outputs`
+    :param workers: number of processes; None: one for each core, or just this process if the grid is small
+    :param outputs: further outputs to record, for example ``jump:displacement_m[P].x``: end, jump, max, min or range of
+        a column of the run at one item; see :mod:`statejump.campaign.outputs`
     :raises StatejumpError: a key is unknown, or campaigns do not support this kind of case
     """
     tables: dict[str, dict[str, Any]] = {

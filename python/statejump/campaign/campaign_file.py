@@ -117,12 +117,12 @@ def plan_for(
     case: Case, command: str, vary: Iterable[tuple[str, Mapping[str, Any]]], *, model: str = "reduced",
     samples: int | None = None, seed: int | None = None, asked: Sequence[str] = (),
 ) -> Plan:
-    """Return the plan of a campaign that is defined by arguments instead of a file.
+    """Return the plan of a campaign without a campaign file.
 
-    :param vary: ``[[vary]]`` tables, each with the name that messages use for it
+    :param vary: ``[[vary]]`` tables, each with its name for messages
     :param samples: number of samples of a Monte Carlo campaign; None for a sweep, whose grid determines it
     :param seed: seed of a Monte Carlo campaign
-    :param asked: further outputs that the user requests, besides the outcomes of the kind of case
+    :param asked: further outputs that the user requests
     :raises StatejumpError: as for :func:`load_campaign`
     """
     require(case, Outcomes)
@@ -216,9 +216,9 @@ def points_of(vary: tuple[Varied, ...]) -> int:
 
 
 def checked(given: Sequence[str], case: Case) -> tuple[str, ...]:
-    """Return the names of the outputs, after a run of the reduced model has shown that each can be computed.
+    """Return the names of outputs after computing the outputs for a run of the reduced model.
 
-    :raises NotAllowed: an output is repeated, or cannot be computed
+    :raises NotAllowed: a name is repeated or invalid
     """
     names = tuple(given)
     for place, name in enumerate(names):

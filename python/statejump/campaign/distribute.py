@@ -118,8 +118,8 @@ def _some_of(client: Client, running: set[Future]) -> set[Future]:
 
 
 def _answer(client: Client, future: Future) -> tuple[float, Batch] | None:
-    """Return the result of a batch, or None if its worker died. If a result is lost with its worker, Dask repeats the
-    batch. :raises StatejumpError: see :func:`_patiently`
+    """Return the result of a batch; None if its worker died. Dask repeats a batch whose result is lost. :raises
+    StatejumpError: see :func:`_patiently`
     :raises StatejumpError: see :func:`_patiently`"""
     try:
         return _patiently(client, lambda: future.result(timeout=LOOK_S))

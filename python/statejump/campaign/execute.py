@@ -59,8 +59,8 @@ def run_missing(
 
     :param kept: samples that are already stored; this function adds the samples that it finishes
     :param scheduler: address of a running scheduler; None: a cluster on this machine
-    :param workers: number of processes of the cluster on this machine; None: one per core, or no cluster for a reduced
-        model if this process needs less time than workers need to start
+    :param workers: number of processes of the cluster on this machine; None: one per core, or none for a reduced model
+        if this process is as fast as the start of workers
     :param on_progress: called with the finished fraction of all samples
     :raises StatejumpError: no cluster is available; finished samples are stored
     """
@@ -78,8 +78,8 @@ def run_missing(
 
 
 def _here(campaign: Plan, missing: list[int], account: _Account) -> list[int]:
-    """Run samples in this process until HERE_S has passed, or until workers would finish the remaining samples sooner,
-    including the start of the workers. Return the numbers of the remaining samples."""
+    """Run samples in this process until HERE_S has passed, or until workers, including their start, would be faster.
+    Return the remaining samples."""
     batches, started, done = Batches(missing, campaign.model, 1), time.perf_counter(), account.done
     cores = len(os.sched_getaffinity(0))
     done.workers = 1

@@ -27,11 +27,11 @@ class Recipe:
 
     :param command: ``montecarlo`` or ``sweep``
     :param model: ``reduced`` or ``dem``
-    :param case_data: sections and keys of the case as its file gives them, without defaults
+    :param case_data: sections and keys of the case as in its file, without defaults
     :param vary: varied parameters
     :param seed: seed of the random numbers; None in a sweep
-    :param outcomes: names of the recorded values of a run in the order of the table: first outcomes, then outputs
-    :param outputs: the names in ``outcomes`` that are outputs, see :mod:`statejump.campaign.outputs`
+    :param outcomes: names of the recorded values in the order of the table, outputs last
+    :param outputs: those names that are outputs, see :mod:`statejump.campaign.outputs`
     :param kinds: Python modules of kinds of cases that the user has registered
     """
 

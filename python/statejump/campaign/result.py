@@ -156,7 +156,7 @@ def run_in(
 ) -> Campaign:
     """Run the samples that are missing in the journal of a results folder.
 
-    :raises Interrupted: the user pressed Ctrl-C; finished samples are stored
+    :raises Interrupted: Ctrl-C was pressed; finished samples are stored
     """
     _check_yade(plan, scheduler)
     with Journal(folder, plan, restart) as kept:

@@ -37,8 +37,8 @@ def statistics(values: np.ndarray) -> dict[str, float | None]:
 
 
 def spearman(parameter: np.ndarray, outcome: np.ndarray) -> float | None:
-    """Return the rank correlation of a parameter and an outcome over the samples with a finite outcome; None if there
-    are too few of them, or if parameter or outcome is constant."""
+    """Return the rank correlation over the samples with a finite outcome; None for fewer than three, or if parameter or
+    outcome is constant."""
     from scipy.stats import rankdata  # 0.5 s; workers do without
 
     there = np.isfinite(outcome)

@@ -79,10 +79,10 @@ TABLES: dict[str, type[Section]] = {MONTECARLO: MonteCarloVary, SWEEP: SweepVary
 
 
 def varied(table: Mapping[str, Any], case: Case, command: str) -> Varied:
-    """Return the varied parameter of a table.
+    """Return the varied parameter that a ``[[vary]]`` table defines.
 
     :param command: ``montecarlo`` or ``sweep``
-    :raises StatejumpError: the table is invalid; the failure names its key
+    :raises StatejumpError: the table is invalid; the error names the key
     """
     known = list(fields_of(TABLES[command]))
     other = SWEEP if command == MONTECARLO else MONTECARLO

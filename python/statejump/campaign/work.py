@@ -136,7 +136,7 @@ class Batches:
         return batch
 
     def learn(self, count: int, seconds: float) -> None:
-        """Update the batch size from the measured duration of a batch. The size grows at most by a factor of four,
-        because the first sample of a worker is slower than the others."""
+        """Update the batch size from a measured duration, at most by a factor of four, because a worker's first sample
+        is slow."""
         fitting = int(BATCH_S / max(seconds / count, 1e-9))
         self.size = max(1, min(fitting, 4 * count, MOST_IN_BATCH))

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @capability("control")
 class ControlStudy(Protocol):
-    """A study that searches for parameter values with a smaller state jump. Each kind of case defines the settings."""
+    """A study of how to reduce the state jump. Each kind of case defines its settings."""
 
     def control(self, case: Any, **settings: Any) -> Study: ...
 

@@ -76,7 +76,7 @@ class Sweep:
 class DesignChoices:
     """The node whose jump is evaluated, and the allowed changes, for a case with many nodes and parameters.
 
-    :param node: node whose jump is evaluated; None: the one that moves most
+    :param node: node whose jump is evaluated; None: the node that moves most
     :param add_spring: pairs of nodes between which a spring may be added
     :param scale: parameters that may be scaled, ``section.item.key`` or ``section.*.key``
     """
@@ -94,7 +94,7 @@ class Study:
     :param unit: unit of the jump, m or rad
     :param results: headings of the result columns, by column name with unit
     :param jump: jump of the unchanged case [unit]
-    :param wanted: largest allowed jump [unit]; None: the case has no jump that can be controlled
+    :param wanted: largest allowed jump [unit]; None: there is no jump to control
     :param quantity: name of the results in figures, with their displayed unit
     :param lines: line style of each result in figures, by name
     :param logarithmic: whether figures show the results on a logarithmic axis
@@ -191,9 +191,9 @@ def ranges_that_pass(
 ) -> list[tuple[float, float]]:
     """Return the ranges of neighbouring swept values that pass, with refined ends.
 
-    :param passes: condition for the bisection of the ends; None: the ends are swept values
-    :param narrow: function that replaces the bisection. It receives a value that does not pass and one that passes, and
-        returns the end of the range that passes
+    :param passes: condition for bisection of the ends; None: no refinement
+    :param narrow: replaces bisection: a function of a value that does not pass and one that passes, which returns the
+        end that passes
     """
     if narrow is None and passes is not None:
         by_bisection = passes

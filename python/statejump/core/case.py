@@ -203,10 +203,10 @@ class Case(Section):
         return run
 
     def quasi_static(self) -> Any:
-        """Return the paths under infinitely slow heating, for a kind whose reduced model has inertia. For a loaded rib
-        these are the path with rigid links and, if the contact laws permit it, the path with elastic links.
+        """Return the paths under infinitely slow heating, for a kind whose reduced model has inertia: a loaded rib with
+        rigid links and, if its contact laws permit it, with elastic links.
 
-        :raises StatejumpError: the kind of case has no quasi-static paths, or nothing loads the joint at the start
+        :raises StatejumpError: the kind has no such paths, or nothing loads the joint at the start
         """
         return _PATHS(self)
 
@@ -214,9 +214,9 @@ class Case(Section):
         """Run the case in YADE, in a separate process.
 
         :param progress: True: show it on standard error; or a function that receives the finished fraction, 0 to 1
-        :param keep_input: folder for the script and the data of the run, so that the user can repeat it
-        :raises StatejumpError: the kind of case has no DEM, or YADE is missing or failed
-        :raises Interrupted: the user pressed Ctrl-C; ``run`` of the error has the samples so far
+        :param keep_input: folder for the script and the data of the run, to repeat it by hand
+        :raises StatejumpError: the kind has no DEM, or YADE is missing or failed
+        :raises Interrupted: Ctrl-C was pressed; ``run`` of the error has the samples so far
         """
         self.check_dem()
         run: Run = _RUN(self, "dem", progress, keep_input=keep_input)

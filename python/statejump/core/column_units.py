@@ -29,10 +29,10 @@ NO_UNIT = ("", "-", "1")
 class Column:
     """A column of a table.
 
-    :param name: name of the column in the table
-    :param key: key of the column
+    :param name: name in the table
+    :param key: key
     :param converted: function that converts the column's numbers to the unit of the key
-    :param iso: whether the cells are ISO times
+    :param iso: whether cells are ISO times
     """
 
     name: str

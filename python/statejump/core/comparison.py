@@ -79,8 +79,8 @@ def quantity(name: str, unit: str, tolerance: float, **values: float | None) -> 
 
 
 def share(difference: float, scale: float) -> float:
-    """Return difference / scale [-]. It is 0 if both are zero, because then nothing moves, and infinite if only the
-    scale is zero. NaN stays NaN, so that the row of the comparison fails."""
+    """Return difference / scale [-]: 0 if both are zero, because nothing moves; infinite if only the scale is zero. NaN
+    stays NaN, so that its row fails."""
     if difference == 0 and scale == 0:
         return 0.0
     if scale > 0:

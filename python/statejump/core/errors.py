@@ -31,7 +31,7 @@ _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
 
 def printable(text: str) -> str:
-    """Return a text without control characters: all except new lines are written as ``\\x1b``."""
+    """Return a text whose control characters, except line feeds, are written as escapes such as ``\x1b``."""
     return _CONTROL.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
 
 
@@ -123,7 +123,7 @@ class StatejumpError(Exception):
     :param what: the problem, without the content of the other fields; default: the text of the code
     :param code: a key of ``CODES``; default: the code of the class
     :param file: the file
-    :param place: name of the file in the sentence, if it is more than the path, for example ``results folder out/x``
+    :param place: name of the file in the sentence, if it is not its path alone (``results folder out/x``)
     :param case: name of the case of the run
     :param item: item of a list, for example ``node 'tip'``
     :param key: key of a file, or name of an argument
@@ -133,7 +133,7 @@ class StatejumpError(Exception):
     :param nodes: names of nodes
     :param time_s: time [s]
     :param temperature_change_K: temperature change [K]
-    :param cause: the reason; default: the cause of the code, otherwise a text derived from ``allowed``
+    :param cause: the reason; default: the cause of the code, else derived from ``allowed``
     :param remedy: the remedy; default: the remedy of the code
     :param details: further fields, which the sentence of the code contains
     """
@@ -333,7 +333,7 @@ class Unreadable(StatejumpError):
 
 
 class MissingPart(Unreadable, KeyError):
-    """A requested part of a result file is missing. The error is also a KeyError, as for a missing key of a dict."""
+    """A requested part of a result file is missing; the error is also a KeyError, as for a dict."""
 
 
 class FailedRun(StatejumpError):

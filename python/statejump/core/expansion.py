@@ -56,9 +56,9 @@ class Expansion(Section):
 
 
 def check(expansion: Expansion, section: str) -> None:
-    """Raise NotAllowed if a table of expansion coefficients is invalid.
+    """Raise NotAllowed for an invalid table of expansion coefficients.
 
-    :param section: prefix of the keys in messages; "" for keys in a table of their own
+    :param section: prefix of the keys; "" for keys in a table of their own
     """
     rows, alpha = expansion.temperature_change_K, expansion.thermal_expansion_per_K
     if len(rows) < 2 or any(b <= a for a, b in zip(rows, rows[1:])) or not rows[0] <= 0 <= rows[-1]:
@@ -76,8 +76,8 @@ def followed(
     the expansion table. Further rows keep the error of the strain below the fraction CHORD of its range. For the
     history of a member the strain is linear between the rows.
 
-    :param program: program of the temperature change ΔT
-    :param fraction: fraction of this temperature change that the item undergoes
+    :param program: temperature program ΔT
+    :param fraction: fraction of ΔT that the item undergoes
     :raises NotAllowed: the program leaves the table, or is not piecewise linear
     """
     times, changes = _rows(program, period_s)

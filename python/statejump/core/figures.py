@@ -51,7 +51,7 @@ class Constrained(ConstrainedLayoutEngine):
     """
 
     def execute(self, fig: Figure) -> None:
-        """Arrange the axes of a figure, and break the references between the grids."""
+        """Arrange the axes of a figure, and break the references between layout grids."""
         for grid in (super().execute(fig) or {}).values():
             if isinstance(grid, _Grid):
                 grid.children.fill(None)

@@ -173,12 +173,12 @@ class Run:
     :param contacts: columns of contacts, (samples, contacts) and (samples, contacts, 3)
     :param events: events in order of time
     :param summary: summary numbers; their names end with their units. NaN: the event did not happen
-    :param names: names of the items along the second axis of columns
-    :param case_of: function that returns the case of the run; a case in a file is read only when it is needed
+    :param names: names of the items on the second axis of columns
+    :param case_of: function that returns the case; a case in a file is read at the first call
     :param warnings: limits of the model that the run met
-    :param complete: False: the run was interrupted and contains only its first samples
+    :param complete: False: the run was interrupted and has only its first samples
     :param about: data about a DEM run: version of YADE, number of steps, run time [s]
-    :param native: the model's own result, such as the path of a solver; None: the run was read from a file
+    :param native: the model's own result (the path of a solver); None: the run was read from a file
     :param kind: kind of the case, which avoids a call of ``case_of``
     :param sampler: function that returns the run at other times [s], if the model can compute it exactly
     """
@@ -401,8 +401,7 @@ def energy_residue_J(
     """Return supplied minus stored minus dissipated energy [J], for the whole run.
 
     :param columns: energy columns by name; a missing column counts as 0
-    :param supplied: names of the columns of supplied energy, such as ``thermal_work_J``. The other parameters are the
-        names of the columns of stored and of dissipated energy
+    :param supplied: names of the columns of supplied energy, such as ``thermal_work_J``; the other parameters likewise
     """
     total = [sum(change(columns, name) for name in names) for names in (supplied, stored, dissipated)]
     return total[0] - total[1] - total[2]

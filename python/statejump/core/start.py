@@ -25,8 +25,8 @@ class Start(Section):
 
 
 def carried(friction: Any, limit: Any) -> dict[str, float]:
-    """Return the summary entries about friction at the start, over all joints: the largest friction force [N], and the
-    largest ratio of a friction force to its limit [-]."""
+    """Return the summary of friction at the start: largest friction force [N], largest ratio of a joint's friction
+    force to its limit [-]."""
     force, most = np.abs(np.atleast_1d(friction)), np.atleast_1d(limit)
     share = np.divide(force, most, out=np.zeros_like(force), where=most > 0)
     return {"start_friction_N": float(force.max(initial=0.0)),

@@ -366,7 +366,7 @@ def check_table(path: Path, key: str, missing: str) -> bool:
 def open_table(path: Path, largest_bytes: int | None = None, beside: str = "") -> Iterator[Table]:
     """Open a text table for reading.
 
-    :param largest_bytes: largest allowed size of the file; ``beside`` is a hint for the message about a larger file
+    :param largest_bytes: largest allowed size; ``beside`` is a hint for the error
     :raises Unreadable: the file may not be read, is not a text table, or has ambiguous commas
     """
     try:

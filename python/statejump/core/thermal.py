@@ -137,8 +137,7 @@ def ending(
 ) -> Ending | None:
     """Return the last row of the programs of a case, if it is not at the reference temperature.
 
-    The added return ends at ``period_s``. Without this key, the program that ends furthest from the reference
-    temperature returns at the mean rate of its table.
+    The added return ends at ``period_s``. Without this key, the furthest program returns at the mean rate of its table.
 
     :param programs: programs as given, without a return, the common program first
     :param returns: whether the case requests a return
@@ -195,7 +194,7 @@ def rows(program: Thermal | MemberProgram, period_s: float) -> tuple[Numbers, Nu
 def check(thermal: Thermal, section: str = "thermal.", returns: bool = False) -> None:
     """Raise StatejumpError if a temperature program is invalid.
 
-    :param section: prefix of the keys in messages; "" for keys in a table of their own
+    :param section: prefix of the keys; "" for keys in a table of their own
     :param returns: whether a return is added to a table that does not end at the reference temperature
     """
     for key in KEYS_OF_FILES:

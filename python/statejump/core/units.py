@@ -71,7 +71,7 @@ def text(value: float | None, unit: str = "-", digits: int = 6) -> str:
 
 
 def plain(value: float | None, unit: str = "-", digits: int = 6) -> str:
-    """Return a number as text with common blanks and minus signs, which a text search finds in terminals and files."""
+    """Return the number as text with common blank and minus sign, so that a text search finds it."""
     return text(value, unit, digits).replace("\u202f", " ").replace("−", "-")
 
 

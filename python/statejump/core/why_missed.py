@@ -31,7 +31,7 @@ def heated_too_fast(
     """Return the sentence that corners of the temperature excite oscillations, if these may matter.
 
     A part that follows the temperature quasi-statically would change its speed at once. An oscillator of period T
-    instead swings with the amplitude (change of speed) · T/2π.
+    instead swings by (change of speed) · T/2π.
 
     :param moved_m: motion of the parts over the temperature range [m]
     :param allowed_m: largest allowed difference of the models [m]

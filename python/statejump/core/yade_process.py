@@ -108,7 +108,7 @@ def run(case: Case, values: Mapping[str, Any], make_run: MakeRun, on_progress: O
     :param make_run: function that makes the run from its samples
     :param on_progress: called with the finished fraction, 0 to 1
     :raises FailedRun: YADE is missing, failed or was killed
-    :raises Interrupted: the user pressed Ctrl-C; ``run`` of the error has the samples so far, or is None
+    :raises Interrupted: Ctrl-C was pressed; ``run`` of the error has the samples so far, or is None
     """
     try:
         done = execute(values, on_progress)
@@ -251,8 +251,8 @@ def check_folder(folder: Path) -> None:
 def keep_input(values: Mapping[str, Any], folder: Path) -> str:
     """Write script and data of a DEM run into a folder; return the shell command that repeats the run.
 
-    :param values: the case as plain values, in the form for :func:`statejump.core.yade_process.run`
-    :raises NotAllowed: the folder contains files other than the input of a DEM run
+    :param values: the case as plain values, see :func:`statejump.core.yade_process.run`
+    :raises NotAllowed: the folder has other files
     :raises NotWritten: the folder cannot be written
     """
     check_folder(folder)

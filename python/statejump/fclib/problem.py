@@ -161,7 +161,7 @@ class Solution:
 def merit(problem: Problem, reactions: ArrayLike) -> Merit:
     """Return the merit of given reactions as a solution of the problem.
 
-    :raises StatejumpError: the number of reactions differs from the number of rows of W
+    :raises StatejumpError: W has another number of rows
     """
     with engine():
         return Merit(**problem._problem.merit(reactions))

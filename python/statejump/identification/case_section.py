@@ -25,7 +25,7 @@ OF_EITHER_SIGN = ("bias_rad", "preload_force_N")
 
 @dataclass(frozen=True)
 class Entry:
-    """A key of the section that describes an identified joint.
+    """A key of the section of an identified joint.
 
     :param key: name of the key in its section
     :param value: value of the key; None: the loop does not determine it

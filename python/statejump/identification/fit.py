@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Least-squares fit of a joint to a loop, confidence intervals by profile likelihood, choice of the joint by BIC.
+"""Least-squares fit of a joint to a loop, intervals by profile likelihood, choice of the joint by BIC.
 
 The force has Gaussian noise with one unknown standard deviation σ. It may be correlated from row to row: n rows then
 count as m = n/τ independent rows. With the sum of squared residuals RSS, ln L = -m/2 (ln(2π RSS/n) + 1). The interval
@@ -50,10 +50,10 @@ ENDLESS = dict.fromkeys(("friction", "stop_stiffness", *STOPS), inf)
 
 
 class Problem:
-    """The fit of a joint to a loop as a search for the smallest sum of squares.
+    """Search for the best fit of a joint to a loop.
 
-    A point of the search has one coordinate per parameter, in units of the loop's size; it is a logarithm if positive.
-    At an end of its search range, a parameter of a slide has no effect: it is 0 or infinite. The search for a joint
+    Coordinates of a point are parameters in units of the loop's size; those of positive parameters are logarithms. At
+    an end of its search range, a parameter of a slide has no effect: it is 0 or infinite. The search for a joint
     therefore includes the simpler joints that it contains.
     """
 
@@ -154,8 +154,8 @@ class Problem:
         return self._lowest(grid, STARTS)
 
     def starts_of(self, part: Fit) -> list[np.ndarray]:
-        """Return start points of the search: the best fit of a joint that this joint contains, combined with start
-        values of the parameters that the contained joint lacks."""
+        """Return start points of the search: the best fit of a simpler joint, with start values of the parameters that
+        it lacks."""
         values = {**dict.fromkeys((START,), 0.0), **part.values}
         there = self.point(with_part(self.model, part.model, values, self.memory, self.displacement))
         more = [name for name in self.names if name not in part.values]
@@ -255,8 +255,8 @@ class Fits:
                     self._found[name] = _fit(problem, point, squares)
 
     def ranked(self, names: Sequence[str]) -> list[Fit]:
-        """Return the fits of joints, sorted by BIC with the best first. The residuals of the best fit determine the
-        number of independent rows, which is the same for all joints."""
+        """Return the fits of joints, the best by BIC first. Residuals of the best fit determine the number of
+        independent rows for all fits."""
         found = [self.fit(name) for name in names]
         rows_each = noise_at(min(found, key=lambda each: each.squares), self.loop).rows_each
         return sorted((replace(each, rows_each=rows_each) for each in found), key=lambda each: each.bic)

@@ -21,7 +21,7 @@ class Memory:
     """Friction memory in every row of a path of displacements.
 
     :param half_distance: distances at which the backbone is needed [m or rad]
-    :param weights: sparse matrix (rows of the path, half distances); the force is its product with the backbone
+    :param weights: sparse matrix (rows, half distances); the force is its product with the backbone
     :param loaded: memories of the same path after full slip backwards and forwards; None: the initial state is known
     :param path: displacements; only if ``loaded`` is given
     """

@@ -23,10 +23,10 @@ class Parameter:
     :param dimension: ``force``, ``displacement``, ``stiffness``, or ``-``
     :param scale: ``positive`` if the search uses the logarithm of the parameter
     :param low: lower bound of the search, in units of the loop's size (half of its force range, half of its
-        displacement range). Signed parameters are relative to the middle of the loop
+        displacement range); signed parameters are relative to its middle
     :param high: upper bound of the search
-    :param starts: start values of the search, in the same units
-    :param meaning: meaning of the parameter in words
+    :param starts: start values, in the same units
+    :param meaning: meaning in words
     """
 
     name: str
@@ -68,9 +68,9 @@ class Model:
 
     :param name: name by which users select the joint
     :param parameters: names of its parameters in PARAMETERS
-    :param answer: function that computes the force from parameters, displacements and the memory of friction
+    :param answer: function that returns the force for parameters, displacements and the memory of friction
     :param formula: formula of the force for tables
-    :param parts: simpler joints, which this joint equals if the parameters that they lack have no effect
+    :param parts: simpler joints that this joint equals if the parameters that they lack have no effect
     """
 
     name: str
@@ -86,8 +86,8 @@ class Model:
 
 
 def _coulomb(values: Values, displacement: np.ndarray, memory: Memory) -> np.ndarray:
-    """Return the force of a slide. A slide is a block with friction f between stops k_s; preload P and spring k_p act
-    on it. It is driven through a spring k with play p.
+    """Return the force of a slide: a block with friction f between stops k_s, with preload P and spring k_p, driven
+    through a spring k with play p.
 
     The block rests at x while |k (u - x) - g(x)| <= f. g is the force of preload, spring k_p and stops; it increases
     with x. k x + g(x) therefore follows k u with a play of half width f. The play p widens this play in u. Within p the
@@ -125,7 +125,7 @@ def _beside(values: Values, displacement: np.ndarray) -> np.ndarray:
 def mindlin_backbone(friction: float, stiffness: float) -> Callable[[np.ndarray], np.ndarray]:
     """Return the force of a first loading under a constant normal force (Cattaneo 1938, Mindlin 1949).
 
-    T = f (1 - (1 - u/u_s)^{3/2}), u_s = 3 f/(2 k).
+    T = f (1 - (1 - u/u_s)^{3/2}), u_s = 3 f/(2 k), with the friction limit f and the initial stiffness k.
     """
     gross = 1.5 * friction / stiffness
 

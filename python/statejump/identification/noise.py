@@ -52,10 +52,9 @@ class Noise:
         return max(1.0, 2 * float(self.correlations[:last].sum()) - 1) * self._by_cycles
 
     def inflation(self, derivative: np.ndarray) -> float:
-        """Return κ, the factor by which correlation increases the variance of the estimate of a parameter.
+        """Return κ, the factor by which correlation increases the variance of an estimate.
 
-        :param derivative: part of the force's derivative by the parameter that other parameters do not explain, every
-            row
+        :param derivative: h of the estimated parameter in every row, see the module
         """
         lags = min(len(self.correlations), len(derivative))
         products = _products(derivative, lags)

@@ -44,11 +44,11 @@ class Identification:
     :param candidates: the fitted joints, sorted by BIC with the best first
     :param fit: fit of the joint that was chosen or requested
     :param intervals: confidence intervals of its parameters
-    :param because: for each parameter that is not identified, the parameter at the end of its search range that causes
+    :param because: for each parameter that is not identified: the parameter at the end of its search range that causes
         this
-    :param limits: for each parameter that the joint lacks, a larger joint with this parameter, and its interval
+    :param limits: for each parameter that the joint lacks: a larger joint that has it, and its interval
     :param confidence: confidence level of the intervals
-    :param target: item of a case that will represent the joint, one of case_section.TARGETS
+    :param target: item of a case for the joint, one of case_section.TARGETS
     :param normal_force_N: normal force in the test [N]; None: unknown
     :param journal_radius_m: radius of the journal of a rotating joint [m]; None: unknown
     """
@@ -260,10 +260,10 @@ def identify(
         displacement
     :param model: one or several names of joints, or ``auto``: all of :data:`statejump.identification.models.MODELS`
     :param start: friction before the first row. ``fresh``: zero; ``cycled``: the path was traversed before;
-        ``unknown``: friction is a parameter
+        ``unknown``: it is a parameter
     :param confidence: confidence level of the intervals, 0.5 to 0.999
-    :param target: item of a case that will represent the joint: ``spring_slider`` (default), ``slider``, ``revolute``,
-        ``umbrella`` (default of rotations), ``torsion_spring``, ``iwan_joint``
+    :param target: item of a case for the joint: ``spring_slider`` (default), ``slider``, ``revolute``, ``umbrella``
+        (default of rotations), ``torsion_spring``, ``iwan_joint``
     :param normal_force_N: normal force in the test [N]; it converts the friction force to a friction coefficient
     :param journal_radius_m: radius of the journal [m]; it converts the friction moment to a friction coefficient
     :param ignored: names of columns to omit from a table

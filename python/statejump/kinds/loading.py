@@ -79,7 +79,7 @@ def load_case(source: str | Path | Mapping[str, Any]) -> Case:
     """Return a case from a file, a shipped case or a dict.
 
     :param source: path of a case file; name of a shipped case, for example ``table1``; or sections and keys as a dict
-    :raises StatejumpError: the file does not exist, or the case is invalid; the message has file, key, value and range
+    :raises StatejumpError: the file does not exist, or the case is invalid
     """
     if isinstance(source, Mapping):
         return parse_case(plain(source), files_from=Path())

@@ -177,9 +177,9 @@ CaseType = TypeVar("CaseType", bound=Definition)
 
 
 class Kind(Generic[CaseType]):
-    """A kind of case; the docstring of the module describes the contract.
+    """A kind of case; the module describes the contract.
 
-    ``Case`` is the class of its cases. It declares every key with unit, range, default and source.
+    ``Case`` is the class of its cases, with unit, range, default and source of every key.
     """
 
     name: ClassVar[str]

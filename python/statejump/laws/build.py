@@ -46,8 +46,8 @@ def build(header: Path, folder: Path | None = None) -> Path:
     :param folder: folder of the shared object; None: :func:`default_folder`. Another folder is searched if
         ``$STATEJUMP_LAWS`` lists it.
     :return: path of the shared object, ``<kind>_<name>.so``; it replaces an older one of that name
-    :raises StatejumpError: the header does not exist, there is no compiler, the kernel headers differ from those of the
-        installed engine, the header does not compile (with the compiler's first error), or the law is unusable
+    :raises StatejumpError: the header does not exist, there is no compiler, the kernel headers differ from those of
+        this build, the header does not compile (with the compiler's first error), or the law is unusable
     """
     header = Path(header)
     if not is_file(header):

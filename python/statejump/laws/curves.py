@@ -118,7 +118,7 @@ def impact(dissipation: str, joint: Joint, restitution: float = RESTITUTION,
 
 
 def figure(joint: Joint, folder: Path, name: str) -> list[Path]:
-    """Write ``<name>.png`` and ``<name>.svg``: every normal law, and one impact per dissipation law."""
+    """Draw every normal law, and one impact per dissipation law; write ``<name>.png`` and ``<name>.svg``."""
     with project_style():
         drawing, (left, right) = panels(1, 2, (9.5, 4.6))
         _draw_normal(left, joint)

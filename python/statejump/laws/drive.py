@@ -51,8 +51,8 @@ def drive(
     ``slide_y_m``, or ``tangential_force_N``; ``time_s`` for a law that depends on velocity. A slide is that of body 1
     relative to body 2; a tangential force is positive along the slide that causes it.
 
-    :param law: name of a friction law (used with Hertz's pressure), of a normal law (used with Mindlin's friction), or
-        of a dissipation law (used with both)
+    :param law: name of a friction law (with Hertz's pressure), a normal law (with Mindlin's friction), or a dissipation
+        law (with both)
     :param history: the columns, or a CSV file with them
     :param effective_young_modulus_Pa: E* [Pa], 1/E* = (1 - ν1²)/E1 + (1 - ν2²)/E2
     :param effective_shear_modulus_Pa: G* [Pa], 1/G* = (2 - ν1)/G1 + (2 - ν2)/G2
@@ -61,10 +61,10 @@ def drive(
     :param steps_per_row: number of equal steps between two rows
     :param radial_clearance_m: R2 - R1 [m]; default: that of a flat wall. Laws of line contacts need it
     :param contact_length_m: length of a line contact [m]; default: that of the catalogue
-    :param restitution: coefficient of restitution for a dissipation law [-]; default: that of the catalogue
-    :param smallest_impact_speed_m_per_s: smallest impact speed for a dissipation law; default: that of the catalogue
-    :param v0_m_per_s: parameter v0 of the friction law that reads it; default: that of the catalogue
-    :param v1_m_per_s: parameter v1 of the friction law that reads it; default: that of the catalogue
+    :param restitution: coefficient of restitution, for a dissipation law [-]; default: that of the catalogue
+    :param smallest_impact_speed_m_per_s: for a dissipation law; default: that of the catalogue
+    :param v0_m_per_s: v0 of the friction law that reads it; default: that of the catalogue
+    :param v1_m_per_s: v1 of the friction law that reads it; default: that of the catalogue
     :return: arrays by column, with one value per step: the columns of the history; ``row`` (counted from 1, with
         fractions between); those of ``penetration_depth_m``, slides, ``normal_force_N``, ``tangential_force_N`` that
         the history lacks (or ``tangential_force_x_N``, ``tangential_force_y_N``); energies ``normal_elastic_energy_J``

@@ -20,7 +20,7 @@ def kept_samples(
     :param columns: values (samples, columns); only finite values count
     :param most: largest number of samples
     :param tolerance: allowed error of a column, as a fraction of its range
-    :param always: indices of samples that are always kept
+    :param always: samples to keep in any case
     :returns: indices of the kept samples, in ascending order
     """
     count = len(time_s)

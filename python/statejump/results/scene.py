@@ -87,8 +87,8 @@ def description(
     """Return the complete description of a scene.
 
     :param contacts: for each contact its name, the part on which its forces act, and the other part
-    :param smallest_clearance_m: smallest clearance [m], which a viewer may magnify; 0: no clearance
-    :param forces: forces in addition to those of links and contacts
+    :param smallest_clearance_m: smallest clearance [m], which a viewer may magnify; 0: none
+    :param forces: forces besides those of links and contacts
     """
     return {
         "plane": "xy",

@@ -64,10 +64,10 @@ def parameter(default: Any, unit: str, low: float, high: float, source: str, *, 
     """Declare a key whose value is a number.
 
     :param default: default value; ``...`` for a required key, None for an optional one
-    :param unit: unit of the number; ``-`` for a ratio
+    :param unit: unit; ``-`` for a ratio
     :param low: lower end of the allowed range
     :param high: upper end of the allowed range, itself allowed
-    :param source: source of the default value
+    :param source: source of the default
     :param above: whether ``low`` itself is not allowed
     """
     rule = Rule(NUMBER, source, Range(low, high, unit, above), optional=default is None)
@@ -159,8 +159,8 @@ def tables(
     """Declare a list of tables, for example ``[[node]]``.
 
     :param model: class of a table, an :class:`~statejump.schema.items.Item` unless ``read`` is given
-    :param source: description of the tables for schemas and documentation
-    :param read: function that returns the items, from the name of the list and the value that tomllib returned
+    :param source: description of the tables
+    :param read: function that returns the items, from the name of the list and its tomllib value
     """
     default: Any = attrs.NOTHING if required else attrs.Factory(list)
     return attrs.field(default=default, metadata={TABLES: model, READ: read, RULE: Rule(TEXT, source)})

@@ -158,7 +158,7 @@ def coded(values: np.ndarray) -> Texts:
 
 
 class Names(Sequence[str]):
-    """Names of items as a sequence; a name becomes an object when it is accessed.
+    """Names of items; a name becomes an object on access.
 
     :param texts: column of the names; no name is missing
     """

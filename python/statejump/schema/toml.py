@@ -46,8 +46,8 @@ def read_toml(path: str | Path, what: str) -> tuple[str, dict[str, Any]]:
 
 
 def _reason(failure: tomllib.TOMLDecodeError, text: str) -> tuple[str, int]:
-    """Return the reason and the line in an error of the TOML parser. From Python 3.14 on they are attributes of the
-    error; in earlier versions they are the two halves of its message."""
+    """Return the reason and the line in an error of the TOML parser. In Python 3.14 they are attributes of the error;
+    before, they are the two halves of its message."""
     if sys.version_info >= (3, 14):
         return str(failure.msg), int(failure.lineno)
     reason, _, place = str(failure).rpartition(" (at ")

@@ -34,8 +34,8 @@ LEAST_SINGULAR_VALUE = 1e-6
 class Errors:
     """Errors of a surface whose nodes have moved.
 
-    :param rms_m: RMS of the residuals over the nodes [m], by definition of the error
-    :param residual_m: residuals (nodes,) [m], by definition of the error
+    :param rms_m: RMS over the nodes by definition of the error [m]
+    :param residual_m: residuals (nodes,) by definition of the error [m]
     :param tilt_rad: rotation of the axis of the best-fit paraboloid towards the lateral axes of the frame
     :param vertex_shift_m: displacement of the paraboloid's vertex along the lateral axes, then along the axis [m]; a
         lateral shift that the nodes do not distinguish from tilt is 0
@@ -51,8 +51,8 @@ class Errors:
 
 @dataclass(frozen=True)
 class _Fit:
-    """Moves of the paraboloid that the nodes determine: an orthonormal basis of their effect on the nodes, and a matrix
-    that converts coefficients of this basis to moves."""
+    """Moves that the nodes determine: an orthonormal basis of their effect on the nodes, and the matrix from
+    coefficients in this basis to moves."""
 
     moves: tuple[str, ...]
     basis: np.ndarray
@@ -64,9 +64,9 @@ class Design:
     """Nodes in the reference configuration, and the best-fit paraboloid for them.
 
     :param position_m: positions (nodes, 3) [m]
-    :param frame: axes as rows (2 or 3, 3): one (profile) or two lateral axes, then the axis of the paraboloid
+    :param frame: rows (2 or 3, 3): one (profile) or two lateral axes, then the axis
     :param local_m: (nodes, 2 or 3) positions relative to the vertex, in the frame [m]
-    :param vertex_m: position of the vertex in space [m]
+    :param vertex_m: vertex in space [m]
     :param curvature_per_m: 1/(4 F) [1/m] for the focal length F; 0: a plane
     :param design_rms_m: RMS distance of the reference nodes from the paraboloid, along the axis [m]
     """

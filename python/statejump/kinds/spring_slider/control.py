@@ -48,7 +48,7 @@ class Jump:
 
 
 def jump_of(case: SpringSliderCase) -> Jump:
-    """Return the jump of a case. :raises StatejumpError: a changed case is out of range"""
+    """Return the jump of a case. :raises StatejumpError: a value of the case is out of range"""
     with engine():
         path = reduced.solve(case, np.array([0.0]))
     # If the block does not slide in the first cycle, the second cycle is equal to the first.

@@ -29,7 +29,7 @@ SECTIONS = ("node", "link", "program", "expansion", *(kind.section for kind in (
 def check(case: TrussSections, resolve: Callable[[], ResolvedTruss]) -> None:
     """Raise StatejumpError for the first fault of a truss. The message does not contain the name of the file.
 
-    :param resolve: function that returns the truss as arrays; called after the references are checked
+    :param resolve: returns the truss as arrays, after its references are checked
     """
     if case.tables is not None:
         raise NotAllowed("section [tables]", code="tables_of_case_file")

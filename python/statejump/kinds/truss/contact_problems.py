@@ -23,10 +23,10 @@ MOST_JOINTS = 2000
 class ContactProblem:
     """The frictional contact problem of one step of the path.
 
-    :param problem: u = W r + q of the joints that can be contacts; the reactions of the path are its stored solution
-    :param velocities: motions u of the path in the step [m]: gap at the end of the step, slide during the step
+    :param problem: u = W r + q of the possible contacts; its stored solution has the reactions of the path
+    :param velocities: u on the path [m]: gap at the end of the step, slide during it
     :param joints: name of the joint of every contact
-    :param merit: error of the reactions of the path as a solution
+    :param merit: error of the reactions of the path
     """
 
     time_s: float

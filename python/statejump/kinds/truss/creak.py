@@ -156,8 +156,8 @@ def _density(acceleration: np.ndarray, rate: float) -> tuple[np.ndarray, np.ndar
 
 
 def _bands(acceleration: np.ndarray, rate: float) -> list[dict[str, float]]:
-    """Return RMS and peak of the acceleration in octaves, the highest first, which ends at half the sampling rate. The
-    last band contains all lower frequencies."""
+    """Return RMS and peak in octaves below half the sampling rate, highest first; the last band has all lower
+    frequencies."""
     found: list[dict[str, float]] = []
     high, least = rate / 2, LEAST_PERIODS * rate / len(acceleration)
     while high > least:

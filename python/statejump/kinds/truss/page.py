@@ -175,7 +175,7 @@ class TrussPart:
                 if measure.key in keys and any(joint.get(measure.key) for joint in self.joints)]
 
     def ranking(self) -> list[Row]:
-        """Return the rows of the table of joints as texts, ranked by the first quantity."""
+        """Return the rows of the table of joints as texts, ranked by the first of their quantities."""
         if not self.measures:
             return []
         first = self.measures[0].key

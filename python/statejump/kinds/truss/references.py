@@ -151,5 +151,5 @@ def _turned_links(truss: ResolvedTruss, section: str, items: Any, rows: slice, j
 
 
 def _pair_codes(truss: ResolvedTruss, ones: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Return a code for every pair of nodes, independent of their order."""
+    """Return a code for every pair of nodes, the same for both orders of the nodes."""
     return np.minimum(ones, others, dtype=np.int64) * len(truss.nodes.names) + np.maximum(ones, others)

@@ -109,7 +109,7 @@ class Program(Item, Thermal):
     def completed(self, common: TrussThermal) -> TrussThermal:
         """Return the program with missing cycles and period taken from the common program.
 
-        :raises NotAllowed: it is a table whose duration differs from ``period_s``
+        :raises NotAllowed: the program is a table whose duration differs from ``period_s``
         """
         given = self.to_dict()
         del given["name"]
@@ -244,7 +244,7 @@ class TrussSections(ElementLists, JointLists, TrussParts):
 
     @property
     def programs(self) -> list[TrussThermal | MemberProgram]:
-        """The temperature programs with cycles and period: the common one, named ones, those of members."""
+        """The temperature programs with cycles and period: the common program, named programs, those of members."""
         members = self.thermal.members
         of_members = [] if members is None else members.programs(self.thermal.cycles, self.period_s)
         return [self.thermal, *(program.completed(self.thermal) for program in self.program), *of_members]

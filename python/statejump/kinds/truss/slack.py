@@ -34,7 +34,7 @@ def hanging(case: TrussCase, run: Run, least_force_N: float) -> np.ndarray:
     link does not hold a node if its other end hangs slack. A joint with clearance does not hold a node if its contact
     carries no force. A group of slack links is not recognised if each of its nodes has as many links as directions.
 
-    :param least_force_N: lower bound for the largest force of the run, to which forces are compared
+    :param least_force_N: lower bound of the largest force, which forces are compared with
     """
     truss = case.resolve()
     ends, force = truss.links.nodes, np.abs(run.links["axial_force_N"].values)

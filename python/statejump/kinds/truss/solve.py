@@ -166,12 +166,12 @@ def path(
     """Return the quasi-static path of a truss.
 
     :param increments_per_branch: number of points of the path per monotone branch of the temperature
-    :param locate_events: whether to locate every change of a joint status; otherwise only changes that affect the state
+    :param locate_events: whether to locate every change of a joint status, or only changes that affect the state
     :param event_tolerance: interval within which a change is located, as a fraction of a branch
     :param energy_tolerance: allowed energy error, as a fraction of the work of the temperature. If events are located,
         increments with a larger error are divided; 1: no increment is divided
-    :param cycle_ends_only: whether to keep only the states at the ends of cycles
-    :param problem_times: ascending times [s] at which the frictional contact problem of the step is stored
+    :param cycle_ends_only: whether to keep only the ends of cycles
+    :param problem_times: ascending times [s] at which the contact problem of a step is stored
     :param progress: called with the finished fraction; returning False ends the path
     :param trace: called with each Newton iteration, see :data:`statejump.kinds.truss.trace.COLUMNS`
     :raises FailedRun: mechanism, unloaded joint or no equilibrium; the message has names and temperature
@@ -195,7 +195,7 @@ def whole_path(truss: ResolvedTruss, on_progress: OnProgress = lambda share: Non
     """Return the complete path; see :func:`path`.
 
     :param on_progress: called with the finished fraction, 0 to 1
-    :raises Interrupted: the user pressed Ctrl-C
+    :raises Interrupted: Ctrl-C was pressed
     """
     def going_on(share: float) -> bool:
         on_progress(share)
@@ -223,7 +223,7 @@ def solve(case: TrussCase, on_progress: OnProgress = lambda fraction: None,
     :param on_progress: called with the finished fraction, 0 to 1
     :param trace: as for :func:`path`
     :raises FailedRun: mechanism, unloaded joint or no equilibrium; the message has names and temperature
-    :raises Interrupted: the user pressed Ctrl-C
+    :raises Interrupted: Ctrl-C was pressed
     """
     kept = vars(case)
     if trace is not None or "_path" not in kept:

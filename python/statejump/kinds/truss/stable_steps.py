@@ -28,7 +28,7 @@ def _moves_along(truss: ResolvedTruss, node: int, axis: np.ndarray) -> bool:
 
 
 def least_steps_per_cycle(case: TrussCase) -> int:
-    """Return the smallest number of stable steps per cycle, by the bound that the DEM uses.
+    """Return the number of stable steps per cycle, by the bound of the DEM.
 
     The bound is the stable step of leapfrog, 2/ω. Without damping, Runge-Kutta steps may be √2 times as long; with
     stiff dashpots they may not be longer.

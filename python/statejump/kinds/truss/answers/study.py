@@ -128,16 +128,16 @@ def study(
 ) -> TrussAnswers:
     """Answer the design questions of a truss.
 
-    :param output: the output whose jump is divided among the joints: ``node`` (the node that moves most),
-        ``node:NAME``, or ``rms`` or ``tilt`` of the reflector
-    :param cycles: number of cycles to use instead of that of the case
+    :param output: the output whose jump is divided among the joints: ``node`` (that moves most), ``node:NAME``, or
+        ``rms`` or ``tilt`` of the reflector
+    :param cycles: number of cycles that replaces that of the case
     :param each: whether to compute also the sensitivity to every single item
-    :param step: relative change of each parameter for the sensitivities
+    :param step: relative change of each parameter
     :param sensitivity: whether to compute sensitivities
-    :param phase: called with the name of each part of the study before it begins
+    :param phase: called with the name of each part of the study
     :raises NotAllowed: the output does not exist, or a number is out of its range
     :raises FailedRun: the solver finds no quasi-static path
-    :raises Interrupted: the user pressed Ctrl-C
+    :raises Interrupted: Ctrl-C was pressed
     """
     STEPS.check("step", step)
     case = _of_cycles(case, cycles)

@@ -26,11 +26,11 @@ class Field:
 class Card:
     """A card of Nastran or a keyword of CalculiX and Abaqus.
 
-    :param what: for a used card its result, otherwise the reason why it is not used
+    :param what: result of a used card, or reason why the card is not used
     :param fields: fields in the order of the card; parameters of a keyword have no order
     :param repeats: number of fields at the end of the card that may repeat
     :param sets: kind of set by which the case control selects this card
-    :param own: whether its reader finds the fields itself, because their positions depend on values
+    :param own: whether its reader locates the fields itself, because their positions depend on values
     :param bending: whether the card requires the option --beams-as-bars
     """
 

@@ -243,7 +243,7 @@ class Deck:
         """Return the error for a deck that cannot be read.
 
         :param line: line number; 0 if unknown
-        :param code: key of ``CODES``; the code determines the names of the details
+        :param code: key of ``CODES``, which determines the names of details
         :param card: the card or keyword
         """
         where = [f"line {line}"] if line else []

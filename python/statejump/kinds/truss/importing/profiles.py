@@ -44,10 +44,10 @@ def nastran(shape: str, sizes: Sequence[float]) -> float | None:
 
 
 def taper(stations: Sequence[tuple[float, float]]) -> tuple[float, float]:
-    """Return the area of the uniform bar with the axial stiffness of a tapered bar, whose area is linear between
-    stations, and the mean area of the tapered bar.
+    """Return the area of the uniform bar with the axial stiffness of a bar whose area is linear between stations, and
+    the mean area of that bar.
 
-    :param stations: pairs of position, as a fraction of the length from 0 to 1 in rising order, and area
+    :param stations: pairs of fraction of the length, rising from 0 to 1, and area
     """
     flexibility = mean = 0.0
     for (start, first), (end, second) in zip(stations, stations[1:]):

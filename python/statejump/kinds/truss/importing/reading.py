@@ -40,9 +40,9 @@ def form_of(path: Path) -> str | None:
 def read(path: Path, form: str | None = None, bars: Path | None = None, options: Options | None = None) -> Deck:
     """Return the content of a deck.
 
-    :param form: ``abaqus`` (also for CalculiX), ``nastran``, ``tables`` or ``mesh``; None: :func:`form_of` decides
+    :param form: ``abaqus`` (also CalculiX), ``nastran``, ``tables`` or ``mesh``; None: see :func:`form_of`
     :param bars: path of the second table of the format ``tables``
-    :param options: the user's choices for cards of ``abaqus`` and ``nastran``
+    :param options: choices for cards of ``abaqus`` and ``nastran``
     :raises StatejumpError: one sentence with file and line
     """
     form = form or form_of(path)

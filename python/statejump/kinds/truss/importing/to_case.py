@@ -39,9 +39,9 @@ JUMP = 1e-3
 class Units:
     """The units of a deck.
 
-    :param length_m: length of one unit of length of the deck [m]
-    :param force_N: size of one unit of force of the deck [N]
-    :param mass_kg: size of one unit of mass of the deck [kg]; None: force · s² / length
+    :param length_m: unit of length of the deck [m]
+    :param force_N: unit of force of the deck [N]
+    :param mass_kg: unit of mass of the deck [kg]; None: force · s² / length
     """
 
     length_m: float = 1.0
@@ -81,7 +81,7 @@ def case_document(
     :param temperature_change_K: temperature change of all links, for a deck without temperatures
     :param density_kg_per_m3: density of the links for which the deck gives none
     :param joints: arguments of ``--joint``, see :mod:`~statejump.kinds.truss.importing.joints`
-    :param sections: further sections of the case. ``thermal`` replaces the temperatures of the deck
+    :param sections: further sections of the case; ``thermal`` replaces the temperatures of the deck
     :param reflector: nodes of a reflecting surface, as names or patterns, and the axis of the surface
     :param links: values of link keys for which the deck gives none
     :param fixed: names or patterns of nodes, and the directions in which they are held in addition

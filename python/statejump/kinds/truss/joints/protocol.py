@@ -250,7 +250,7 @@ class JointType(PartType[ItemType, ArraysType]):
         """Return the parts that draw the joints on the page.
 
         :param labels: names of the contacts of the type
-        :param taken: names of parts that exist already; the method adds the names of its parts
+        :param taken: names of existing parts; the method adds its own
         """
         return Drawn([], [], np.zeros(0))
 

@@ -35,8 +35,8 @@ class State:
     """Supports and loads at the end of a step.
 
     :param held: held directions of each node
-    :param force: force by node and direction, with the line in the deck
-    :param gravity: vector by set of elements, with the line in the deck
+    :param force: force by node and direction, with its line
+    :param gravity: vector by set of elements, with its line
     """
 
     held: dict[str, set[int]] = field(default_factory=dict)

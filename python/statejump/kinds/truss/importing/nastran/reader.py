@@ -27,7 +27,7 @@ class Material:
 class Property:
     """Section of a bar.
 
-    :param area: area of the section; None: unknown, with the reason in ``why``
+    :param area: area; None: unknown, with the reason in ``why``
     :param mass_area: mean area, which determines the mass; it differs from ``area`` in a taper
     :param more: non-structural mass per length
     """
