@@ -49,7 +49,7 @@ LEAST = {"chain": 1, "iwan": 1, "umbrella": 1, "ring": 3, "mast": 1}
 
 
 def _making(document: Callable[Keys, Document]) -> Callable[Keys, Case]:
-    """Convert a generator, which returns the document of a case, to a function that returns the case."""
+    """Convert a generator of case documents to a function that returns a case."""
     name = document.__name__
     number = Rule(WHOLE, allowed=Range(LEAST[name], LARGEST))
 
@@ -106,9 +106,9 @@ def answers(
     """Answer the design questions of a truss: jumps, whether they settle, contributions of joints, sensitivities.
 
     :param case: a case of kind ``truss``
-    :param output: the output whose jump is divided among the joints: ``node`` (that moves most), ``node:NAME``, or
-        ``rms`` or ``tilt`` of the reflector
-    :param cycles: number of cycles that replaces that of the case
+    :param output: the output whose jump is divided among the joints: ``node`` (the node that moves most),
+        ``node:NAME``, or ``rms`` or ``tilt`` of the reflector
+    :param cycles: replaces the number of cycles of the case
     :param each: whether to compute also the sensitivity to every single item
     :param step: relative change of each parameter
     :param sensitivity: whether to compute sensitivities

@@ -124,8 +124,8 @@ class Bore:
 
     @property
     def dominating_harmonic(self) -> int | None:
-        """Number of waves per turn of the harmonic with the largest amplitude in the middle section; None if that
-        amplitude is smaller than the error of the mesh."""
+        """Number of waves of the harmonic with the largest amplitude in the middle section; None if the amplitude is
+        smaller than the error of the mesh."""
         largest = int(np.argmax(self.middle.amplitude_m))
         if self.middle.amplitude_m[largest] <= self.mesh.reconstruction_error_m:
             return None
@@ -252,7 +252,7 @@ def load(file: Path, unit_m: float = 1.0, flip: bool = False) -> _engine.BoreMes
 
 
 def check_journal(key: str, radius_m: float | None) -> None:
-    """Raise NotAllowed if the radius of a journal is invalid. None means that there is no journal, and is valid."""
+    """Raise NotAllowed if the radius of a journal is invalid; None (no journal) is valid."""
     if radius_m is not None and not 0 < radius_m < float("inf"):
         raise NotAllowed(key, radius_m, code="not_positive", unit="m")
 

@@ -172,7 +172,7 @@ def _check_sections(data: Mapping[str, Any], known: Sequence[str] = ("campaign",
 def check_campaign(case: Case, model: str, named: str, before: str = "") -> None:
     """Raise NotAllowed unless campaigns support this kind of case in this model.
 
-    :param named: the case as the caller named it, for the message
+    :param named: the case as the caller named it
     :param before: prefix of the keys ``case`` and ``model`` in the message
     """
     behaviour = of(case)
@@ -193,7 +193,7 @@ def check_workers(key: str, workers: int | None) -> None:
 def vary_of(given: Iterable[tuple[str, Mapping[str, Any]]], case: Case, command: str) -> tuple[Varied, ...]:
     """Return the varied parameters that ``[[vary]]`` tables define.
 
-    :param given: tables, each with the name that messages use for it
+    :param given: tables, each with its name for messages
     :raises StatejumpError: a table is invalid
     """
     found: list[Varied] = []

@@ -40,7 +40,7 @@ def workers_for(recipe: Recipe, scheduler: str | None, workers: int) -> Iterator
     """Yield a cluster that can run the samples of a campaign. On exit, end every process that was started here.
 
     :param scheduler: address of a running scheduler; None: a cluster on this machine
-    :param workers: number of worker processes of the cluster on this machine
+    :param workers: number of processes of that cluster
     """
     with open_client(scheduler, workers) as client:
         yield Workers(_slots(client), lambda missing: _finished(client, recipe, missing))
@@ -94,8 +94,8 @@ Given = TypeVar("Given")
 
 
 def _patiently(client: Client, ask: Callable[[], Given]) -> Given:
-    """Wait for the result of a call that raises TimeoutError as long as its result is not available. :raises
-    StatejumpError: the cluster is gone, or has been without workers for too long"""
+    """Wait for the result of a call that raises TimeoutError until its result is available. :raises StatejumpError: the
+    cluster is gone, or has been without workers for too long"""
     alone_since: float | None = None
     while True:
         try:

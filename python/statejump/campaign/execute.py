@@ -57,7 +57,7 @@ def run_missing(
 ) -> Statistics:
     """Run the missing samples. Every finished batch is stored before the next is counted.
 
-    :param kept: samples that are already stored; this function adds the samples that it finishes
+    :param kept: stored samples; this function adds finished samples
     :param scheduler: address of a running scheduler; None: a cluster on this machine
     :param workers: number of processes of the cluster on this machine; None: one per core, or none for a reduced model
         if this process is as fast as the start of workers

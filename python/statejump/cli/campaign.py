@@ -34,7 +34,7 @@ def _of_case(command: Any) -> Any:
 
 
 def _plan(file: Path, name: str, of_case: dict[str, Any]) -> Plan:
-    """Return the campaign that a campaign file defines, or the one that a case and options define."""
+    """Return the campaign of a campaign file, or the one that a case and options define."""
     given = [option for option, value in of_case.items() if value not in (None, ())]
     _, data = read_toml(file, "campaign")
     if name != MONTECARLO or "case" not in data or "campaign" in data:

@@ -52,7 +52,7 @@ def truss_command() -> None:
 
 
 def _shown(key: str) -> str:
-    """Return the name of the command option for a key. The name omits the unit, because the help text contains it."""
+    """Return the command option for a key. Its name omits the unit, which the help text contains."""
     return "--" + split_unit(key)[0].replace("_", "-")
 
 

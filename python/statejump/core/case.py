@@ -173,7 +173,7 @@ class Case(Section):
                 if name not in self.NOT_IN_FILE and part is not None and part != []}
 
     def to_toml(self) -> str:
-        """Return the case as the text of a case file. The text has the given keys, but not the defaults.
+        """Return the case as the text of a case file, with the keys that were given, without defaults.
 
         :raises NotAllowed: the case has temperature histories of members, which need a file of their own
         """

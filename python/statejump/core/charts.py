@@ -51,7 +51,7 @@ TIME = Axis("time_s", "Time")
 
 
 class PageSection(Protocol):
-    """The section of a run's page that only one kind of case has: the result of the kind's capability ``page``.
+    """The section of a run's page that only one kind of case has: the result of its capability ``page``.
 
     :param template: HTML template, in which the variable ``part`` is this object
     :param columns: data of the charts, by model and column name

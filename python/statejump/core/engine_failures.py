@@ -11,7 +11,7 @@ from statejump.core.errors import FailedRun
 
 
 class EngineFailed(FailedRun):
-    """The engine returned no result: ``[WHERE: ][WHAT: ]SENTENCE[; REMEDY]``. Its sentence has cause and remedy.
+    """The engine returned no result: ``[WHERE: ][WHAT: ]SENTENCE[; REMEDY]``. SENTENCE states cause and remedy.
 
     :param failure: the exception of the engine
     :param what: description of the run that failed; "" for none

@@ -75,9 +75,9 @@ class Drawing(Figure):
 class Sheet:
     """The drawing of runs by a kind.
 
-    :param panels: functions that draw the panels, row by row; None stands for an empty panel
+    :param panels: functions that draw the panels, row by row; None: an empty panel
     :param columns: number of panels in a row
-    :param size: width and height of the figure [inch]
+    :param size: width and height [inch]
     :param title: title of the figure
     """
 

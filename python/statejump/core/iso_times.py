@@ -31,7 +31,7 @@ def _date(cell: str) -> datetime | None:
 
 
 def seconds(cells: Sequence[str], place: Callable[[int], tuple[int, str]], path: Path) -> np.ndarray:
-    """Return the seconds that each time of a column is after the first time.
+    """Return the seconds from the first time to each time of a column.
 
     :raises Unreadable: a cell is not a time, or only some cells have a time zone
     """

@@ -35,8 +35,8 @@ SWITCHES = {"true": True, "false": False}
 
 
 def with_tables(data: Mapping[str, Any], folder: Path, case: type[Section]) -> Mapping[str, Any]:
-    """Replace the file names in the section [tables] of a parsed case file: return the document with an
-    :class:`ItemTable` for every file. Without this section, return the document itself.
+    """Replace the file names in the section [tables] of a parsed case file by an :class:`ItemTable` for each file.
+    Without this section, return the document itself.
 
     :param folder: folder to which relative paths refer
     :raises StatejumpError: a file cannot be read or is invalid: one sentence with its name

@@ -94,7 +94,7 @@ def _opened(path: Path) -> tuple[int, Path]:
 def write_atomically(path: Path) -> Iterator[IO[str]]:
     """Open a text file that appears under its name only when it is complete and on disk.
 
-    :raises NotWritten: the file cannot be written; an earlier file with this name remains
+    :raises NotWritten: the file cannot be written; an earlier one remains
     """
     with _replacing(path) as descriptor:
         with open(descriptor, "w", encoding="utf-8", newline="", closefd=False) as stream:
@@ -104,7 +104,7 @@ def write_atomically(path: Path) -> Iterator[IO[str]]:
 def write_bytes(path: Path, content: bytes) -> Path:
     """Write a file that appears under its name only when it is complete and on disk; return the path.
 
-    :raises NotWritten: the file cannot be written; an earlier file with this name remains
+    :raises NotWritten: the file cannot be written; an earlier one remains
     """
     with _replacing(path) as descriptor:
         with open(descriptor, "wb", buffering=0, closefd=False) as stream:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Warnings about allowed but implausible values, mostly caused by wrong units. There is one warning for each kind of
-implausible value; it names the worst item."""
+"""Warnings about allowed but implausible values, mostly due to wrong units: one for each kind of value, about the worst
+item."""
 from __future__ import annotations
 
 import warnings

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Results folder of a run. One run at a time uses it, and it gets all files of a run or none.
+"""Results folder of a run. One run at a time uses it, and gets all of its files into it or none.
 
 A run locks the folder and writes into its subfolder ``.ID.partial``. When all files are complete and on disk, the run
 renames the subfolder to ``.ID.ready``, and moves the files to their final paths. After a kill, the next run in the
@@ -34,7 +34,7 @@ OWNER = ".case.json"
 
 @dataclass(frozen=True)
 class Results:
-    """The root folder of results, and options for the folders in it.
+    """Root of the results, and options for the folders in it.
 
     :param root: folder that contains one folder per case
     :param wait: whether to wait for another run in the same folder, instead of being refused

@@ -172,7 +172,7 @@ class Run:
     :param links: columns of links, (samples, links)
     :param contacts: columns of contacts, (samples, contacts) and (samples, contacts, 3)
     :param events: events in order of time
-    :param summary: summary numbers; their names end with their units. NaN: the event did not happen
+    :param summary: summary numbers; their names end in their units. NaN: the event did not happen
     :param names: names of the items on the second axis of columns
     :param case_of: function that returns the case; a case in a file is read at the first call
     :param warnings: limits of the model that the run met

@@ -27,7 +27,7 @@ def rows_of(columns: Sequence[np.ndarray]) -> bytes:
 def read_samples(path: Path, whole: bool = True) -> dict[str, np.ndarray]:
     """Return the columns of a file of samples.
 
-    :param whole: whether an incomplete last row is an error; otherwise this row is omitted
+    :param whole: whether an incomplete last row is an error; otherwise it is omitted
     :raises Unreadable: the file contains no samples, or its rows do not match its header
     """
     with path.open("rb") as stream:

@@ -31,7 +31,7 @@ ENDS = ("@a", "@b")  # endings of names of columns: first and second node of a l
 class Read:
     """The content of a file of temperatures.
 
-    :param offset_K: for each of the m columns, the offset that converts its numbers to kelvin
+    :param offset_K: offset that converts numbers to kelvin, for each of m columns
     """
 
     path: Path

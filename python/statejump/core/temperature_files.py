@@ -84,7 +84,7 @@ class Histories(Attached):
 
 def with_files(data: Mapping[str, Any], folder: Path, section: type[Section] | None) -> Mapping[str, Any]:
     """Return a parsed case file in which the contents of temperature files replace their names. Without such files,
-    return the document itself. Faults of other keys are left to the checks of the case.
+    return the document itself. The checks of the case find other faults.
 
     :param folder: folder to which relative paths refer
     :param section: class of the section [thermal] of this kind of case; None: the kind has no such section

@@ -21,7 +21,7 @@ ENDINGS = {
 
 @lru_cache(maxsize=None)
 def split_unit(name: str) -> tuple[str, str]:
-    """Return a name without its unit, and the unit. The unit is ``-`` if the name has none."""
+    """Return a name without its unit, and the unit (``-`` for none)."""
     ending = next((ending for ending in ENDINGS if name.endswith(ending)), "")
     return name.removesuffix(ending), ENDINGS.get(ending, "-")
 

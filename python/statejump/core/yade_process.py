@@ -105,7 +105,7 @@ def run(case: Case, values: Mapping[str, Any], make_run: MakeRun, on_progress: O
     """Run a case in YADE.
 
     :param values: data for the script, see :func:`common_values`
-    :param make_run: function that makes the run from its samples
+    :param make_run: makes the run from its samples
     :param on_progress: called with the finished fraction, 0 to 1
     :raises FailedRun: YADE is missing, failed or was killed
     :raises Interrupted: Ctrl-C was pressed; ``run`` of the error has the samples so far, or is None

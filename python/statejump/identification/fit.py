@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Least-squares fit of a joint to a loop, intervals by profile likelihood, choice of the joint by BIC.
 
-The force has Gaussian noise with one unknown standard deviation σ. It may be correlated from row to row: n rows then
-count as m = n/τ independent rows. With the sum of squared residuals RSS, ln L = -m/2 (ln(2π RSS/n) + 1). The interval
-of a parameter ends where its profile exceeds RSS by κ F/(n - p) of RSS. F is the quantile of F(1, m - p) for p
-parameters, and κ the factor by which correlation increases the variance of an estimate.
+The force has Gaussian noise with one unknown standard deviation σ. It may be correlated: n rows then count as m = n/τ
+independent rows. With the sum of squared residuals RSS, ln L = -m/2 (ln(2π RSS/n) + 1). The interval of a parameter
+ends where its profile exceeds RSS by κ F/(n - p) of RSS. F is the quantile of F(1, m - p) for p parameters, and κ the
+factor by which correlation increases the variance of an estimate.
 """
 from __future__ import annotations
 
@@ -353,7 +353,7 @@ class Intervals:
 def intervals(fits: Fits, model: str, confidence: float, names: Sequence[str] | None = None) -> tuple[Fit, Intervals]:
     """Return the interval of each parameter, and the fit, which a profile may have improved.
 
-    :param confidence: confidence level, for example 0.95
+    :param confidence: confidence level
     :param names: names of the parameters; None: all parameters
     """
     while True:

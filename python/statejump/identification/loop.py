@@ -122,7 +122,7 @@ def read_loop(source: str | Path | Mapping[str, Any], start: str = "unknown", ig
 
 
 def _named(source: Mapping[str, Any]) -> dict[str, np.ndarray]:
-    """Return columns under keys that end with units, converted to these units. ISO times are omitted."""
+    """Return columns under keys with units, converted to these; ISO times are omitted."""
     given = {str(name): np.atleast_1d(np.asarray(values)) for name, values in source.items()}
     columns = [column for column in matched(list(given), COLUMNS, WORDS) if not column.iso]
     return {column.key: column.converted(given[column.name]) if given[column.name].dtype.kind in "iuf"

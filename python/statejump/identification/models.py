@@ -66,10 +66,10 @@ Answer = Callable[[Values, np.ndarray, Memory], np.ndarray]
 class Model:
     """A type of joint that can be identified.
 
-    :param name: name by which users select the joint
+    :param name: name of the joint type for users
     :param parameters: names of its parameters in PARAMETERS
     :param answer: function that returns the force for parameters, displacements and the memory of friction
-    :param formula: formula of the force for tables
+    :param formula: formula for tables
     :param parts: simpler joints that this joint equals if the parameters that they lack have no effect
     """
 
@@ -125,7 +125,7 @@ def _beside(values: Values, displacement: np.ndarray) -> np.ndarray:
 def mindlin_backbone(friction: float, stiffness: float) -> Callable[[np.ndarray], np.ndarray]:
     """Return the force of a first loading under a constant normal force (Cattaneo 1938, Mindlin 1949).
 
-    T = f (1 - (1 - u/u_s)^{3/2}), u_s = 3 f/(2 k), with the friction limit f and the initial stiffness k.
+    T = f (1 - (1 - u/u_s)^{3/2}), u_s = 3 f/(2 k), with friction limit f, stiffness k.
     """
     gross = 1.5 * friction / stiffness
 

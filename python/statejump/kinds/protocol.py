@@ -96,7 +96,7 @@ class DemValues(Protocol):
 
 @capability("dem run")
 class DemResult(Protocol):
-    """Makes the run, finished or interrupted, from the columns that YADE wrote."""
+    """Makes a DEM run, finished or interrupted, from the columns that YADE wrote."""
 
     def dem_run(self, case: Any, columns: Columns, about: Mapping[str, Any]) -> Run: ...
 

@@ -42,7 +42,7 @@ def build(header: Path, folder: Path | None = None) -> Path:
     The header defines a type like those of the catalogue, and declares it as ``using UserLaw = ...;``. Its own includes
     are searched beside it and in the kernel.
 
-    :param header: path of the header
+    :param header: file of the law
     :param folder: folder of the shared object; None: :func:`default_folder`. Another folder is searched if
         ``$STATEJUMP_LAWS`` lists it.
     :return: path of the shared object, ``<kind>_<name>.so``; it replaces an older one of that name

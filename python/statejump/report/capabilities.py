@@ -55,7 +55,7 @@ class EventReasons(Protocol):
 
 @capability("page")
 class PagePart(Protocol):
-    """The section of the page of ``statejump report`` that only this kind has; None if the result needs none."""
+    """The section of the page of ``statejump report`` that only this kind has; None: this result has none."""
 
     def page(self, result: Result, case: Any) -> Any: ...
 

@@ -57,7 +57,7 @@ class Document:
     :param result: contents of the result file
     :param source: name of the file as the page shows it
     :param identifier: prefix of the HTML anchors of this result, unique on the page
-    :param budget_bytes: largest size of the histories on the page [bytes]
+    :param budget_bytes: largest size of the histories [bytes]
     """
 
     template = "run.html"

@@ -28,8 +28,8 @@ class Scalar:
 
 @dataclass(frozen=True)
 class Answers:
-    """Answers to design questions on a truss. ``tables`` has the rows of the CSV files with the same names; each cell
-    is a text, an integer, a number or None."""
+    """Answers to design questions on a truss. ``tables`` has the rows of the CSV files of that name; a cell is a text,
+    an integer, a number or None."""
 
     output: str  # the output whose jump is attributed to joints: node:NAME, rms, tilt
     text: str  # the same in a sentence

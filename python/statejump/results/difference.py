@@ -178,8 +178,8 @@ def _summary(first: Run, second: Run) -> list[tuple[str, str, float, float]]:
 def difference(first: Result, second: Result) -> list[RunDifference]:
     """Compare the runs in two result files.
 
-    The second run is interpolated linearly at the times of the first. If a run is incomplete, the runs are compared
-    over their common time, without a verdict.
+    The second run is interpolated linearly at the times of the first. If a run is incomplete, only the common time is
+    compared, without a verdict.
 
     :raises StatejumpError: the files belong to different cases, or the cases have different durations
     """

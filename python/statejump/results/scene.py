@@ -86,7 +86,7 @@ def description(
 ) -> dict[str, Any]:
     """Return the complete description of a scene.
 
-    :param contacts: for each contact its name, the part on which its forces act, and the other part
+    :param contacts: of each contact name, part on which its forces act, and other part
     :param smallest_clearance_m: smallest clearance [m], which a viewer may magnify; 0: none
     :param forces: forces besides those of links and contacts
     """

@@ -140,8 +140,8 @@ def section(
 ) -> Any:
     """Declare a section of a file. If an optional section is missing, all its keys have their defaults.
 
-    :param made: function that returns the section if it is missing; None: all keys have their defaults
-    :param name: name of the section in files, if it differs from that of the attribute
+    :param made: function that returns a missing section; None: all keys have their defaults
+    :param name: name in files, if it differs from that of the attribute
     """
     default: Any = attrs.NOTHING if required else attrs.Factory(made or model)
     return attrs.field(default=default, metadata={SECTION: model}, alias=name)

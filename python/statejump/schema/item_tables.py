@@ -262,8 +262,8 @@ class ItemIndex:
         return found
 
     def of(self, items: Sequence[Any], key: str) -> np.ndarray:
-        """Return, for every item of a list, the index of the item that its key names (n,), or indices (n, k) for lists
-        of names. A missing name has NONE, an unknown one UNKNOWN; lists have NONE after their end."""
+        """Return, for every item of a list, the index of the item that its key names (n,), or (n, k) for lists; NONE
+        for a missing name, UNKNOWN for an unknown one. Lists have NONE after their end."""
         if not isinstance(items, ItemColumns):
             return self._of_each([getattr(item, key) for item in items])
         given = items.texts(key)

@@ -26,7 +26,7 @@ class Item(Section):
 
 
 def read_tables(model: type[ItemType], section: str, value: Any) -> Sequence[ItemType]:
-    """Return the items of a list of tables, as objects or in columns, depending on how the list is given.
+    """Return the items of a list of tables, as objects or in columns, as they are given.
 
     A truss of 10 000 joints has some 100 000 items. Numbers are therefore checked by direct comparisons with their
     range, and items are created without a second check by their class.

@@ -24,11 +24,11 @@ ATTACHED = "attached"  # value that no file can contain
 class Rule:
     """Rule that the value of a key must satisfy.
 
-    :param form: type of the value: NUMBER, WHOLE, SWITCH, TEXT, NUMBERS, TEXTS or ATTACHED
-    :param source: source of the default value, and purpose of the key
+    :param form: type: NUMBER, WHOLE, SWITCH, TEXT, NUMBERS, TEXTS or ATTACHED
+    :param source: source of the default, and purpose of the key
     :param allowed: allowed range of a number, or of every number of a list
     :param known: function that returns the allowed names of a text, or of every text of a list; the catalogue of laws
-        may grow
+        grows
     :param pattern: regular expression that the whole text must match, or a function that returns one on demand
     :param optional: whether None is allowed and means a missing value
     :param length: number of entries of a list

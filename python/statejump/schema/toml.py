@@ -19,7 +19,7 @@ LARGEST_BYTES = 1 << 28  # ten times the size of a truss of 100 000 joints
 def read_toml(path: str | Path, what: str) -> tuple[str, dict[str, Any]]:
     """Return the text of a TOML file and its parsed content.
 
-    :param what: type of the file for the message if it does not exist: ``case`` or ``campaign``
+    :param what: type of the file, for the message that it does not exist: ``case`` or ``campaign``
     :raises Unreadable: the file does not exist or is not TOML; one sentence with the file and the line
     """
     try:

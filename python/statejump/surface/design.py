@@ -86,7 +86,7 @@ class Design:
 
         :param position_m: positions (nodes, 3) [m]
         :param axis: direction of the paraboloid's axis, a vector of any length
-        :param focal_length_m: focal length [m]; None: that of the best fit
+        :param focal_length_m: focal length [m]; None: it is fitted
         :raises StatejumpError: nodes or axis are invalid, or there are too few nodes
         """
         position, way = _points("position_m", position_m), np.asarray(axis, dtype=float)

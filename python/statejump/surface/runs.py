@@ -14,7 +14,7 @@ from statejump.surface.motion import pointing_rad
 
 
 def reflector_of(case: Case) -> tuple[Design, np.ndarray]:
-    """Return the reflecting surface of a case in the reference configuration, and the indices of its nodes.
+    """Return the reference surface of a case and the indices of its nodes.
 
     :raises StatejumpError: the kind of case has no surface, or the case has no [reflector]
     """

@@ -84,7 +84,7 @@ class Force(Section):
 
 
 def read_forces(name: str, value: Any) -> list[Force]:
-    """Return the forces of ``[[force]]``. Forces may have no names, so messages refer to them by number.
+    """Return the forces of ``[[force]]``. Forces may lack names, so messages number them.
 
     :raises StatejumpError: the first failure, without the file's name
     """

@@ -57,8 +57,8 @@ def write_statics_json(statics: Statics, folder: Path) -> Path:
 def write_vtp(statics: Statics, folder: Path) -> Path:
     """Write ``<case>.vtp`` for ParaView: the surface of positions, cut along the rest sets.
 
-    Arrays of cells are ``stable`` (1 if at least one force allows rest) and ``forces`` (number of such forces). The
-    array of points is ``cone_angle_rad``, the smallest angle between -F and the normal N over all forces F.
+    Arrays of cells are ``stable`` (1 if at least one force allows rest) and ``forces`` (number of such forces). That of
+    points is ``cone_angle_rad``, the smallest angle between -F and normal N over all forces F.
     """
     target = folder / f"{statics.case.name}.vtp"
     try:

@@ -40,7 +40,7 @@ class Statics:
     A set is a dict: its separate ``parts``, ``length_m`` and ``area_m2``; ``diameter_m``, the largest distance of two
     of its positions, which bounds every state jump; and ``farthest_m``, two positions at this distance.
 
-    :param curve: curve on which the centre of a journal in a lobed bearing moves
+    :param curve: curve of the centre of a journal in a lobed bearing
     :param mesh: surface of the positions in space, for pictures
     :param pieces: the mesh cut into polygons along the sets
     """

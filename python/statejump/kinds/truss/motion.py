@@ -129,7 +129,7 @@ def simulate(case: TrussCase, on_progress: OnProgress = lambda share: None, watc
     :param on_progress: called with the finished fraction, 0 to 1
     :param watched_node: index of a node whose velocity is recorded at every step
     :raises FailedRun: the start or a step has no solution; the message names joint and temperature
-    :raises Interrupted: Ctrl-C was pressed; ``run`` of the error is the motion so far, or None at the start
+    :raises Interrupted: Ctrl-C was pressed; ``run`` of the error is the motion so far, or None
     """
     def going_on(share: float) -> bool:
         on_progress(share)

@@ -60,7 +60,7 @@ def _vectors(rows: list[Row], cycles: int) -> np.ndarray:
 
 
 class TrussPart:
-    """The section of the page that only trusses have.
+    """The section of the report page that only trusses have.
 
     :param result: a truss with the history of its nodes, see :func:`page`
     """
@@ -364,7 +364,7 @@ class TrussPart:
     def payload(self, encoded: Callable[[np.ndarray], Any]) -> Row:
         """Return the truss data for the script of the page.
 
-        :param encoded: function that converts an array to the page's encoding
+        :param encoded: converts an array to the page's encoding
         """
         start = self._run.history["position_m"].values[0]
         size = float(np.ptp(start, axis=0).max())

@@ -128,13 +128,13 @@ def study(
 ) -> TrussAnswers:
     """Answer the design questions of a truss.
 
-    :param output: the output whose jump is divided among the joints: ``node`` (that moves most), ``node:NAME``, or
-        ``rms`` or ``tilt`` of the reflector
-    :param cycles: number of cycles that replaces that of the case
+    :param output: the output whose jump is divided among the joints: ``node`` (the node that moves most),
+        ``node:NAME``, or ``rms`` or ``tilt`` of the reflector
+    :param cycles: replaces the number of cycles of the case
     :param each: whether to compute also the sensitivity to every single item
     :param step: relative change of each parameter
     :param sensitivity: whether to compute sensitivities
-    :param phase: called with the name of each part of the study
+    :param phase: called with the name of each part
     :raises NotAllowed: the output does not exist, or a number is out of its range
     :raises FailedRun: the solver finds no quasi-static path
     :raises Interrupted: Ctrl-C was pressed

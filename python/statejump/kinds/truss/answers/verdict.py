@@ -45,7 +45,7 @@ def judged(found: TrussPath, increments: int, solve: Solve, output: Output) -> t
     """Return the verdict on whether an output settles over the cycles, and the path with twice the increments.
 
     :param found: path with the given number of increments per branch
-    :param solve: function that returns a path with more increments; called again only if two paths disagree
+    :param solve: returns a path with more increments; called again only if two paths disagree
     """
     first = finer = solve(2 * increments)
     coarse = found

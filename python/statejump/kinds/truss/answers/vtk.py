@@ -36,8 +36,8 @@ def series(found: TrussPath, folder: Path, name: str, wanted_frames: int = 50,
     """Write ``<name>.N.vtu`` for some states and the series ``<name>.vtu.series``; return the path of the series.
 
     Points are the nodes in the reference configuration; ``displacement_m`` moves them (Warp By Vector). Cells are
-    links, elements between nodes, and joints as points at their first or bearing node. If a cell has no value, it gets
-    NaN; if it has no status, it gets 255.
+    links, elements between nodes, and joints as points at their first or bearing node. Cells without value have NaN,
+    those without status 255.
 
     :param wanted_frames: number of states to write, evenly spread over the path; 0: all states
     """

@@ -28,13 +28,13 @@ STIFFNESS = "spring.*.stiffness_N_per_m"
 
 @dataclass(frozen=True)
 class Candidate:
-    """A change of a truss that one number describes.
+    """A change of a truss by one number.
 
     :param parameter: name of the change as the user gave it
     :param own: the number for the unchanged case: stiffness 0, or factor 1
     :param values: numbers to try
     :param truss: function that returns the changed truss for a number
-    :param section: section of the changed items; ``key`` and ``items`` are their key and their indices
+    :param section: section of the changed items; ``key`` is their changed key, ``which`` returns their indices
     """
 
     parameter: str

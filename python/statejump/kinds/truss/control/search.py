@@ -49,7 +49,7 @@ def jump_of(truss: ResolvedTruss, node: int, increments: int) -> Jump:
 
 @dataclass
 class Search:
-    """One candidate, for which values are scanned and the limit value is searched.
+    """One candidate: a scan of its values, and the search for the limit.
 
     :param value: the smallest change that keeps the jump at or below the bound; None if no scanned value does
     """
@@ -104,8 +104,8 @@ class Search:
         return min(max(low, self.candidate.own), high)
 
     def _end(self, bad: float, good: float, wanted: float) -> float:
-        """Return the value at which the jump crosses ``wanted`` between a value that fails and one that passes, on the
-        side of the smaller jump."""
+        """Return the value at which the jump crosses ``wanted`` between ``bad`` and ``good``, on the side of the
+        smaller jump."""
         def excess(exponent: float) -> float:
             return self.jump(exp(exponent)).size_m - wanted
 

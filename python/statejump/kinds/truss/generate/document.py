@@ -67,8 +67,8 @@ def table_path(path: Path, section: str) -> Path:
 def write(made: Mapping[str, Any], path: Path, header: Sequence[str], tables: Collection[str] = ()) -> None:
     """Write the document of a case to a file.
 
-    :param header: comment lines at the head of the file
-    :param tables: names of lists whose items go into CSV files beside the case
+    :param header: comment lines at its head
+    :param tables: lists whose items go into CSV files beside the case
     :raises StatejumpError: a file cannot be written
     """
     beside = {section: table_path(path, section) for section in tables if section in made}

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Rigid bodies and equations between displacements.
 
-Nodes of a truss have no rotations. A rigid body is accepted only if bars and springs end at a single position of it.
-Its nodes at this position become one node, which gets the forces and masses of the body's other nodes. Equations have
-four uses. An equation that holds a node becomes a support. If equations make all displacements of two nodes at one
-position equal, they become one node. If an equation determines the motion of a node without bars, the loads of that
-node move to the other nodes. All other equations become constraints of the case.
+Nodes of a truss have no rotations. A rigid body is accepted if bars and springs end at only one position of it. Its
+nodes at this position become one node, which gets the forces and masses of the body's other nodes. An equation that
+holds a node becomes a support. If equations make all displacements of two nodes at one position equal, they become one
+node. If an equation determines the motion of a node without bars, the loads of that node move to the other nodes. All
+other equations become constraints of the case.
 """
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ class _Bodies:
 def join(deck: Deck, one: Mapping[str, str]) -> None:
     """Merge nodes that are at one position.
 
-    :param one: for each removed node, the name of the node that remains
+    :param one: name of the remaining node, by the name of each removed node
     """
     for bar in deck.bars:
         first, second = (one.get(end, end) for end in bar.nodes)

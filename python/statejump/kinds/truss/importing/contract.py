@@ -27,9 +27,9 @@ class Card:
     """A card of Nastran or a keyword of CalculiX and Abaqus.
 
     :param what: result of a used card, or reason why the card is not used
-    :param fields: fields in the order of the card; parameters of a keyword have no order
+    :param fields: fields in the order of the card; those of keywords have no order
     :param repeats: number of fields at the end of the card that may repeat
-    :param sets: kind of set by which the case control selects this card
+    :param sets: kind of set by which the case control selects it
     :param own: whether its reader locates the fields itself, because their positions depend on values
     :param bending: whether the card requires the option --beams-as-bars
     """
@@ -63,7 +63,7 @@ def used(name: str, what: str, layout: str = "", *, idle: Mapping[str, str] | No
     :param layout: names of all fields in their order, separated by blanks
     :param idle: reasons why fields have no influence, by field names separated by blanks
     :param refused: reasons why fields are unsupported, by field names separated by blanks
-    :raises ValueError: a reason names a field that is not in the layout, or a field has two reasons
+    :raises ValueError: a reason names a field that the layout lacks, or a field has two reasons
     """
     names = layout.split()
     reasons: dict[str, tuple[str, str]] = {}

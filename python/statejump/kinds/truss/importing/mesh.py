@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Nodes and bars of a mesh. VTK reads its own formats, the library meshio all others. Meshes are in SI units, without
-sections and supports. Properties of bars are cell data with the names of case keys, or options of the command."""
+sections and supports. Properties of bars are cell data named after case keys, or options."""
 from __future__ import annotations
 
 import contextlib

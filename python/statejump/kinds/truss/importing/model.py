@@ -148,11 +148,11 @@ class Deck:
     :param mass: lumped masses of nodes
     :param mass_scale: factor for all masses and densities
     :param gravity: acceleration vector of all masses
-    :param refused: for each refused card and option that waives the refusal: first line, reason, sentence, count
-    :param taken: for each used card and each result: count
-    :param left: for each omitted card and each reason: first line and count
+    :param refused: by refused card and option that waives the refusal: first line, reason, sentence, count
+    :param taken: count by used card and result
+    :param left: first line and count by omitted card and reason
     :param named_units: whether the file states the units of its numbers
-    :param choices: one sentence for each choice that the import made without an option of the user
+    :param choices: one sentence for each choice that no option of the user made
     """
 
     path: Path

@@ -371,8 +371,8 @@ def scaled(values: np.ndarray, scale: float, unit: str) -> str:
 class Loads:
     """Nodal forces that the joints cause, joint by joint.
 
-    :param force_N: forces (joints, nodes, 3), to which the methods add
-    :param place_m: positions of the nodes in the current state (nodes, 3)
+    :param force_N: forces (joints, nodes, 3), which the methods increment
+    :param place_m: positions of the nodes in the state (nodes, 3)
     """
 
     truss: ResolvedTruss

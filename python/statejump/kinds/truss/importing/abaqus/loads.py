@@ -89,7 +89,7 @@ def run(model: Model, steps: list[Step]) -> None:
 
 
 def _chosen(model: Model, steps: list[Step]) -> int:
-    """Return the index of the chosen step: that of --step, else the first static step, else the first step."""
+    """Return the index of the chosen step: the step of --step, else the first static step, else the first step."""
     wanted, count = model.deck.options.step or 0, len(steps) - 1
     if wanted > max(count, 1):
         raise NotAllowed("--step", wanted, code="undefined_step", steps=count, plural="s" if count != 1 else "")

@@ -123,7 +123,7 @@ def _cards(deck: Deck, lines: Iterable[tuple[int, str]]) -> list[Card]:
 
 class _Marks:
     """Finds cards by the continuation mark at the end of their last line. A continuation line repeats columns 2 to 8 of
-    the mark. Its first column may be any character: a line that begins with +EG continues the mark PEG."""
+    the mark. Its first column may be any character: +EG continues the mark PEG."""
 
     def __init__(self) -> None:
         self._cards: dict[str, Card] = {}

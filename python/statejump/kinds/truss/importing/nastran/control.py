@@ -26,9 +26,9 @@ SELECTED = {
 
 @dataclass
 class Control:
-    """The content of the executive and case control.
+    """Content of the executive and case control.
 
-    :param given: whether the deck has a case control. Without one, a set is used if it is the only set of its kind
+    :param given: whether there is a case control. Without one, a set is used if it is the only one of its kind
     :param chosen: numbers of the selected sets, by kind
     :param solution: value of SOL
     :param autospc: whether directions without stiffness are held
